@@ -48,7 +48,7 @@ bool ex_scratch_make(ex_worker_t *worker)
     /* What is never touched of the large ones costs nothing. */
     worker->marking = ex_reserve(pn_net.marking_size + (size_t)UNIT);
     scratch->next = ex_reserve(pn_net.marking_size + (size_t)UNIT);
-    scratch->binding = ex_alloc(run, pn_net.binding_size);
+    scratch->binding = ex_alloc(run, pn_binding_size(&pn_net));
     void *memory = ex_reserve(run->options.arena);
     if ((scratch->cell == NULL) || (scratch->dirty == NULL) || (scratch->stale == NULL) || (scratch->undo_cell == NULL) || (scratch->undo_value == NULL) || (scratch->decoded == NULL)
         || (scratch->buffer == NULL) || (worker->marking == NULL) || (scratch->next == NULL) || (scratch->binding == NULL)

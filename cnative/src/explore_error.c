@@ -88,7 +88,7 @@ static bool on_binding(void *user, uint32_t transition, const void *binding)
     const size_t mark = pn_arena_mark(&scratch->arena);
     (void)memcpy(scratch->binding, binding, pn_net.transition[transition].binding->size);
     (void)memcpy(scratch->next, worker->marking, pn_net.marking_size);
-    const bool is_fired = pn_net.transition[transition].fire(&worker->cx, scratch->next, scratch->binding);
+    const bool is_fired = pn_net.transition[transition].fire(&worker->cx, scratch->next, transition, scratch->binding);
     if (!is_fired) {
         pn_json(pn_net.transition[transition].binding, binding, &trial->text);
         trial->is_found = true;

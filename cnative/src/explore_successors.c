@@ -145,7 +145,7 @@ static bool on_binding(void *user, uint32_t transition, const void *binding)
     const uint64_t random = worker->cx.random; /* the search goes on with its own numbers */
     (void)memcpy(scratch->binding, binding, pn_net.transition[transition].binding->size);
     (void)memcpy(scratch->next, worker->marking, pn_net.marking_size);
-    const bool is_done = pn_net.transition[transition].fire(&worker->cx, scratch->next, scratch->binding)
+    const bool is_done = pn_net.transition[transition].fire(&worker->cx, scratch->next, transition, scratch->binding)
                          && hunt->on_next(user, transition, scratch->binding, scratch->next);
     worker->cx.random = random;
     pn_arena_release(&scratch->arena, mark);

@@ -280,7 +280,7 @@ static bool make(sim_t *sim, pn_arena_t *arena)
     /* Before anything runs; nothing is allocated later. */
     void *memory = sim_reserve(sim->options.memory);
     sim->marking = sim_reserve(pn_net.marking_size);
-    sim->binding = sim_reserve(pn_net.binding_size);
+    sim->binding = sim_reserve(pn_binding_size(&pn_net));
     sim->found_size = FOUND_SIZE;
     sim->found = sim_reserve(FOUND_SIZE);
     if ((memory == NULL) || (sim->marking == NULL) || (sim->binding == NULL) || (sim->found == NULL) || !sim_prepare(sim)) {

@@ -96,21 +96,22 @@ static const char *labels(const pn_scalar_t *scalar, uint32_t count, char *out, 
 
 static bool parse(sup_t *sup, const pn_cell_input_t *input, input_text_t *text, pn_message_t *token)
 {
-    const pn_place_t *const place = &sup->net->place[input->place];
+    const pn_type_t *const type = sup->net->place[input->place].bag->type;
+    const uint32_t lines = pn_line_count(type);
     const char *line = NULL;
     size_t length = 0U;
     uint32_t done = 0U;
     token->count = 0U;
     token->text_length = 0U;
-    for (uint32_t i = 0U; i < place->line_count; i++) {
-        const uint32_t wanted = place->line_leaves[i];
+    for (uint32_t i = 0U; i < lines; i++) {
+        const uint32_t wanted = pn_line_leaves(type, i);
         const pn_scalar_t *const scalar = &input->scalar[done];
         (void)labels(scalar, wanted, text->columns, sizeof text->columns);
         if (!take_line(text, &line, &length)) {
             return sup_stop(sup, SUP_EXIT_USAGE,
                             "%s:%" PRIu32 ":1: the file ends where line %" PRIu32 " of %" PRIu32 " is expected: %" PRIu32
                             " value%s (%s)",
-                            text->path, text->line + 1U, i + 1U, place->line_count, wanted, (wanted == 1U) ? "" : "s",
+                            text->path, text->line + 1U, i + 1U, lines, wanted, (wanted == 1U) ? "" : "s",
                             text->columns);
         }
         if (!pn_scalars_parse(scalar, wanted, line, length, token)) {
@@ -126,8 +127,8 @@ static bool parse(sup_t *sup, const pn_cell_input_t *input, input_text_t *text, 
     if (take_line(text, &line, &length)) {
         char shown[160];
         return sup_stop(sup, SUP_EXIT_USAGE, "%s:%" PRIu32 ":1: found %s after the %" PRIu32 " line%s that belong%s here",
-                        text->path, text->line, pn_quote(line, length, shown, sizeof shown), place->line_count,
-                        (place->line_count == 1U) ? "" : "s", (place->line_count == 1U) ? "s" : "");
+                        text->path, text->line, pn_quote(line, length, shown, sizeof shown), lines, (lines == 1U) ? "" : "s",
+                        (lines == 1U) ? "s" : "");
     }
     return true;
 }

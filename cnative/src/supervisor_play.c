@@ -112,7 +112,7 @@ int sup_fire_one(sup_t *sup, int32_t owner, uint32_t *transition)
         return -1;
     }
     sup->cx.step = sup->fired + 1U; /* an occurrence counts itself, as in CPN Tools; a search does not */
-    if (!chosen->fire(&sup->cx, sup->marking, sup->binding)) {
+    if (!chosen->fire(&sup->cx, sup->marking, index, sup->binding)) {
         (void)snprintf(doing, sizeof doing, "firing `%s`", chosen->name);
         (void)sup_stop_error(sup, doing);
         return -1;

@@ -83,18 +83,9 @@ static const pn_type_t BINDING = {
 
 /* --- places ----------------------------------------------------------------------------------------------------------- */
 
-static const pn_leaf_kind_t ORDER_LEAF[] = {PN_LEAF_INT, PN_LEAF_REAL, PN_LEAF_REAL};
-static const char *const ORDER_NAME[] = {"n", "x", "y"};
-static const uint32_t ORDER_LINE[] = {1U, 2U};
-static const pn_leaf_kind_t POSE_LEAF[] = {PN_LEAF_REAL, PN_LEAF_REAL};
-static const char *const POSE_NAME[] = {"x", "y"};
-static const pn_leaf_kind_t INT_LEAF[] = {PN_LEAF_INT};
-static const char *const INT_NAME[] = {"1"};
-
 #define BAG(field, place_name, value_type, timed)                                                                 \
     static const pn_bag_t field##_bag = {.origin = "page `Top`, place `" place_name "`", .type = &(value_type),   \
-                                         .capacity = 1U, .is_timed = (timed), PN_BAG_TOKENS(marking_t, field),    \
-                                         PN_BAG_STAMPS(marking_t, field)};
+                                         .capacity = 1U, .is_timed = (timed), PN_BAG_STAMPS(marking_t, field)};
 
 BAG(orders, "Top.Orders", ORDER_TYPE, false)
 BAG(idle, "Top.Idle", UNIT, true)
@@ -131,14 +122,13 @@ static bool begin(pn_ctx_t *cx, void *marking)
     .name = place_name, .colset = "UNIT", .owner = (place_owner), .bag = &field##_bag
 
 static const pn_place_t PLACE[] = {
-    {PLAIN(orders, "Top.Orders", 0), .initial = begin, .leaf_count = 3U, .leaf_kind = ORDER_LEAF, .leaf_name = ORDER_NAME,
-     .line_count = 2U, .line_leaves = ORDER_LINE},
+    {PLAIN(orders, "Top.Orders", 0), .initial = begin},
     {PLAIN(idle, "Top.Idle", 0)},
     {PLAIN(waiting, "Top.Waiting", 0)},
     {PLAIN(done, "Top.Done", 0)},
-    {PLAIN(pose, "Top.pose1", -1), .leaf_count = 2U, .leaf_kind = POSE_LEAF, .leaf_name = POSE_NAME},
-    {PLAIN(command, "Top.command", -1), .leaf_count = 1U, .leaf_kind = INT_LEAF, .leaf_name = INT_NAME},
-    {PLAIN(answer, "Top.answer", -1), .leaf_count = 1U, .leaf_kind = INT_LEAF, .leaf_name = INT_NAME},
+    {PLAIN(pose, "Top.pose1", -1)},
+    {PLAIN(command, "Top.command", -1)},
+    {PLAIN(answer, "Top.answer", -1)},
     {PLAIN(spin, "Top.Spin", 0)},
 };
 
@@ -171,10 +161,10 @@ ENUMERATE(again, HAS(answer) && (VALUE(answer) == 3))
 ENUMERATE(spin, (HAS(answer) && (VALUE(answer) == 4)) || HAS(spin))
 ENUMERATE(work, HAS(command) && HAS(pose))
 
-static bool send_fire(pn_ctx_t *cx, void *marking, void *binding)
+static bool send_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     marking_t *const m = marking;
-    (void)cx, (void)binding;
+    (void)cx, (void)self, (void)binding;
     TAKE(orders);
     TAKE(idle);
     PUT(waiting, 0U);
@@ -183,11 +173,11 @@ static bool send_fire(pn_ctx_t *cx, void *marking, void *binding)
     return true;
 }
 
-static bool next_fire(pn_ctx_t *cx, void *marking, void *binding)
+static bool next_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     marking_t *const m = marking;
     const order_t rest = {VALUE(orders).n - 1, {VALUE(orders).at.x + 0.1, VALUE(orders).at.y}};
-    (void)cx, (void)binding;
+    (void)cx, (void)self, (void)binding;
     TAKE(waiting);
     TAKE(answer);
     PUT(orders, rest);
@@ -196,47 +186,47 @@ static bool next_fire(pn_ctx_t *cx, void *marking, void *binding)
     return true;
 }
 
-static bool finish_fire(pn_ctx_t *cx, void *marking, void *binding)
+static bool finish_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     marking_t *const m = marking;
-    (void)cx, (void)binding;
+    (void)cx, (void)self, (void)binding;
     TAKE(orders);
     TAKE(idle);
     PUT(done, 0U);
     return true;
 }
 
-static bool overflow_fire(pn_ctx_t *cx, void *marking, void *binding)
+static bool overflow_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
-    (void)marking, (void)binding;
+    (void)marking, (void)self, (void)binding;
     cx->error = PN_ERR_OVERFLOW;
     cx->error_name = "Overflow";
     cx->error_origin = "page `Top`, transition `Trouble` (ID77)";
     return false;
 }
 
-static bool again_fire(pn_ctx_t *cx, void *marking, void *binding)
+static bool again_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     marking_t *const m = marking;
-    (void)cx, (void)binding;
+    (void)cx, (void)self, (void)binding;
     TAKE(answer);
     PUT(command, 3);
     return true;
 }
 
-static bool spin_fire(pn_ctx_t *cx, void *marking, void *binding)
+static bool spin_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     marking_t *const m = marking;
-    (void)cx, (void)binding;
+    (void)cx, (void)self, (void)binding;
     TAKE(answer);
     PUT(spin, 0U);
     return true;
 }
 
-static bool work_fire(pn_ctx_t *cx, void *marking, void *binding)
+static bool work_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     marking_t *const m = marking;
-    (void)cx, (void)binding;
+    (void)cx, (void)self, (void)binding;
     TAKE(command);
     TAKE(pose);
     PUT(answer, 1);
@@ -268,7 +258,6 @@ const pn_net_t pn_net = {
     .digest = "0000",
     .timed = true,
     .marking_size = sizeof(marking_t),
-    .binding_size = sizeof(binding_t),
     .place_count = sizeof PLACE / sizeof PLACE[0],
     .place = PLACE,
     .transition_count = sizeof TRANSITION_TABLE / sizeof TRANSITION_TABLE[0],

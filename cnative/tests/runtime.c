@@ -62,8 +62,7 @@ static const pn_bag_t s_plain = {
     .origin = "place `Plain`", .type = &s_int, .capacity = 4U, PN_BAG_TOKENS(marking_t, Plain)
 };
 static const pn_bag_t s_timed = {
-    .origin = "place `Timed`", .type = &s_int, .capacity = 3U, .is_timed = true, PN_BAG_TOKENS(marking_t, Timed),
-    PN_BAG_STAMPS(marking_t, Timed)
+    .origin = "place `Timed`", .type = &s_int, .capacity = 3U, .is_timed = true, PN_BAG_STAMPS(marking_t, Timed)
 };
 
 /* The text of a place's marking. */

@@ -148,7 +148,7 @@ static bool note_fired(void *user, uint32_t transition, const void *binding)
     const uint64_t random = pass->cx->random; /* the search goes on with its own numbers */
     (void)memcpy(pass->binding, binding, pn_net.transition[transition].binding->size);
     (void)memcpy(pass->next, pass->marking, pn_net.marking_size);
-    const bool goes_on = pn_net.transition[transition].fire(pass->cx, pass->next, pass->binding)
+    const bool goes_on = pn_net.transition[transition].fire(pass->cx, pass->next, transition, pass->binding)
                          && note_successor(user, transition, pass->binding, pass->next);
     pass->cx->random = random;
     return goes_on;
@@ -238,7 +238,7 @@ static bool step(pn_ctx_t *cx, void *marking, void *copy, void *binding)
     list_t one = { NULL, 0U, (uint64_t)chosen, binding, 0U };
     enumerate(cx, marking, &one);
     cx->step++;
-    return pn_ok(cx) && pn_net.transition[one.transition].fire(cx, marking, binding);
+    return pn_ok(cx) && pn_net.transition[one.transition].fire(cx, marking, one.transition, binding);
 }
 
 int main(int argc, char **argv)
@@ -250,7 +250,7 @@ int main(int argc, char **argv)
     const uint64_t steps = strtoull(argv[2], NULL, 10);
     void *marking = calloc(1U, pn_net.marking_size);
     void *copy = calloc(1U, pn_net.marking_size);
-    void *binding = calloc(1U, pn_net.binding_size);
+    void *binding = calloc(1U, pn_binding_size(&pn_net));
     if ((marking == NULL) || (copy == NULL) || (binding == NULL)) {
         return 2;
     }

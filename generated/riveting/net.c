@@ -8,35 +8,30 @@
  *
  *   the state space, all 3,345 states of the cell as it runs
  *     Cell.dadosrobo1: 1, Cell.dadosrobo2: 1
- *   sub-invariant flag1_interno + flag1_externo + coordenadas + planned + approached + verified +
- *   corrected + ended + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done +
- *   Cell.Supervisor.Approach.Move both.there 1 + offset + Cell.Supervisor.Correct.order +
- *   Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move both.there 1 + shift + ready + riveted +
- *   return + Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened + retract +
- *   Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + releasing +
- *   Cell.Supervisor.Install.Rivet.Retract.there 1 + Cell.Supervisor.Install.Return.there 1 +
- *   Cell.Robot1.Commanded + Cell.Robot1.Done <= 1
+ *   sub-invariant flag1_interno + flag1_externo + coordenadas + planned + approached + verified + corrected + ended +
+ *   Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done + Cell.Supervisor.Approach.Move both.there 1 + offset +
+ *   Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move both.there 1 + shift +
+ *   ready + riveted + return + Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened + retract +
+ *   Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + releasing + Cell.Supervisor.Install.Rivet.Retract.there 1 +
+ *   Cell.Supervisor.Install.Return.there 1 + Cell.Robot1.Commanded + Cell.Robot1.Done <= 1
  *     Cell.flag1_interno: 1, Cell.flag1_externo: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached +
- *   Cell.Supervisor.Approach.seam <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + Cell.Supervisor.Approach.seam <= 1
  *     Cell.referencia1: 1, Cell.medida1: 1
- *   sub-invariant flag2_interno + flag2_externo + coordenadas + planned + approached + verified +
- *   corrected + ended + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done +
- *   Cell.Supervisor.Approach.Move both.there 2 + first asked + last asked + offset +
- *   Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move
- *   both.there 2 + shift + ready + riveted + return + Cell.Supervisor.Install.Shift.there 2 + advance +
- *   contact + fastened + retract + Cell.Supervisor.Install.Rivet.Advance.there 2 + drilling + inserting
- *   + Cell.Supervisor.Install.Rivet.Retract.there 2 + Cell.Supervisor.Install.Return.there 2 +
- *   Cell.Robot2.Commanded + Cell.Robot2.Done <= 1
+ *   sub-invariant flag2_interno + flag2_externo + coordenadas + planned + approached + verified + corrected + ended +
+ *   Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done + Cell.Supervisor.Approach.Move both.there 2 + first
+ *   asked + last asked + offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.done +
+ *   Cell.Supervisor.Correct.Move both.there 2 + shift + ready + riveted + return + Cell.Supervisor.Install.Shift.there 2 +
+ *   advance + contact + fastened + retract + Cell.Supervisor.Install.Rivet.Advance.there 2 + drilling + inserting +
+ *   Cell.Supervisor.Install.Rivet.Retract.there 2 + Cell.Supervisor.Install.Return.there 2 + Cell.Robot2.Commanded +
+ *   Cell.Robot2.Done <= 1
  *     Cell.flag2_interno: 1
- *   sub-invariant referencia1 + medida1 + flag2_interno + flag2_externo + coordenadas + planned +
- *   approached + verified + corrected + ended + Cell.Supervisor.Approach.order +
- *   Cell.Supervisor.Approach.done + Cell.Supervisor.Approach.Move both.there 2 + offset +
- *   Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move
- *   both.there 2 + shift + ready + riveted + return + Cell.Supervisor.Install.Shift.there 2 + advance +
- *   contact + fastened + retract + Cell.Supervisor.Install.Rivet.Advance.there 2 + drilling + inserting
- *   + Cell.Supervisor.Install.Rivet.Retract.there 2 + Cell.Supervisor.Install.Return.there 2 +
- *   Cell.Robot2.Commanded + Cell.Robot2.Done <= 1
+ *   sub-invariant referencia1 + medida1 + flag2_interno + flag2_externo + coordenadas + planned + approached + verified +
+ *   corrected + ended + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done + Cell.Supervisor.Approach.Move
+ *   both.there 2 + offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move
+ *   both.there 2 + shift + ready + riveted + return + Cell.Supervisor.Install.Shift.there 2 + advance + contact + fastened
+ *   + retract + Cell.Supervisor.Install.Rivet.Advance.there 2 + drilling + inserting +
+ *   Cell.Supervisor.Install.Rivet.Retract.there 2 + Cell.Supervisor.Install.Return.there 2 + Cell.Robot2.Commanded +
+ *   Cell.Robot2.Done <= 1
  *     Cell.flag2_externo: 1
  *   never marked
  *     Cell.referencia2: 0, Cell.medida2: 0
@@ -46,194 +41,177 @@
  *     Cell.Supervisor.planned: 1
  *   sub-invariant coordenadas + planned + approached + Cell.Supervisor.Approach.seam <= 1
  *     Cell.Supervisor.approached: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified +
- *   Cell.Supervisor.Approach.seam <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam <=
+ *   1
  *     Cell.Supervisor.verified: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
  *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam <= 1
  *     Cell.Supervisor.corrected: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
- *   ended + Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work +
- *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + ended +
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 1
+ *   + Cell.Supervisor.Install.Return.there 1 <= 1
  *     Cell.Supervisor.ended: 1
  *   sub-invariant coordenadas + planned + approached + verified + corrected + ended + Finished +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + return +
- *   work + Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 1
- *   + home 1 <= 1
+ *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + return + work +
+ *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 1 + home 1 <= 1
  *     Cell.Supervisor.Finished: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
- *   result + Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready +
- *   Cell.Supervisor.Install.Shift.moving 2 + Cell.Supervisor.Install.Shift.there 2 + advance + contact +
- *   fastened + Cell.Supervisor.Install.Rivet.Advance.moving 1 +
- *   Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + drilling + inserting + releasing <= 1
- *     Cell.Supervisor.result: 1, Cell.Supervisor.Install.shift: 1, Cell.Supervisor.Install.Shift.there 2:
- *     1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + result +
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready + Cell.Supervisor.Install.Shift.moving 2
+ *   + Cell.Supervisor.Install.Shift.there 2 + advance + contact + fastened + Cell.Supervisor.Install.Rivet.Advance.moving
+ *   1 + Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + drilling + inserting + releasing <= 1
+ *     Cell.Supervisor.result: 1, Cell.Supervisor.Install.shift: 1, Cell.Supervisor.Install.Shift.there 2: 1
  *   sub-invariant coordenadas + planned + approached + verified + corrected + ended + Failed +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + return +
- *   work + Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 1
- *   + home 1 <= 1
+ *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + return + work +
+ *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 1 + home 1 <= 1
  *     Cell.Supervisor.Failed: 1
  *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order <= 1
  *     Cell.Supervisor.Approach.order: 1
- *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done
- *   + Cell.Supervisor.Approach.Move both.moving 1 + Cell.Supervisor.Approach.Move both.there 1 <= 1
+ *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done +
+ *   Cell.Supervisor.Approach.Move both.moving 1 + Cell.Supervisor.Approach.Move both.there 1 <= 1
  *     Cell.Supervisor.Approach.done: 1
  *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.seam <= 1
  *     Cell.Supervisor.Approach.seam: 1
- *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move
- *   both.moving 1 <= 1
+ *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move both.moving 1 <=
+ *   1
  *     Cell.Supervisor.Approach.Move both.moving 1: 1
- *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move
- *   both.moving 1 + Cell.Supervisor.Approach.Move both.there 1 <= 1
+ *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move both.moving 1 +
+ *   Cell.Supervisor.Approach.Move both.there 1 <= 1
  *     Cell.Supervisor.Approach.Move both.there 1: 1
- *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move
- *   both.moving 2 <= 1
+ *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move both.moving 2 <=
+ *   1
  *     Cell.Supervisor.Approach.Move both.moving 2: 1
- *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move
- *   both.moving 2 + Cell.Supervisor.Approach.Move both.there 2 <= 1
+ *   sub-invariant coordenadas + planned + Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.Move both.moving 2 +
+ *   Cell.Supervisor.Approach.Move both.there 2 <= 1
  *     Cell.Supervisor.Approach.Move both.there 2: 1
  *   sub-invariant coordenadas + planned + approached + Cell.Supervisor.Approach.seam + first asked <= 1
  *     Cell.Supervisor.Verify.first asked: 1
- *   sub-invariant coordenadas + planned + approached + Cell.Supervisor.Approach.seam + first asked +
- *   last asked <= 1
+ *   sub-invariant coordenadas + planned + approached + Cell.Supervisor.Approach.seam + first asked + last asked <= 1
  *     Cell.Supervisor.Verify.last asked: 1
- *   sub-invariant coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam + first
- *   asked + last asked + offset <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam + first asked + last asked
+ *   + offset <= 1
  *     Cell.Supervisor.Correct.offset: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified +
- *   Cell.Supervisor.Approach.seam + offset + Cell.Supervisor.Correct.order <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam +
+ *   offset + Cell.Supervisor.Correct.order <= 1
  *     Cell.Supervisor.Correct.order: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified +
- *   Cell.Supervisor.Approach.seam + offset + Cell.Supervisor.Correct.order +
- *   Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move both.moving 1 +
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam +
+ *   offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.done + Cell.Supervisor.Correct.Move both.moving 1 +
  *   Cell.Supervisor.Correct.Move both.there 1 <= 1
  *     Cell.Supervisor.Correct.done: 1
- *   sub-invariant coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam + first
- *   asked + last asked + Cell.Supervisor.Correct.seam <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam + first asked + last asked
+ *   + Cell.Supervisor.Correct.seam <= 1
  *     Cell.Supervisor.Correct.seam: 1
- *   sub-invariant coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam + first
- *   asked + last asked + offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.Move
- *   both.moving 1 <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam + first asked + last asked
+ *   + offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.Move both.moving 1 <= 1
  *     Cell.Supervisor.Correct.Move both.moving 1: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified +
- *   Cell.Supervisor.Approach.seam + offset + Cell.Supervisor.Correct.order +
- *   Cell.Supervisor.Correct.Move both.moving 1 + Cell.Supervisor.Correct.Move both.there 1 <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam +
+ *   offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.Move both.moving 1 + Cell.Supervisor.Correct.Move
+ *   both.there 1 <= 1
  *     Cell.Supervisor.Correct.Move both.there 1: 1
- *   sub-invariant coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam + first
- *   asked + last asked + offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.Move
- *   both.moving 2 <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam + first asked + last asked
+ *   + offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.Move both.moving 2 <= 1
  *     Cell.Supervisor.Correct.Move both.moving 2: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified +
- *   Cell.Supervisor.Approach.seam + offset + Cell.Supervisor.Correct.order +
- *   Cell.Supervisor.Correct.Move both.moving 2 + Cell.Supervisor.Correct.Move both.there 2 <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + Cell.Supervisor.Approach.seam +
+ *   offset + Cell.Supervisor.Correct.order + Cell.Supervisor.Correct.Move both.moving 2 + Cell.Supervisor.Correct.Move
+ *   both.there 2 <= 1
  *     Cell.Supervisor.Correct.Move both.there 2: 1
- *   sub-invariant coordenadas + planned + approached + verified + corrected + result +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + shift +
- *   ready + Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1 + advance +
- *   contact + fastened + Cell.Supervisor.Install.Rivet.Advance.moving 1 +
- *   Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + drilling + inserting + releasing <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + corrected + result + Cell.Supervisor.Approach.seam +
+ *   first asked + last asked + Cell.Supervisor.Correct.seam + shift + ready + Cell.Supervisor.Install.Shift.moving 1 +
+ *   Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened + Cell.Supervisor.Install.Rivet.Advance.moving 1
+ *   + Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + drilling + inserting + releasing <= 1
  *     Cell.Supervisor.Install.ready: 1, Cell.Supervisor.Install.Rivet.Advance.moving 1: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
  *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready + riveted +
- *   Cell.Supervisor.Install.Shift.moving 2 + Cell.Supervisor.Install.Shift.there 2 + advance + contact +
- *   fastened + retract + Cell.Supervisor.Install.Rivet.Advance.moving 1 +
- *   Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + drilling + inserting + releasing +
- *   Cell.Supervisor.Install.Rivet.Retract.moving 1 + Cell.Supervisor.Install.Rivet.Retract.there 1 <= 1
+ *   Cell.Supervisor.Install.Shift.moving 2 + Cell.Supervisor.Install.Shift.there 2 + advance + contact + fastened +
+ *   retract + Cell.Supervisor.Install.Rivet.Advance.moving 1 + Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing +
+ *   drilling + inserting + releasing + Cell.Supervisor.Install.Rivet.Retract.moving 1 +
+ *   Cell.Supervisor.Install.Rivet.Retract.there 1 <= 1
  *     Cell.Supervisor.Install.riveted: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
  *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work <= 1
  *     Cell.Supervisor.Install.return: 1
- *   sub-invariant coordenadas + planned + approached + verified + corrected +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + work <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + corrected + Cell.Supervisor.Approach.seam + first asked
+ *   + last asked + Cell.Supervisor.Correct.seam + work <= 1
  *     Cell.Supervisor.Install.work: 1
- *   sub-invariant coordenadas + planned + approached + verified + corrected + result +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + shift +
- *   ready + Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1 + advance +
- *   contact + fastened + Cell.Supervisor.Install.Rivet.Advance.moving 2 +
- *   Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling + inserting + releasing <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + corrected + result + Cell.Supervisor.Approach.seam +
+ *   first asked + last asked + Cell.Supervisor.Correct.seam + shift + ready + Cell.Supervisor.Install.Shift.moving 1 +
+ *   Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened + Cell.Supervisor.Install.Rivet.Advance.moving 2
+ *   + Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling + inserting + releasing <= 1
  *     Cell.Supervisor.Install.Shift.moving 1: 1, Cell.Supervisor.Install.Rivet.advance: 1,
  *     Cell.Supervisor.Install.Rivet.Advance.moving 2: 1, Cell.Supervisor.Install.Rivet.Fasten.pressing: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
- *   result + Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready +
- *   Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1 + advance + contact +
- *   fastened + Cell.Supervisor.Install.Rivet.Advance.moving 1 +
- *   Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + drilling + inserting + releasing <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + result +
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready + Cell.Supervisor.Install.Shift.moving 1
+ *   + Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened + Cell.Supervisor.Install.Rivet.Advance.moving
+ *   1 + Cell.Supervisor.Install.Rivet.Advance.there 1 + pressing + drilling + inserting + releasing <= 1
  *     Cell.Supervisor.Install.Shift.there 1: 1, Cell.Supervisor.Install.Rivet.contact: 1,
  *     Cell.Supervisor.Install.Rivet.fastened: 1, Cell.Supervisor.Install.Rivet.Advance.there 1: 1
- *   sub-invariant coordenadas + planned + approached + verified + corrected + result +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + shift +
- *   ready + Cell.Supervisor.Install.Shift.moving 2 + Cell.Supervisor.Install.Shift.there 2 + advance +
- *   contact + fastened + Cell.Supervisor.Install.Rivet.Advance.moving 2 +
- *   Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling + inserting + releasing <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + corrected + result + Cell.Supervisor.Approach.seam +
+ *   first asked + last asked + Cell.Supervisor.Correct.seam + shift + ready + Cell.Supervisor.Install.Shift.moving 2 +
+ *   Cell.Supervisor.Install.Shift.there 2 + advance + contact + fastened + Cell.Supervisor.Install.Rivet.Advance.moving 2
+ *   + Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling + inserting + releasing <= 1
  *     Cell.Supervisor.Install.Shift.moving 2: 1
- *   sub-invariant coordenadas + planned + approached + verified + corrected +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + shift +
- *   ready + riveted + Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1 +
- *   advance + contact + fastened + retract + Cell.Supervisor.Install.Rivet.Advance.moving 2 +
- *   Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling + inserting + releasing +
- *   Cell.Supervisor.Install.Rivet.Retract.moving 1 + Cell.Supervisor.Install.Rivet.Retract.there 1 <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + corrected + Cell.Supervisor.Approach.seam + first asked
+ *   + last asked + Cell.Supervisor.Correct.seam + shift + ready + riveted + Cell.Supervisor.Install.Shift.moving 1 +
+ *   Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened + retract +
+ *   Cell.Supervisor.Install.Rivet.Advance.moving 2 + Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling +
+ *   inserting + releasing + Cell.Supervisor.Install.Rivet.Retract.moving 1 + Cell.Supervisor.Install.Rivet.Retract.there 1
+ *   <= 1
  *     Cell.Supervisor.Install.Rivet.retract: 1, Cell.Supervisor.Install.Rivet.Retract.moving 1: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
- *   result + Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready +
- *   Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1 + advance + contact +
- *   fastened + Cell.Supervisor.Install.Rivet.Advance.moving 2 +
- *   Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling + inserting + releasing <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + result +
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready + Cell.Supervisor.Install.Shift.moving 1
+ *   + Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened + Cell.Supervisor.Install.Rivet.Advance.moving
+ *   2 + Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling + inserting + releasing <= 1
  *     Cell.Supervisor.Install.Rivet.Advance.there 2: 1, Cell.Supervisor.Install.Rivet.Fasten.drilling: 1,
  *     Cell.Supervisor.Install.Rivet.Fasten.inserting: 1, Cell.Supervisor.Install.Rivet.Fasten.releasing: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
  *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready + riveted +
- *   Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1 + advance + contact +
- *   fastened + retract + Cell.Supervisor.Install.Rivet.Advance.moving 2 +
- *   Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling + inserting + releasing +
- *   Cell.Supervisor.Install.Rivet.Retract.moving 1 + Cell.Supervisor.Install.Rivet.Retract.there 1 <= 1
+ *   Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened +
+ *   retract + Cell.Supervisor.Install.Rivet.Advance.moving 2 + Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing +
+ *   drilling + inserting + releasing + Cell.Supervisor.Install.Rivet.Retract.moving 1 +
+ *   Cell.Supervisor.Install.Rivet.Retract.there 1 <= 1
  *     Cell.Supervisor.Install.Rivet.Retract.there 1: 1
- *   sub-invariant coordenadas + planned + approached + verified + corrected +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + shift +
- *   ready + riveted + Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1 +
- *   advance + contact + fastened + retract + Cell.Supervisor.Install.Rivet.Advance.moving 2 +
- *   Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling + inserting + releasing +
- *   Cell.Supervisor.Install.Rivet.Retract.moving 2 + Cell.Supervisor.Install.Rivet.Retract.there 2 <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + corrected + Cell.Supervisor.Approach.seam + first asked
+ *   + last asked + Cell.Supervisor.Correct.seam + shift + ready + riveted + Cell.Supervisor.Install.Shift.moving 1 +
+ *   Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened + retract +
+ *   Cell.Supervisor.Install.Rivet.Advance.moving 2 + Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling +
+ *   inserting + releasing + Cell.Supervisor.Install.Rivet.Retract.moving 2 + Cell.Supervisor.Install.Rivet.Retract.there 2
+ *   <= 1
  *     Cell.Supervisor.Install.Rivet.Retract.moving 2: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
  *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + shift + ready + riveted +
- *   Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1 + advance + contact +
- *   fastened + retract + Cell.Supervisor.Install.Rivet.Advance.moving 2 +
- *   Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing + drilling + inserting + releasing +
- *   Cell.Supervisor.Install.Rivet.Retract.moving 2 + Cell.Supervisor.Install.Rivet.Retract.there 2 <= 1
+ *   Cell.Supervisor.Install.Shift.moving 1 + Cell.Supervisor.Install.Shift.there 1 + advance + contact + fastened +
+ *   retract + Cell.Supervisor.Install.Rivet.Advance.moving 2 + Cell.Supervisor.Install.Rivet.Advance.there 2 + pressing +
+ *   drilling + inserting + releasing + Cell.Supervisor.Install.Rivet.Retract.moving 2 +
+ *   Cell.Supervisor.Install.Rivet.Retract.there 2 <= 1
  *     Cell.Supervisor.Install.Rivet.Retract.there 2: 1
- *   sub-invariant coordenadas + planned + approached + verified + corrected +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + return +
- *   work + Cell.Supervisor.Install.Return.moving 1 <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + corrected + Cell.Supervisor.Approach.seam + first asked
+ *   + last asked + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 1 <= 1
  *     Cell.Supervisor.Install.Return.moving 1: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
- *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work +
- *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 <= 1
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 1
+ *   + Cell.Supervisor.Install.Return.there 1 <= 1
  *     Cell.Supervisor.Install.Return.there 1: 1
- *   sub-invariant coordenadas + planned + approached + verified + corrected +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + return +
- *   work + Cell.Supervisor.Install.Return.moving 2 <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + corrected + Cell.Supervisor.Approach.seam + first asked
+ *   + last asked + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 2 <= 1
  *     Cell.Supervisor.Install.Return.moving 2: 1
  *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
- *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work +
- *   Cell.Supervisor.Install.Return.moving 2 + Cell.Supervisor.Install.Return.there 2 <= 1
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 2
+ *   + Cell.Supervisor.Install.Return.there 2 <= 1
  *     Cell.Supervisor.Install.Return.there 2: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
- *   ended + Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work +
- *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 1 <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + ended +
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 1
+ *   + Cell.Supervisor.Install.Return.there 1 + leaving 1 <= 1
  *     Cell.Supervisor.Home.leaving 1: 1
- *   sub-invariant coordenadas + planned + approached + verified + corrected + ended +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + return +
- *   work + Cell.Supervisor.Install.Return.moving 2 + Cell.Supervisor.Install.Return.there 2 + leaving 1
- *   + home 1 <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + corrected + ended + Cell.Supervisor.Approach.seam +
+ *   first asked + last asked + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 2 +
+ *   Cell.Supervisor.Install.Return.there 2 + leaving 1 + home 1 <= 1
  *     Cell.Supervisor.Home.home 1: 1
- *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected +
- *   ended + Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work +
- *   Cell.Supervisor.Install.Return.moving 1 + Cell.Supervisor.Install.Return.there 1 + leaving 2 <= 1
+ *   sub-invariant referencia1 + medida1 + coordenadas + planned + approached + verified + corrected + ended +
+ *   Cell.Supervisor.Approach.seam + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 1
+ *   + Cell.Supervisor.Install.Return.there 1 + leaving 2 <= 1
  *     Cell.Supervisor.Home.leaving 2: 1
- *   sub-invariant coordenadas + planned + approached + verified + corrected + ended +
- *   Cell.Supervisor.Approach.seam + first asked + last asked + Cell.Supervisor.Correct.seam + return +
- *   work + Cell.Supervisor.Install.Return.moving 2 + Cell.Supervisor.Install.Return.there 2 + leaving 2
- *   + home 2 <= 1
+ *   sub-invariant coordenadas + planned + approached + verified + corrected + ended + Cell.Supervisor.Approach.seam +
+ *   first asked + last asked + Cell.Supervisor.Correct.seam + return + work + Cell.Supervisor.Install.Return.moving 2 +
+ *   Cell.Supervisor.Install.Return.there 2 + leaving 2 + home 2 <= 1
  *     Cell.Supervisor.Home.home 2: 1
  *   invariant Cell.Robot1.Waiting + Cell.Robot1.Commanded + Cell.Robot1.Done = 1
  *     Cell.Robot1.Waiting: 1, Cell.Robot1.Commanded: 1, Cell.Robot1.Done: 1
@@ -263,18 +241,14 @@
 #define PN_NET_SEARCH
 #endif
 
-#if PN_NET_ABI != 2U
+#if PN_NET_ABI != 3U
 #error "Generate this file again: runtime and generator disagree (PN_NET_ABI)."
 #endif
 
 /* --- colour sets ------------------------------------------------------------------------------- */
 
 /* colset REAL */
-static const pn_type_t s_REAL = {
-    .kind = PN_KIND_REAL,
-    .name = "REAL",
-    .size = sizeof(double),
-};
+static const pn_type_t s_REAL = { .kind = PN_KIND_REAL, .name = "REAL", .size = sizeof(double) };
 
 /* colset POSE */
 static const pn_field_t s_POSE_fields[] = {
@@ -285,52 +259,24 @@ static const pn_field_t s_POSE_fields[] = {
     { "ry", &s_REAL, offsetof(POSE_t, ry), false },
     { "rz", &s_REAL, offsetof(POSE_t, rz), false },
 };
-static const pn_type_t s_POSE = {
-    .kind = PN_KIND_RECORD,
-    .name = "POSE",
-    .size = sizeof(POSE_t),
-    .count = 6U,
-    .field = s_POSE_fields,
-};
+static const pn_type_t s_POSE = { .kind = PN_KIND_RECORD, .name = "POSE", .size = sizeof(POSE_t),
+    .count = 6U, .field = s_POSE_fields };
 
 /* colset COMMAND */
-static const pn_type_t s_COMMAND = {
-    .kind = PN_KIND_INT,
-    .name = "COMMAND",
-    .size = sizeof(int64_t),
-    .has_range = true,
-    .low = 1,
-    .high = 8,
-};
+static const pn_type_t s_COMMAND = { .kind = PN_KIND_INT, .name = "COMMAND",
+    .size = sizeof(int64_t), .has_range = true, .low = 1, .high = 8 };
 
 /* colset REPLY */
-static const pn_type_t s_REPLY = {
-    .kind = PN_KIND_INT,
-    .name = "REPLY",
-    .size = sizeof(int64_t),
-    .has_range = true,
-    .low = 1,
-    .high = 2,
-};
+static const pn_type_t s_REPLY = { .kind = PN_KIND_INT, .name = "REPLY", .size = sizeof(int64_t),
+    .has_range = true, .low = 1, .high = 2 };
 
 /* colset COUNT */
-static const pn_type_t s_COUNT = {
-    .kind = PN_KIND_INT,
-    .name = "COUNT",
-    .size = sizeof(int64_t),
-    .has_range = true,
-    .low = 0,
-    .high = 500,
-};
+static const pn_type_t s_COUNT = { .kind = PN_KIND_INT, .name = "COUNT", .size = sizeof(int64_t),
+    .has_range = true, .low = 0, .high = 500 };
 
 /* colset FLOAT */
-static const pn_type_t s_FLOAT = {
-    .kind = PN_KIND_REAL,
-    .name = "FLOAT",
-    .size = sizeof(double),
-    .is_float32 = true,
-    .is_narrow = true,
-};
+static const pn_type_t s_FLOAT = { .kind = PN_KIND_REAL, .name = "FLOAT", .size = sizeof(double),
+    .is_float32 = true, .is_narrow = true };
 
 /* colset FPOSE */
 static const pn_field_t s_FPOSE_fields[] = {
@@ -341,14 +287,8 @@ static const pn_field_t s_FPOSE_fields[] = {
     { "ry", &s_FLOAT, offsetof(POSE_t, ry), false },
     { "rz", &s_FLOAT, offsetof(POSE_t, rz), false },
 };
-static const pn_type_t s_FPOSE = {
-    .kind = PN_KIND_RECORD,
-    .name = "FPOSE",
-    .size = sizeof(POSE_t),
-    .is_narrow = true,
-    .count = 6U,
-    .field = s_FPOSE_fields,
-};
+static const pn_type_t s_FPOSE = { .kind = PN_KIND_RECORD, .name = "FPOSE", .size = sizeof(POSE_t),
+    .is_narrow = true, .count = 6U, .field = s_FPOSE_fields };
 
 /* colset PLAN */
 static const pn_field_t s_PLAN_fields[] = {
@@ -356,15 +296,8 @@ static const pn_field_t s_PLAN_fields[] = {
     { "2", &s_FPOSE, offsetof(PLAN_t, c2), false },
     { "3", &s_FPOSE, offsetof(PLAN_t, c3), false },
 };
-static const pn_type_t s_PLAN = {
-    .kind = PN_KIND_RECORD,
-    .name = "PLAN",
-    .size = sizeof(PLAN_t),
-    .is_narrow = true,
-    .is_tuple = true,
-    .count = 3U,
-    .field = s_PLAN_fields,
-};
+static const pn_type_t s_PLAN = { .kind = PN_KIND_RECORD, .name = "PLAN", .size = sizeof(PLAN_t),
+    .is_narrow = true, .is_tuple = true, .count = 3U, .field = s_PLAN_fields };
 
 /* colset SEAM */
 static const pn_field_t s_SEAM_fields[] = {
@@ -372,14 +305,8 @@ static const pn_field_t s_SEAM_fields[] = {
     { "first", &s_FPOSE, offsetof(SEAM_t, first), false },
     { "last", &s_FPOSE, offsetof(SEAM_t, last), false },
 };
-static const pn_type_t s_SEAM = {
-    .kind = PN_KIND_RECORD,
-    .name = "SEAM",
-    .size = sizeof(SEAM_t),
-    .is_narrow = true,
-    .count = 3U,
-    .field = s_SEAM_fields,
-};
+static const pn_type_t s_SEAM = { .kind = PN_KIND_RECORD, .name = "SEAM", .size = sizeof(SEAM_t),
+    .is_narrow = true, .count = 3U, .field = s_SEAM_fields };
 
 /* colset VERIFIED */
 static const pn_field_t s_VERIFIED_fields[] = {
@@ -387,15 +314,9 @@ static const pn_field_t s_VERIFIED_fields[] = {
     { "2", &s_POSE, offsetof(VERIFIED_t, c2), false },
     { "3", &s_POSE, offsetof(VERIFIED_t, c3), false },
 };
-static const pn_type_t s_VERIFIED = {
-    .kind = PN_KIND_RECORD,
-    .name = "VERIFIED",
-    .size = sizeof(VERIFIED_t),
-    .is_narrow = true,
-    .is_tuple = true,
-    .count = 3U,
-    .field = s_VERIFIED_fields,
-};
+static const pn_type_t s_VERIFIED = { .kind = PN_KIND_RECORD, .name = "VERIFIED",
+    .size = sizeof(VERIFIED_t), .is_narrow = true, .is_tuple = true, .count = 3U,
+    .field = s_VERIFIED_fields };
 
 /* colset FVECTOR */
 static const pn_field_t s_FVECTOR_fields[] = {
@@ -403,15 +324,9 @@ static const pn_field_t s_FVECTOR_fields[] = {
     { "2", &s_FLOAT, offsetof(VECTOR_t, c2), false },
     { "3", &s_FLOAT, offsetof(VECTOR_t, c3), false },
 };
-static const pn_type_t s_FVECTOR = {
-    .kind = PN_KIND_RECORD,
-    .name = "FVECTOR",
-    .size = sizeof(VECTOR_t),
-    .is_narrow = true,
-    .is_tuple = true,
-    .count = 3U,
-    .field = s_FVECTOR_fields,
-};
+static const pn_type_t s_FVECTOR = { .kind = PN_KIND_RECORD, .name = "FVECTOR",
+    .size = sizeof(VECTOR_t), .is_narrow = true, .is_tuple = true, .count = 3U,
+    .field = s_FVECTOR_fields };
 
 /* colset RIVETING */
 static const pn_field_t s_RIVETING_fields[] = {
@@ -419,22 +334,12 @@ static const pn_field_t s_RIVETING_fields[] = {
     { "2", &s_FPOSE, offsetof(RIVETING_t, c2), false },
     { "3", &s_FVECTOR, offsetof(RIVETING_t, c3), false },
 };
-static const pn_type_t s_RIVETING = {
-    .kind = PN_KIND_RECORD,
-    .name = "RIVETING",
-    .size = sizeof(RIVETING_t),
-    .is_narrow = true,
-    .is_tuple = true,
-    .count = 3U,
-    .field = s_RIVETING_fields,
-};
+static const pn_type_t s_RIVETING = { .kind = PN_KIND_RECORD, .name = "RIVETING",
+    .size = sizeof(RIVETING_t), .is_narrow = true, .is_tuple = true, .count = 3U,
+    .field = s_RIVETING_fields };
 
 /* colset UNIT */
-static const pn_type_t s_UNIT = {
-    .kind = PN_KIND_UNIT,
-    .name = "UNIT",
-    .size = sizeof(pn_unit_t),
-};
+static const pn_type_t s_UNIT = { .kind = PN_KIND_UNIT, .name = "UNIT", .size = sizeof(pn_unit_t) };
 
 /* colset ORDER */
 static const pn_field_t s_ORDER_fields[] = {
@@ -442,29 +347,16 @@ static const pn_field_t s_ORDER_fields[] = {
     { "2", &s_POSE, offsetof(PLAN_t, c2), false },
     { "3", &s_POSE, offsetof(PLAN_t, c3), false },
 };
-static const pn_type_t s_ORDER = {
-    .kind = PN_KIND_RECORD,
-    .name = "ORDER",
-    .size = sizeof(PLAN_t),
-    .is_tuple = true,
-    .count = 3U,
-    .field = s_ORDER_fields,
-};
+static const pn_type_t s_ORDER = { .kind = PN_KIND_RECORD, .name = "ORDER", .size = sizeof(PLAN_t),
+    .is_tuple = true, .count = 3U, .field = s_ORDER_fields };
 
 /* colset ASKED */
 static const pn_field_t s_ASKED_fields[] = {
     { "1", &s_SEAM, offsetof(ASKED_t, c1), false },
     { "2", &s_POSE, offsetof(ASKED_t, c2), false },
 };
-static const pn_type_t s_ASKED = {
-    .kind = PN_KIND_RECORD,
-    .name = "ASKED",
-    .size = sizeof(ASKED_t),
-    .is_narrow = true,
-    .is_tuple = true,
-    .count = 2U,
-    .field = s_ASKED_fields,
-};
+static const pn_type_t s_ASKED = { .kind = PN_KIND_RECORD, .name = "ASKED", .size = sizeof(ASKED_t),
+    .is_narrow = true, .is_tuple = true, .count = 2U, .field = s_ASKED_fields };
 
 /* colset VECTOR */
 static const pn_field_t s_VECTOR_fields[] = {
@@ -472,24 +364,12 @@ static const pn_field_t s_VECTOR_fields[] = {
     { "2", &s_REAL, offsetof(VECTOR_t, c2), false },
     { "3", &s_REAL, offsetof(VECTOR_t, c3), false },
 };
-static const pn_type_t s_VECTOR = {
-    .kind = PN_KIND_RECORD,
-    .name = "VECTOR",
-    .size = sizeof(VECTOR_t),
-    .is_tuple = true,
-    .count = 3U,
-    .field = s_VECTOR_fields,
-};
+static const pn_type_t s_VECTOR = { .kind = PN_KIND_RECORD, .name = "VECTOR",
+    .size = sizeof(VECTOR_t), .is_tuple = true, .count = 3U, .field = s_VECTOR_fields };
 
 /* colset RIVETS */
-static const pn_type_t s_RIVETS = {
-    .kind = PN_KIND_INT,
-    .name = "RIVETS",
-    .size = sizeof(int64_t),
-    .has_range = true,
-    .low = 0,
-    .high = 502,
-};
+static const pn_type_t s_RIVETS = { .kind = PN_KIND_INT, .name = "RIVETS", .size = sizeof(int64_t),
+    .has_range = true, .low = 0, .high = 502 };
 
 /* colset WORK */
 static const pn_field_t s_WORK_fields[] = {
@@ -498,15 +378,8 @@ static const pn_field_t s_WORK_fields[] = {
     { "3", &s_FPOSE, offsetof(WORK_t, c3), false },
     { "4", &s_FVECTOR, offsetof(WORK_t, c4), false },
 };
-static const pn_type_t s_WORK = {
-    .kind = PN_KIND_RECORD,
-    .name = "WORK",
-    .size = sizeof(WORK_t),
-    .is_narrow = true,
-    .is_tuple = true,
-    .count = 4U,
-    .field = s_WORK_fields,
-};
+static const pn_type_t s_WORK = { .kind = PN_KIND_RECORD, .name = "WORK", .size = sizeof(WORK_t),
+    .is_narrow = true, .is_tuple = true, .count = 4U, .field = s_WORK_fields };
 
 /* --- values ------------------------------------------------------------------------------------ */
 
@@ -869,159 +742,58 @@ static int64_t ml_worse(int64_t e, int64_t f)
 
 /* --- places ------------------------------------------------------------------------------------ */
 
-/* The scalars of the colour sets of places: kinds, names, and how an input file is laid out in lines. */
-static const pn_leaf_kind_t s_POSE_kinds[] = { PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL };
-static const char *const s_POSE_leaves[] = { "x", "y", "z", "rx", "ry", "rz" };
-static const uint32_t s_POSE_lines[] = { 6U };
-static const pn_leaf_kind_t s_COMMAND_kinds[] = { PN_LEAF_INT };
-static const char *const s_COMMAND_leaves[] = { "" };
-static const uint32_t s_COMMAND_lines[] = { 1U };
-static const pn_leaf_kind_t s_REPLY_kinds[] = { PN_LEAF_INT };
-static const char *const s_REPLY_leaves[] = { "" };
-static const uint32_t s_REPLY_lines[] = { 1U };
-static const pn_leaf_kind_t s_PLAN_kinds[] = { PN_LEAF_INT, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL };
-static const char *const s_PLAN_leaves[] = { "1", "2.x", "2.y", "2.z", "2.rx", "2.ry", "2.rz",
-    "3.x", "3.y", "3.z", "3.rx", "3.ry", "3.rz" };
-static const uint32_t s_PLAN_lines[] = { 1U, 6U, 6U };
-static const pn_leaf_kind_t s_SEAM_kinds[] = { PN_LEAF_INT, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL };
-static const char *const s_SEAM_leaves[] = { "points", "first.x", "first.y", "first.z", "first.rx",
-    "first.ry", "first.rz", "last.x", "last.y", "last.z", "last.rx", "last.ry", "last.rz" };
-static const uint32_t s_SEAM_lines[] = { 1U, 6U, 6U };
-static const pn_leaf_kind_t s_VERIFIED_kinds[] = { PN_LEAF_INT, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL };
-static const char *const s_VERIFIED_leaves[] = { "1.points", "1.first.x", "1.first.y", "1.first.z",
-    "1.first.rx", "1.first.ry", "1.first.rz", "1.last.x", "1.last.y", "1.last.z", "1.last.rx",
-    "1.last.ry", "1.last.rz", "2.x", "2.y", "2.z", "2.rx", "2.ry", "2.rz", "3.x", "3.y", "3.z",
-    "3.rx", "3.ry", "3.rz" };
-static const uint32_t s_VERIFIED_lines[] = { 13U, 6U, 6U };
-static const pn_leaf_kind_t s_RIVETING_kinds[] = { PN_LEAF_INT, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL };
-static const char *const s_RIVETING_leaves[] = { "1", "2.x", "2.y", "2.z", "2.rx", "2.ry", "2.rz",
-    "3.1", "3.2", "3.3" };
-static const uint32_t s_RIVETING_lines[] = { 1U, 6U, 3U };
-static const pn_leaf_kind_t s_UNIT_kinds[] = { PN_LEAF_ENUM };
-static const char *const s_UNIT_leaves[] = { "" };
-static const uint32_t s_UNIT_lines[] = { 1U };
-static const pn_leaf_kind_t s_ORDER_kinds[] = { PN_LEAF_INT, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL };
-static const char *const s_ORDER_leaves[] = { "1", "2.x", "2.y", "2.z", "2.rx", "2.ry", "2.rz",
-    "3.x", "3.y", "3.z", "3.rx", "3.ry", "3.rz" };
-static const uint32_t s_ORDER_lines[] = { 1U, 6U, 6U };
-static const pn_leaf_kind_t s_ASKED_kinds[] = { PN_LEAF_INT, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL };
-static const char *const s_ASKED_leaves[] = { "1.points", "1.first.x", "1.first.y", "1.first.z",
-    "1.first.rx", "1.first.ry", "1.first.rz", "1.last.x", "1.last.y", "1.last.z", "1.last.rx",
-    "1.last.ry", "1.last.rz", "2.x", "2.y", "2.z", "2.rx", "2.ry", "2.rz" };
-static const uint32_t s_ASKED_lines[] = { 13U, 6U };
-static const pn_leaf_kind_t s_VECTOR_kinds[] = { PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL };
-static const char *const s_VECTOR_leaves[] = { "1", "2", "3" };
-static const uint32_t s_VECTOR_lines[] = { 3U };
-static const pn_leaf_kind_t s_WORK_kinds[] = { PN_LEAF_INT, PN_LEAF_INT, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL, PN_LEAF_REAL,
-    PN_LEAF_REAL };
-static const char *const s_WORK_leaves[] = { "1", "2", "3.x", "3.y", "3.z", "3.rx", "3.ry", "3.rz",
-    "4.1", "4.2", "4.3" };
-static const uint32_t s_WORK_lines[] = { 1U, 1U, 6U, 3U };
-
 /* place Cell.dadosrobo1, colour set POSE: page `Cell`, place `dadosrobo1` (ID1412310013) */
 static const pn_bag_t s_at_dadosrobo1 = {
-    .origin = "page `Cell`, place `dadosrobo1` (ID1412310013)",
-    .type = &s_POSE,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, dadosrobo1),
-};
+    .origin = "page `Cell`, place `dadosrobo1` (ID1412310013)", .type = &s_POSE, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, dadosrobo1) };
 
 /* place Cell.flag1_interno, colour set COMMAND: page `Cell`, place `flag1_interno` (ID1412310016) */
 static const pn_bag_t s_at_flag1_interno = {
-    .origin = "page `Cell`, place `flag1_interno` (ID1412310016)",
-    .type = &s_COMMAND,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, flag1_interno),
-};
+    .origin = "page `Cell`, place `flag1_interno` (ID1412310016)", .type = &s_COMMAND,
+    .capacity = 1U, PN_BAG_SLOT(net_marking_t, flag1_interno) };
 
 /* place Cell.flag1_externo, colour set REPLY: page `Cell`, place `flag1_externo` (ID1412310019) */
 static const pn_bag_t s_at_flag1_externo = {
-    .origin = "page `Cell`, place `flag1_externo` (ID1412310019)",
-    .type = &s_REPLY,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, flag1_externo),
-};
+    .origin = "page `Cell`, place `flag1_externo` (ID1412310019)", .type = &s_REPLY, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, flag1_externo) };
 
 /* place Cell.referencia1, colour set POSE: page `Cell`, place `referencia1` (ID1412310022) */
 static const pn_bag_t s_at_referencia1 = {
-    .origin = "page `Cell`, place `referencia1` (ID1412310022)",
-    .type = &s_POSE,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, referencia1),
-};
+    .origin = "page `Cell`, place `referencia1` (ID1412310022)", .type = &s_POSE, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, referencia1) };
 
 /* place Cell.medida1, colour set POSE: page `Cell`, place `medida1` (ID1412310025) */
-static const pn_bag_t s_at_medida1 = {
-    .origin = "page `Cell`, place `medida1` (ID1412310025)",
-    .type = &s_POSE,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, medida1),
-};
+static const pn_bag_t s_at_medida1 = { .origin = "page `Cell`, place `medida1` (ID1412310025)",
+    .type = &s_POSE, .capacity = 1U, PN_BAG_SLOT(net_marking_t, medida1) };
 
 /* place Cell.dadosrobo2, colour set POSE: page `Cell`, place `dadosrobo2` (ID1412310028) */
 static const pn_bag_t s_at_dadosrobo2 = {
-    .origin = "page `Cell`, place `dadosrobo2` (ID1412310028)",
-    .type = &s_POSE,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, dadosrobo2),
-};
+    .origin = "page `Cell`, place `dadosrobo2` (ID1412310028)", .type = &s_POSE, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, dadosrobo2) };
 
 /* place Cell.flag2_interno, colour set COMMAND: page `Cell`, place `flag2_interno` (ID1412310031) */
 static const pn_bag_t s_at_flag2_interno = {
-    .origin = "page `Cell`, place `flag2_interno` (ID1412310031)",
-    .type = &s_COMMAND,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, flag2_interno),
-};
+    .origin = "page `Cell`, place `flag2_interno` (ID1412310031)", .type = &s_COMMAND,
+    .capacity = 1U, PN_BAG_SLOT(net_marking_t, flag2_interno) };
 
 /* place Cell.flag2_externo, colour set REPLY: page `Cell`, place `flag2_externo` (ID1412310034) */
 static const pn_bag_t s_at_flag2_externo = {
-    .origin = "page `Cell`, place `flag2_externo` (ID1412310034)",
-    .type = &s_REPLY,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, flag2_externo),
-};
+    .origin = "page `Cell`, place `flag2_externo` (ID1412310034)", .type = &s_REPLY, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, flag2_externo) };
 
 /* place Cell.referencia2, colour set POSE: page `Cell`, place `referencia2` (ID1412330001) */
 static const pn_bag_t s_at_referencia2 = {
-    .origin = "page `Cell`, place `referencia2` (ID1412330001)",
-    .type = &s_POSE,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, referencia2),
-};
+    .origin = "page `Cell`, place `referencia2` (ID1412330001)", .type = &s_POSE, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, referencia2) };
 
 /* place Cell.medida2, colour set POSE: page `Cell`, place `medida2` (ID1412330004) */
-static const pn_bag_t s_at_medida2 = {
-    .origin = "page `Cell`, place `medida2` (ID1412330004)",
-    .type = &s_POSE,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, medida2),
-};
+static const pn_bag_t s_at_medida2 = { .origin = "page `Cell`, place `medida2` (ID1412330004)",
+    .type = &s_POSE, .capacity = 1U, PN_BAG_SLOT(net_marking_t, medida2) };
 
 /* place Cell.Supervisor.coordenadas, colour set PLAN: page `Supervisor`, place `coordenadas` (ID1412310094) */
 static const pn_bag_t s_at_Supervisor_coordenadas = {
-    .origin = "page `Supervisor`, place `coordenadas` (ID1412310094)",
-    .type = &s_PLAN,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_coordenadas),
-};
+    .origin = "page `Supervisor`, place `coordenadas` (ID1412310094)", .type = &s_PLAN,
+    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_coordenadas) };
 
 /* initial marking:
  *     (5,
@@ -1046,475 +818,298 @@ static bool Supervisor_coordenadas_init(pn_ctx_t *cx, void *marking)
 
 /* place Cell.Supervisor.planned, colour set SEAM: page `Supervisor`, place `planned` (ID1412310097) */
 static const pn_bag_t s_at_Supervisor_planned = {
-    .origin = "page `Supervisor`, place `planned` (ID1412310097)",
-    .type = &s_SEAM,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_planned),
-};
+    .origin = "page `Supervisor`, place `planned` (ID1412310097)", .type = &s_SEAM, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_planned) };
 
 /* place Cell.Supervisor.approached, colour set SEAM: page `Supervisor`, place `approached` (ID1412310100) */
 static const pn_bag_t s_at_Supervisor_approached = {
-    .origin = "page `Supervisor`, place `approached` (ID1412310100)",
-    .type = &s_SEAM,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_approached),
-};
+    .origin = "page `Supervisor`, place `approached` (ID1412310100)", .type = &s_SEAM,
+    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_approached) };
 
 /* place Cell.Supervisor.verified, colour set VERIFIED: page `Supervisor`, place `verified` (ID1412310103) */
 static const pn_bag_t s_at_Supervisor_verified = {
-    .origin = "page `Supervisor`, place `verified` (ID1412310103)",
-    .type = &s_VERIFIED,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_verified),
-};
+    .origin = "page `Supervisor`, place `verified` (ID1412310103)", .type = &s_VERIFIED,
+    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_verified) };
 
 /* place Cell.Supervisor.corrected, colour set RIVETING: page `Supervisor`, place `corrected` (ID1412310106) */
 static const pn_bag_t s_at_Supervisor_corrected = {
-    .origin = "page `Supervisor`, place `corrected` (ID1412310106)",
-    .type = &s_RIVETING,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_corrected),
-};
+    .origin = "page `Supervisor`, place `corrected` (ID1412310106)", .type = &s_RIVETING,
+    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_corrected) };
 
 /* place Cell.Supervisor.ended, colour set UNIT: page `Supervisor`, place `ended` (ID1412310109) */
 static const pn_bag_t s_at_Supervisor_ended = {
-    .origin = "page `Supervisor`, place `ended` (ID1412310109)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_ended),
-};
+    .origin = "page `Supervisor`, place `ended` (ID1412310109)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_ended) };
 
 /* place Cell.Supervisor.Finished, colour set UNIT: page `Supervisor`, place `Finished` (ID1412310112) */
 static const pn_bag_t s_at_Supervisor_Finished = {
-    .origin = "page `Supervisor`, place `Finished` (ID1412310112)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Finished),
-};
+    .origin = "page `Supervisor`, place `Finished` (ID1412310112)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Finished) };
 
 /* place Cell.Supervisor.result, colour set REPLY: page `Supervisor`, place `result` (ID1412320001) */
 static const pn_bag_t s_at_Supervisor_result = {
-    .origin = "page `Supervisor`, place `result` (ID1412320001)",
-    .type = &s_REPLY,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_result),
-};
+    .origin = "page `Supervisor`, place `result` (ID1412320001)", .type = &s_REPLY, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_result) };
 
 /* place Cell.Supervisor.Failed, colour set UNIT: page `Supervisor`, place `Failed` (ID1412320004) */
 static const pn_bag_t s_at_Supervisor_Failed = {
-    .origin = "page `Supervisor`, place `Failed` (ID1412320004)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Failed),
-};
+    .origin = "page `Supervisor`, place `Failed` (ID1412320004)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Failed) };
 
 /* place Cell.Supervisor.Approach.order, colour set ORDER: page `Approach`, place `order` (ID1412310290) */
 static const pn_bag_t s_at_Supervisor_Approach_order = {
-    .origin = "page `Approach`, place `order` (ID1412310290)",
-    .type = &s_ORDER,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_order),
-};
+    .origin = "page `Approach`, place `order` (ID1412310290)", .type = &s_ORDER, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_order) };
 
 /* place Cell.Supervisor.Approach.done, colour set UNIT: page `Approach`, place `done` (ID1412310293) */
 static const pn_bag_t s_at_Supervisor_Approach_done = {
-    .origin = "page `Approach`, place `done` (ID1412310293)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_done),
-};
+    .origin = "page `Approach`, place `done` (ID1412310293)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_done) };
 
 /* place Cell.Supervisor.Approach.seam, colour set SEAM: page `Approach`, place `seam` (ID1412310352) */
 static const pn_bag_t s_at_Supervisor_Approach_seam = {
-    .origin = "page `Approach`, place `seam` (ID1412310352)",
-    .type = &s_SEAM,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_seam),
-};
+    .origin = "page `Approach`, place `seam` (ID1412310352)", .type = &s_SEAM, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_seam) };
 
 /* place Cell.Supervisor.Approach.Move both.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
 static const pn_bag_t s_at_Supervisor_Approach_Move_both_moving_1 = {
-    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_moving_1),
-};
+    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_moving_1) };
 
 /* place Cell.Supervisor.Approach.Move both.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
 static const pn_bag_t s_at_Supervisor_Approach_Move_both_there_1 = {
-    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_there_1),
-};
+    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_there_1) };
 
 /* place Cell.Supervisor.Approach.Move both.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
 static const pn_bag_t s_at_Supervisor_Approach_Move_both_moving_2 = {
-    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_moving_2),
-};
+    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_moving_2) };
 
 /* place Cell.Supervisor.Approach.Move both.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
 static const pn_bag_t s_at_Supervisor_Approach_Move_both_there_2 = {
-    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_there_2),
-};
+    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_there_2) };
 
 /* place Cell.Supervisor.Verify.first asked, colour set SEAM: page `Verify`, place `first asked` (ID1412310382) */
 static const pn_bag_t s_at_Supervisor_Verify_first_asked = {
-    .origin = "page `Verify`, place `first asked` (ID1412310382)",
-    .type = &s_SEAM,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Verify_first_asked),
-};
+    .origin = "page `Verify`, place `first asked` (ID1412310382)", .type = &s_SEAM, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Verify_first_asked) };
 
 /* place Cell.Supervisor.Verify.last asked, colour set ASKED: page `Verify`, place `last asked` (ID1412310390) */
 static const pn_bag_t s_at_Supervisor_Verify_last_asked = {
-    .origin = "page `Verify`, place `last asked` (ID1412310390)",
-    .type = &s_ASKED,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Verify_last_asked),
-};
+    .origin = "page `Verify`, place `last asked` (ID1412310390)", .type = &s_ASKED, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Verify_last_asked) };
 
 /* place Cell.Supervisor.Correct.offset, colour set VECTOR: page `Correct`, place `offset` (ID1412310458) */
 static const pn_bag_t s_at_Supervisor_Correct_offset = {
-    .origin = "page `Correct`, place `offset` (ID1412310458)",
-    .type = &s_VECTOR,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_offset),
-};
+    .origin = "page `Correct`, place `offset` (ID1412310458)", .type = &s_VECTOR, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_offset) };
 
 /* place Cell.Supervisor.Correct.order, colour set ORDER: page `Correct`, place `order` (ID1412310466) */
 static const pn_bag_t s_at_Supervisor_Correct_order = {
-    .origin = "page `Correct`, place `order` (ID1412310466)",
-    .type = &s_ORDER,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_order),
-};
+    .origin = "page `Correct`, place `order` (ID1412310466)", .type = &s_ORDER, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_order) };
 
 /* place Cell.Supervisor.Correct.done, colour set UNIT: page `Correct`, place `done` (ID1412310475) */
 static const pn_bag_t s_at_Supervisor_Correct_done = {
-    .origin = "page `Correct`, place `done` (ID1412310475)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_done),
-};
+    .origin = "page `Correct`, place `done` (ID1412310475)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_done) };
 
 /* place Cell.Supervisor.Correct.seam, colour set RIVETING: page `Correct`, place `seam` (ID1412310523) */
 static const pn_bag_t s_at_Supervisor_Correct_seam = {
-    .origin = "page `Correct`, place `seam` (ID1412310523)",
-    .type = &s_RIVETING,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_seam),
-};
+    .origin = "page `Correct`, place `seam` (ID1412310523)", .type = &s_RIVETING, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_seam) };
 
 /* place Cell.Supervisor.Correct.Move both.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
 static const pn_bag_t s_at_Supervisor_Correct_Move_both_moving_1 = {
-    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_moving_1),
-};
+    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_moving_1) };
 
 /* place Cell.Supervisor.Correct.Move both.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
 static const pn_bag_t s_at_Supervisor_Correct_Move_both_there_1 = {
-    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_there_1),
-};
+    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_there_1) };
 
 /* place Cell.Supervisor.Correct.Move both.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
 static const pn_bag_t s_at_Supervisor_Correct_Move_both_moving_2 = {
-    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_moving_2),
-};
+    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_moving_2) };
 
 /* place Cell.Supervisor.Correct.Move both.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
 static const pn_bag_t s_at_Supervisor_Correct_Move_both_there_2 = {
-    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_there_2),
-};
+    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_there_2) };
 
 /* place Cell.Supervisor.Install.shift, colour set ORDER: page `Install`, place `shift` (ID1412310585) */
 static const pn_bag_t s_at_Supervisor_Install_shift = {
-    .origin = "page `Install`, place `shift` (ID1412310585)",
-    .type = &s_ORDER,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_shift),
-};
+    .origin = "page `Install`, place `shift` (ID1412310585)", .type = &s_ORDER, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_shift) };
 
 /* place Cell.Supervisor.Install.ready, colour set UNIT: page `Install`, place `ready` (ID1412310588) */
 static const pn_bag_t s_at_Supervisor_Install_ready = {
-    .origin = "page `Install`, place `ready` (ID1412310588)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_ready),
-};
+    .origin = "page `Install`, place `ready` (ID1412310588)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_ready) };
 
 /* place Cell.Supervisor.Install.riveted, colour set UNIT: page `Install`, place `riveted` (ID1412310591) */
 static const pn_bag_t s_at_Supervisor_Install_riveted = {
-    .origin = "page `Install`, place `riveted` (ID1412310591)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_riveted),
-};
+    .origin = "page `Install`, place `riveted` (ID1412310591)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_riveted) };
 
 /* place Cell.Supervisor.Install.return, colour set ORDER: page `Install`, place `return` (ID1412310599) */
 static const pn_bag_t s_at_Supervisor_Install_return = {
-    .origin = "page `Install`, place `return` (ID1412310599)",
-    .type = &s_ORDER,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_return),
-};
+    .origin = "page `Install`, place `return` (ID1412310599)", .type = &s_ORDER, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_return) };
 
 /* place Cell.Supervisor.Install.work, colour set WORK: page `Install`, place `work` (ID1412310629) */
 static const pn_bag_t s_at_Supervisor_Install_work = {
-    .origin = "page `Install`, place `work` (ID1412310629)",
-    .type = &s_WORK,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_work),
-};
+    .origin = "page `Install`, place `work` (ID1412310629)", .type = &s_WORK, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_work) };
 
 /* place Cell.Supervisor.Install.Shift.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
 static const pn_bag_t s_at_Supervisor_Install_Shift_moving_1 = {
-    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_moving_1),
-};
+    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_moving_1) };
 
 /* place Cell.Supervisor.Install.Shift.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
 static const pn_bag_t s_at_Supervisor_Install_Shift_there_1 = {
-    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_there_1),
-};
+    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_there_1) };
 
 /* place Cell.Supervisor.Install.Shift.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
 static const pn_bag_t s_at_Supervisor_Install_Shift_moving_2 = {
-    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_moving_2),
-};
+    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_moving_2) };
 
 /* place Cell.Supervisor.Install.Shift.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
 static const pn_bag_t s_at_Supervisor_Install_Shift_there_2 = {
-    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_there_2),
-};
+    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_there_2) };
 
 /* place Cell.Supervisor.Install.Rivet.advance, colour set ORDER: page `Rivet`, place `advance` (ID1412310721) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_advance = {
-    .origin = "page `Rivet`, place `advance` (ID1412310721)",
-    .type = &s_ORDER,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_advance),
-};
+    .origin = "page `Rivet`, place `advance` (ID1412310721)", .type = &s_ORDER, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_advance) };
 
 /* place Cell.Supervisor.Install.Rivet.contact, colour set UNIT: page `Rivet`, place `contact` (ID1412310730) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_contact = {
-    .origin = "page `Rivet`, place `contact` (ID1412310730)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_contact),
-};
+    .origin = "page `Rivet`, place `contact` (ID1412310730)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_contact) };
 
 /* place Cell.Supervisor.Install.Rivet.fastened, colour set REPLY: page `Rivet`, place `fastened` (ID1412310739) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_fastened = {
-    .origin = "page `Rivet`, place `fastened` (ID1412310739)",
-    .type = &s_REPLY,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_fastened),
-};
+    .origin = "page `Rivet`, place `fastened` (ID1412310739)", .type = &s_REPLY, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_fastened) };
 
 /* place Cell.Supervisor.Install.Rivet.retract, colour set ORDER: page `Rivet`, place `retract` (ID1412310747) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_retract = {
-    .origin = "page `Rivet`, place `retract` (ID1412310747)",
-    .type = &s_ORDER,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_retract),
-};
+    .origin = "page `Rivet`, place `retract` (ID1412310747)", .type = &s_ORDER, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_retract) };
 
 /* place Cell.Supervisor.Install.Rivet.Advance.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_moving_1 = {
-    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_moving_1),
-};
+    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_moving_1) };
 
 /* place Cell.Supervisor.Install.Rivet.Advance.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_there_1 = {
-    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_there_1),
-};
+    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_there_1) };
 
 /* place Cell.Supervisor.Install.Rivet.Advance.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_moving_2 = {
-    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_moving_2),
-};
+    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_moving_2) };
 
 /* place Cell.Supervisor.Install.Rivet.Advance.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_there_2 = {
-    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_there_2),
-};
+    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_there_2) };
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.pressing, colour set UNIT: page `Fasten`, place `pressing` (ID1412310847) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_pressing = {
-    .origin = "page `Fasten`, place `pressing` (ID1412310847)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_pressing),
-};
+    .origin = "page `Fasten`, place `pressing` (ID1412310847)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_pressing) };
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.drilling, colour set UNIT: page `Fasten`, place `drilling` (ID1412310855) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_drilling = {
-    .origin = "page `Fasten`, place `drilling` (ID1412310855)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_drilling),
-};
+    .origin = "page `Fasten`, place `drilling` (ID1412310855)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_drilling) };
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.inserting, colour set UNIT: page `Fasten`, place `inserting` (ID1412310863) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_inserting = {
-    .origin = "page `Fasten`, place `inserting` (ID1412310863)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_inserting),
-};
+    .origin = "page `Fasten`, place `inserting` (ID1412310863)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_inserting) };
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.releasing, colour set REPLY: page `Fasten`, place `releasing` (ID1412310871) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_releasing = {
-    .origin = "page `Fasten`, place `releasing` (ID1412310871)",
-    .type = &s_REPLY,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_releasing),
-};
+    .origin = "page `Fasten`, place `releasing` (ID1412310871)", .type = &s_REPLY, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_releasing) };
 
 /* place Cell.Supervisor.Install.Rivet.Retract.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_moving_1 = {
-    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_moving_1),
-};
+    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_moving_1) };
 
 /* place Cell.Supervisor.Install.Rivet.Retract.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_there_1 = {
-    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_there_1),
-};
+    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_there_1) };
 
 /* place Cell.Supervisor.Install.Rivet.Retract.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_moving_2 = {
-    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_moving_2),
-};
+    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_moving_2) };
 
 /* place Cell.Supervisor.Install.Rivet.Retract.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
 static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_there_2 = {
-    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_there_2),
-};
+    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_there_2) };
 
 /* place Cell.Supervisor.Install.Return.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
 static const pn_bag_t s_at_Supervisor_Install_Return_moving_1 = {
-    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_moving_1),
-};
+    .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_moving_1) };
 
 /* place Cell.Supervisor.Install.Return.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
 static const pn_bag_t s_at_Supervisor_Install_Return_there_1 = {
-    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_there_1),
-};
+    .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_there_1) };
 
 /* place Cell.Supervisor.Install.Return.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
 static const pn_bag_t s_at_Supervisor_Install_Return_moving_2 = {
-    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_moving_2),
-};
+    .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_moving_2) };
 
 /* place Cell.Supervisor.Install.Return.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
 static const pn_bag_t s_at_Supervisor_Install_Return_there_2 = {
-    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_there_2),
-};
+    .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_there_2) };
 
 /* place Cell.Supervisor.Home.leaving 1, colour set UNIT: page `Home`, place `leaving 1` (ID1412311057) */
 static const pn_bag_t s_at_Supervisor_Home_leaving_1 = {
-    .origin = "page `Home`, place `leaving 1` (ID1412311057)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Home_leaving_1),
-};
+    .origin = "page `Home`, place `leaving 1` (ID1412311057)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Home_leaving_1) };
 
 /* place Cell.Supervisor.Home.home 1, colour set UNIT: page `Home`, place `home 1` (ID1412311065) */
 static const pn_bag_t s_at_Supervisor_Home_home_1 = {
-    .origin = "page `Home`, place `home 1` (ID1412311065)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Home_home_1),
-};
+    .origin = "page `Home`, place `home 1` (ID1412311065)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Home_home_1) };
 
 /* place Cell.Supervisor.Home.leaving 2, colour set UNIT: page `Home`, place `leaving 2` (ID1412311088) */
 static const pn_bag_t s_at_Supervisor_Home_leaving_2 = {
-    .origin = "page `Home`, place `leaving 2` (ID1412311088)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Home_leaving_2),
-};
+    .origin = "page `Home`, place `leaving 2` (ID1412311088)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Home_leaving_2) };
 
 /* place Cell.Supervisor.Home.home 2, colour set UNIT: page `Home`, place `home 2` (ID1412311096) */
 static const pn_bag_t s_at_Supervisor_Home_home_2 = {
-    .origin = "page `Home`, place `home 2` (ID1412311096)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Home_home_2),
-};
+    .origin = "page `Home`, place `home 2` (ID1412311096)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Supervisor_Home_home_2) };
 
 /* place Cell.Robot1.Waiting, colour set UNIT: page `Robot`, place `Waiting` (ID1412311130) */
 static const pn_bag_t s_at_Robot1_Waiting = {
-    .origin = "page `Robot`, place `Waiting` (ID1412311130)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Robot1_Waiting),
-};
+    .origin = "page `Robot`, place `Waiting` (ID1412311130)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Robot1_Waiting) };
 
 /* initial marking:
  *     1`()
@@ -1530,27 +1125,17 @@ static bool Robot1_Waiting_init(pn_ctx_t *cx, void *marking)
 
 /* place Cell.Robot1.Commanded, colour set COMMAND: page `Robot`, place `Commanded` (ID1412311133) */
 static const pn_bag_t s_at_Robot1_Commanded = {
-    .origin = "page `Robot`, place `Commanded` (ID1412311133)",
-    .type = &s_COMMAND,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Robot1_Commanded),
-};
+    .origin = "page `Robot`, place `Commanded` (ID1412311133)", .type = &s_COMMAND, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Robot1_Commanded) };
 
 /* place Cell.Robot1.Done, colour set REPLY: page `Robot`, place `Done` (ID1412311142) */
-static const pn_bag_t s_at_Robot1_Done = {
-    .origin = "page `Robot`, place `Done` (ID1412311142)",
-    .type = &s_REPLY,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Robot1_Done),
-};
+static const pn_bag_t s_at_Robot1_Done = { .origin = "page `Robot`, place `Done` (ID1412311142)",
+    .type = &s_REPLY, .capacity = 1U, PN_BAG_SLOT(net_marking_t, Robot1_Done) };
 
 /* place Cell.Robot2.Waiting, colour set UNIT: page `Robot`, place `Waiting` (ID1412311130) */
 static const pn_bag_t s_at_Robot2_Waiting = {
-    .origin = "page `Robot`, place `Waiting` (ID1412311130)",
-    .type = &s_UNIT,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Robot2_Waiting),
-};
+    .origin = "page `Robot`, place `Waiting` (ID1412311130)", .type = &s_UNIT, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Robot2_Waiting) };
 
 /* initial marking:
  *     1`()
@@ -1566,21 +1151,114 @@ static bool Robot2_Waiting_init(pn_ctx_t *cx, void *marking)
 
 /* place Cell.Robot2.Commanded, colour set COMMAND: page `Robot`, place `Commanded` (ID1412311133) */
 static const pn_bag_t s_at_Robot2_Commanded = {
-    .origin = "page `Robot`, place `Commanded` (ID1412311133)",
-    .type = &s_COMMAND,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Robot2_Commanded),
-};
+    .origin = "page `Robot`, place `Commanded` (ID1412311133)", .type = &s_COMMAND, .capacity = 1U,
+    PN_BAG_SLOT(net_marking_t, Robot2_Commanded) };
 
 /* place Cell.Robot2.Done, colour set REPLY: page `Robot`, place `Done` (ID1412311142) */
-static const pn_bag_t s_at_Robot2_Done = {
-    .origin = "page `Robot`, place `Done` (ID1412311142)",
-    .type = &s_REPLY,
-    .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Robot2_Done),
-};
+static const pn_bag_t s_at_Robot2_Done = { .origin = "page `Robot`, place `Done` (ID1412311142)",
+    .type = &s_REPLY, .capacity = 1U, PN_BAG_SLOT(net_marking_t, Robot2_Done) };
 
 /* --- transitions ------------------------------------------------------------------------------- */
+
+/* page MoveBoth: the places that each of its instances has for its own */
+typedef struct MoveBoth_places {
+    const pn_bag_t *order;
+    const pn_bag_t *done;
+    const pn_bag_t *moving_1;
+    const pn_bag_t *there_1;
+    const pn_bag_t *moving_2;
+    const pn_bag_t *there_2;
+} MoveBoth_places_t;
+
+/* Cell.Supervisor.Approach.Move both */
+static const MoveBoth_places_t s_in_Supervisor_Approach_Move_both = {
+    .order = &s_at_Supervisor_Approach_order,
+    .done = &s_at_Supervisor_Approach_done,
+    .moving_1 = &s_at_Supervisor_Approach_Move_both_moving_1,
+    .there_1 = &s_at_Supervisor_Approach_Move_both_there_1,
+    .moving_2 = &s_at_Supervisor_Approach_Move_both_moving_2,
+    .there_2 = &s_at_Supervisor_Approach_Move_both_there_2,
+};
+/* Cell.Supervisor.Correct.Move both */
+static const MoveBoth_places_t s_in_Supervisor_Correct_Move_both = {
+    .order = &s_at_Supervisor_Correct_order,
+    .done = &s_at_Supervisor_Correct_done,
+    .moving_1 = &s_at_Supervisor_Correct_Move_both_moving_1,
+    .there_1 = &s_at_Supervisor_Correct_Move_both_there_1,
+    .moving_2 = &s_at_Supervisor_Correct_Move_both_moving_2,
+    .there_2 = &s_at_Supervisor_Correct_Move_both_there_2,
+};
+/* Cell.Supervisor.Install.Shift */
+static const MoveBoth_places_t s_in_Supervisor_Install_Shift = {
+    .order = &s_at_Supervisor_Install_shift,
+    .done = &s_at_Supervisor_Install_ready,
+    .moving_1 = &s_at_Supervisor_Install_Shift_moving_1,
+    .there_1 = &s_at_Supervisor_Install_Shift_there_1,
+    .moving_2 = &s_at_Supervisor_Install_Shift_moving_2,
+    .there_2 = &s_at_Supervisor_Install_Shift_there_2,
+};
+/* Cell.Supervisor.Install.Rivet.Advance */
+static const MoveBoth_places_t s_in_Supervisor_Install_Rivet_Advance = {
+    .order = &s_at_Supervisor_Install_Rivet_advance,
+    .done = &s_at_Supervisor_Install_Rivet_contact,
+    .moving_1 = &s_at_Supervisor_Install_Rivet_Advance_moving_1,
+    .there_1 = &s_at_Supervisor_Install_Rivet_Advance_there_1,
+    .moving_2 = &s_at_Supervisor_Install_Rivet_Advance_moving_2,
+    .there_2 = &s_at_Supervisor_Install_Rivet_Advance_there_2,
+};
+/* Cell.Supervisor.Install.Rivet.Retract */
+static const MoveBoth_places_t s_in_Supervisor_Install_Rivet_Retract = {
+    .order = &s_at_Supervisor_Install_Rivet_retract,
+    .done = &s_at_Supervisor_Install_riveted,
+    .moving_1 = &s_at_Supervisor_Install_Rivet_Retract_moving_1,
+    .there_1 = &s_at_Supervisor_Install_Rivet_Retract_there_1,
+    .moving_2 = &s_at_Supervisor_Install_Rivet_Retract_moving_2,
+    .there_2 = &s_at_Supervisor_Install_Rivet_Retract_there_2,
+};
+/* Cell.Supervisor.Install.Return */
+static const MoveBoth_places_t s_in_Supervisor_Install_Return = {
+    .order = &s_at_Supervisor_Install_return,
+    .done = &s_at_Supervisor_ended,
+    .moving_1 = &s_at_Supervisor_Install_Return_moving_1,
+    .there_1 = &s_at_Supervisor_Install_Return_there_1,
+    .moving_2 = &s_at_Supervisor_Install_Return_moving_2,
+    .there_2 = &s_at_Supervisor_Install_Return_there_2,
+};
+
+/* page Robot: the places that each of its instances has for its own */
+typedef struct Robot_places {
+    const pn_bag_t *dadosrobo;
+    const pn_bag_t *flag_interno;
+    const pn_bag_t *flag_externo;
+    const pn_bag_t *referencia;
+    const pn_bag_t *medida;
+    const pn_bag_t *Waiting;
+    const pn_bag_t *Commanded;
+    const pn_bag_t *Done;
+} Robot_places_t;
+
+/* Cell.Robot1 */
+static const Robot_places_t s_in_Robot1 = {
+    .dadosrobo = &s_at_dadosrobo1,
+    .flag_interno = &s_at_flag1_interno,
+    .flag_externo = &s_at_flag1_externo,
+    .referencia = &s_at_referencia1,
+    .medida = &s_at_medida1,
+    .Waiting = &s_at_Robot1_Waiting,
+    .Commanded = &s_at_Robot1_Commanded,
+    .Done = &s_at_Robot1_Done,
+};
+/* Cell.Robot2 */
+static const Robot_places_t s_in_Robot2 = {
+    .dadosrobo = &s_at_dadosrobo2,
+    .flag_interno = &s_at_flag2_interno,
+    .flag_externo = &s_at_flag2_externo,
+    .referencia = &s_at_referencia2,
+    .medida = &s_at_medida2,
+    .Waiting = &s_at_Robot2_Waiting,
+    .Commanded = &s_at_Robot2_Commanded,
+    .Done = &s_at_Robot2_Done,
+};
 
 /* transition Cell.Supervisor.Load.Load: page `Load`, transition `Load` (ID1412310271), cell.cpn:5897 */
 typedef struct Supervisor_Load_Load_binding {
@@ -1588,59 +1266,45 @@ typedef struct Supervisor_Load_Load_binding {
     POSE_t p;
     POSE_t q;
 } Supervisor_Load_Load_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Load_Load[] = {
     { "n", &s_COUNT, offsetof(Supervisor_Load_Load_binding_t, n), false },
     { "p", &s_POSE, offsetof(Supervisor_Load_Load_binding_t, p), false },
     { "q", &s_POSE, offsetof(Supervisor_Load_Load_binding_t, q), false },
 };
-
-static const pn_type_t s_binding_Supervisor_Load_Load = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Load.Load",
-    .size = sizeof(Supervisor_Load_Load_binding_t),
-    .count = 3U,
-    .field = s_variables_Supervisor_Load_Load,
-};
+static const pn_type_t s_binding_Supervisor_Load_Load = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Load.Load", .size = sizeof(Supervisor_Load_Load_binding_t),
+    .count = 3U, .field = s_variables_Supervisor_Load_Load };
 
 PN_NET_SEARCH static bool Supervisor_Load_Load_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Load_Load_binding_t b = { 0 };
-    cx->origin = "page `Load`, transition `Load` (ID1412310271)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* coordenadas: (n, p, q) (ID1412310280) */
-    if (!m->Supervisor_coordenadas.full) {
+    pn_begin(cx, "page `Load`, transition `Load` (ID1412310271)", m->now);
+    if (!m->Supervisor_coordenadas.full) { /* coordenadas: (n, p, q) (ID1412310280) */
         return true;
     }
     b.n = m->Supervisor_coordenadas.value.c1;
     b.p = m->Supervisor_coordenadas.value.c2;
     b.q = m->Supervisor_coordenadas.value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Load_Load_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Load_Load_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Load_Load_binding_t *const b = binding;
-    cx->origin = "page `Load`, transition `Load` (ID1412310271)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Load`, transition `Load` (ID1412310271)", m->now);
     SEAM_t Supervisor_planned_token = (SEAM_t){ .points = b->n, .first = b->p, .last = b->q };
     pn_bag_check(cx, &s_at_Supervisor_planned, &Supervisor_planned_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Supervisor_planned.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_planned);
+    if (!pn_has_room(cx, m->Supervisor_planned.full, &s_at_Supervisor_planned)) {
+        return false;
     }
-    /* coordenadas: (n, p, q) (ID1412310280) */
-    m->Supervisor_coordenadas.full = false;
+    m->Supervisor_coordenadas.full = false; /* coordenadas: (n, p, q) (ID1412310280) */
     /* planned: {points = n, first = p, last = q} (ID1412310282) */
     m->Supervisor_planned.value = Supervisor_planned_token;
     m->Supervisor_planned.full = true;
@@ -1651,64 +1315,47 @@ PN_NET_SEARCH static bool Supervisor_Load_Load_fire(pn_ctx_t *cx, void *marking,
 typedef struct Supervisor_Approach_Send_binding {
     SEAM_t s;
 } Supervisor_Approach_Send_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Approach_Send[] = {
     { "s", &s_SEAM, offsetof(Supervisor_Approach_Send_binding_t, s), false },
 };
-
-static const pn_type_t s_binding_Supervisor_Approach_Send = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Approach.Send",
-    .size = sizeof(Supervisor_Approach_Send_binding_t),
-    .count = 1U,
-    .field = s_variables_Supervisor_Approach_Send,
-};
+static const pn_type_t s_binding_Supervisor_Approach_Send = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Approach.Send", .size = sizeof(Supervisor_Approach_Send_binding_t),
+    .count = 1U, .field = s_variables_Supervisor_Approach_Send };
 
 PN_NET_SEARCH static bool Supervisor_Approach_Send_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Approach_Send_binding_t b = { 0 };
-    cx->origin = "page `Approach`, transition `Send` (ID1412310300)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* planned: s (ID1412310355) */
-    if (!m->Supervisor_planned.full) {
+    pn_begin(cx, "page `Approach`, transition `Send` (ID1412310300)", m->now);
+    if (!m->Supervisor_planned.full) { /* planned: s (ID1412310355) */
         return true;
     }
     b.s = m->Supervisor_planned.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Approach_Send_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Approach_Send_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Approach_Send_binding_t *const b = binding;
-    cx->origin = "page `Approach`, transition `Send` (ID1412310300)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Approach`, transition `Send` (ID1412310300)", m->now);
     PLAN_t Supervisor_Approach_order_token = (PLAN_t){ .c1 = val_JOINT,
         .c2 = ml_standoff(b->s.first), .c3 = ml_standoff(ml_facing(b->s.first)) };
     pn_bag_check(cx, &s_at_Supervisor_Approach_order, &Supervisor_Approach_order_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Supervisor_Approach_order.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_order);
+    if (!pn_has_room(cx, m->Supervisor_Approach_order.full, &s_at_Supervisor_Approach_order)
+        || !pn_has_room(cx, m->Supervisor_Approach_seam.full, &s_at_Supervisor_Approach_seam)) {
+        return false;
     }
-    if (m->Supervisor_Approach_seam.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_seam);
-    }
-    /* planned: s (ID1412310355) */
-    m->Supervisor_planned.full = false;
+    m->Supervisor_planned.full = false; /* planned: s (ID1412310355) */
     /* order: (JOINT, standoff (#first s), standoff (facing (#first s))) (ID1412310357) */
     m->Supervisor_Approach_order.value = Supervisor_Approach_order_token;
     m->Supervisor_Approach_order.full = true;
-    /* seam: s (ID1412310367) */
-    m->Supervisor_Approach_seam.value = b->s;
+    m->Supervisor_Approach_seam.value = b->s; /* seam: s (ID1412310367) */
     m->Supervisor_Approach_seam.full = true;
     return true;
 }
@@ -1717,309 +1364,263 @@ PN_NET_SEARCH static bool Supervisor_Approach_Send_fire(pn_ctx_t *cx, void *mark
 typedef struct Supervisor_Approach_Arrived_binding {
     SEAM_t s;
 } Supervisor_Approach_Arrived_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Approach_Arrived[] = {
     { "s", &s_SEAM, offsetof(Supervisor_Approach_Arrived_binding_t, s), false },
 };
-
-static const pn_type_t s_binding_Supervisor_Approach_Arrived = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Approach_Arrived = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Approach.Arrived",
-    .size = sizeof(Supervisor_Approach_Arrived_binding_t),
-    .count = 1U,
-    .field = s_variables_Supervisor_Approach_Arrived,
-};
+    .size = sizeof(Supervisor_Approach_Arrived_binding_t), .count = 1U,
+    .field = s_variables_Supervisor_Approach_Arrived };
 
 PN_NET_SEARCH static bool Supervisor_Approach_Arrived_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Approach_Arrived_binding_t b = { 0 };
-    cx->origin = "page `Approach`, transition `Arrived` (ID1412310311)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* done: () (ID1412310363) */
-    if (!m->Supervisor_Approach_done.full) {
+    pn_begin(cx, "page `Approach`, transition `Arrived` (ID1412310311)", m->now);
+    if (!m->Supervisor_Approach_done.full) { /* done: () (ID1412310363) */
         return true;
     }
-    /* seam: s (ID1412310369) */
-    if (!m->Supervisor_Approach_seam.full) {
+    if (!m->Supervisor_Approach_seam.full) { /* seam: s (ID1412310369) */
         return true;
     }
     b.s = m->Supervisor_Approach_seam.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Approach_Arrived_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Approach_Arrived_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Approach_Arrived_binding_t *const b = binding;
-    cx->origin = "page `Approach`, transition `Arrived` (ID1412310311)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_approached.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_approached);
+    pn_begin(cx, "page `Approach`, transition `Arrived` (ID1412310311)", m->now);
+    if (!pn_has_room(cx, m->Supervisor_approached.full, &s_at_Supervisor_approached)) {
+        return false;
     }
-    /* done: () (ID1412310363) */
-    m->Supervisor_Approach_done.full = false;
-    /* seam: s (ID1412310369) */
-    m->Supervisor_Approach_seam.full = false;
-    /* approached: s (ID1412310365) */
-    m->Supervisor_approached.value = b->s;
+    m->Supervisor_Approach_done.full = false; /* done: () (ID1412310363) */
+    m->Supervisor_Approach_seam.full = false; /* seam: s (ID1412310369) */
+    m->Supervisor_approached.value = b->s; /* approached: s (ID1412310365) */
     m->Supervisor_approached.full = true;
     return true;
 }
 
-/* transition Cell.Supervisor.Approach.Move both.Command: page `MoveBoth`, transition `Command` (ID1412310941), cell.cpn:20061 */
-typedef struct Supervisor_Approach_Move_both_Command_binding {
+/* transition: page `MoveBoth`, transition `Command` (ID1412310941), cell.cpn:20061, at all of these:
+ *     Cell.Supervisor.Approach.Move both.Command
+ *     Cell.Supervisor.Correct.Move both.Command
+ *     Cell.Supervisor.Install.Shift.Command
+ *     Cell.Supervisor.Install.Rivet.Advance.Command
+ *     Cell.Supervisor.Install.Rivet.Retract.Command
+ *     Cell.Supervisor.Install.Return.Command
+ */
+typedef struct MoveBoth_Command_binding {
     int64_t c;
     POSE_t p;
     POSE_t q;
-} Supervisor_Approach_Move_both_Command_binding_t;
-
-static const pn_field_t s_variables_Supervisor_Approach_Move_both_Command[] = {
-    { "c", &s_COMMAND, offsetof(Supervisor_Approach_Move_both_Command_binding_t, c), false },
-    { "p", &s_POSE, offsetof(Supervisor_Approach_Move_both_Command_binding_t, p), false },
-    { "q", &s_POSE, offsetof(Supervisor_Approach_Move_both_Command_binding_t, q), false },
+} MoveBoth_Command_binding_t;
+static const pn_field_t s_variables_MoveBoth_Command[] = {
+    { "c", &s_COMMAND, offsetof(MoveBoth_Command_binding_t, c), false },
+    { "p", &s_POSE, offsetof(MoveBoth_Command_binding_t, p), false },
+    { "q", &s_POSE, offsetof(MoveBoth_Command_binding_t, q), false },
 };
+static const pn_type_t s_binding_MoveBoth_Command = { .kind = PN_KIND_RECORD,
+    .name = "MoveBoth.Command", .size = sizeof(MoveBoth_Command_binding_t), .count = 3U,
+    .field = s_variables_MoveBoth_Command };
 
-static const pn_type_t s_binding_Supervisor_Approach_Move_both_Command = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Approach.Move both.Command",
-    .size = sizeof(Supervisor_Approach_Move_both_Command_binding_t),
-    .count = 3U,
-    .field = s_variables_Supervisor_Approach_Move_both_Command,
-};
-
-PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Command_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool MoveBoth_Command_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Supervisor_Approach_Move_both_Command_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* order: (c, p, q) (ID1412310946) */
-    if (!m->Supervisor_Approach_order.full) {
+    MoveBoth_Command_binding_t b = { 0 };
+    pn_begin(cx, "page `MoveBoth`, transition `Command` (ID1412310941)", m->now);
+    const MoveBoth_places_t *const own = pn_net.transition[self].places;
+    const ORDER_slot_t *const at_order = pn_bag_look(own->order, m);
+    if (!at_order->full) { /* order: (c, p, q) (ID1412310946) */
         return true;
     }
-    b.c = m->Supervisor_Approach_order.value.c1;
-    b.p = m->Supervisor_Approach_order.value.c2;
-    b.q = m->Supervisor_Approach_order.value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    b.c = at_order->value.c1;
+    b.p = at_order->value.c2;
+    b.q = at_order->value.c3;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool MoveBoth_Command_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
-    Supervisor_Approach_Move_both_Command_binding_t *const b = binding;
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Approach_Move_both_moving_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_Move_both_moving_1);
+    MoveBoth_Command_binding_t *const b = binding;
+    pn_begin(cx, "page `MoveBoth`, transition `Command` (ID1412310941)", m->now);
+    const MoveBoth_places_t *const own = pn_net.transition[self].places;
+    ORDER_slot_t *const at_order = pn_bag_reach(own->order, m);
+    UNIT_slot_t *const at_moving_1 = pn_bag_reach(own->moving_1, m);
+    UNIT_slot_t *const at_moving_2 = pn_bag_reach(own->moving_2, m);
+    if (!pn_has_room(cx, at_moving_1->full, own->moving_1)
+        || !pn_has_room(cx, m->dadosrobo1.full, &s_at_dadosrobo1)
+        || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)
+        || !pn_has_room(cx, at_moving_2->full, own->moving_2)
+        || !pn_has_room(cx, m->dadosrobo2.full, &s_at_dadosrobo2)
+        || !pn_has_room(cx, m->flag2_interno.full, &s_at_flag2_interno)) {
+        return false;
     }
-    if (m->dadosrobo1.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo1);
-    }
-    if (m->flag1_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_interno);
-    }
-    if (m->Supervisor_Approach_Move_both_moving_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_Move_both_moving_2);
-    }
-    if (m->dadosrobo2.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo2);
-    }
-    if (m->flag2_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_interno);
-    }
-    /* order: (c, p, q) (ID1412310946) */
-    m->Supervisor_Approach_order.full = false;
-    /* moving 1: () (ID1412310970) */
-    m->Supervisor_Approach_Move_both_moving_1.full = true;
-    /* dadosrobo1: p (ID1412310982) */
-    m->dadosrobo1.value = b->p;
+    at_order->full = false; /* order: (c, p, q) (ID1412310946) */
+    at_moving_1->full = true; /* moving 1: () (ID1412310970) */
+    m->dadosrobo1.value = b->p; /* dadosrobo1: p (ID1412310982) */
     m->dadosrobo1.full = true;
-    /* flag1_interno: c (ID1412310988) */
-    m->flag1_interno.value = b->c;
+    m->flag1_interno.value = b->c; /* flag1_interno: c (ID1412310988) */
     m->flag1_interno.full = true;
-    /* moving 2: () (ID1412311007) */
-    m->Supervisor_Approach_Move_both_moving_2.full = true;
-    /* dadosrobo2: q (ID1412311019) */
-    m->dadosrobo2.value = b->q;
+    at_moving_2->full = true; /* moving 2: () (ID1412311007) */
+    m->dadosrobo2.value = b->q; /* dadosrobo2: q (ID1412311019) */
     m->dadosrobo2.full = true;
-    /* flag2_interno: c (ID1412311025) */
-    m->flag2_interno.value = b->c;
+    m->flag2_interno.value = b->c; /* flag2_interno: c (ID1412311025) */
     m->flag2_interno.full = true;
     return true;
 }
 
-/* transition Cell.Supervisor.Approach.Move both.Both: page `MoveBoth`, transition `Both` (ID1412310948), cell.cpn:20135 */
-typedef struct Supervisor_Approach_Move_both_Both_binding {
+/* transition: page `MoveBoth`, transition `Both` (ID1412310948), cell.cpn:20135, at all of these:
+ *     Cell.Supervisor.Approach.Move both.Both
+ *     Cell.Supervisor.Correct.Move both.Both
+ *     Cell.Supervisor.Install.Shift.Both
+ *     Cell.Supervisor.Install.Rivet.Advance.Both
+ *     Cell.Supervisor.Install.Rivet.Retract.Both
+ *     Cell.Supervisor.Install.Return.Both
+ */
+typedef struct MoveBoth_Both_binding {
     uint8_t none; /* no variables */
-} Supervisor_Approach_Move_both_Both_binding_t;
+} MoveBoth_Both_binding_t;
+static const pn_type_t s_binding_MoveBoth_Both = { .kind = PN_KIND_RECORD, .name = "MoveBoth.Both",
+    .size = sizeof(MoveBoth_Both_binding_t), .count = 0U, .field = NULL };
 
-static const pn_type_t s_binding_Supervisor_Approach_Move_both_Both = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Approach.Move both.Both",
-    .size = sizeof(Supervisor_Approach_Move_both_Both_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Both_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool MoveBoth_Both_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Supervisor_Approach_Move_both_Both_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* there 1: () (ID1412310976) */
-    if (!m->Supervisor_Approach_Move_both_there_1.full) {
+    MoveBoth_Both_binding_t b = { 0 };
+    pn_begin(cx, "page `MoveBoth`, transition `Both` (ID1412310948)", m->now);
+    const MoveBoth_places_t *const own = pn_net.transition[self].places;
+    const UNIT_slot_t *const at_there_1 = pn_bag_look(own->there_1, m);
+    const UNIT_slot_t *const at_there_2 = pn_bag_look(own->there_2, m);
+    if (!at_there_1->full) { /* there 1: () (ID1412310976) */
         return true;
     }
-    /* there 2: () (ID1412311013) */
-    if (!m->Supervisor_Approach_Move_both_there_2.full) {
+    if (!at_there_2->full) { /* there 2: () (ID1412311013) */
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool MoveBoth_Both_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Approach_done.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_done);
+    pn_begin(cx, "page `MoveBoth`, transition `Both` (ID1412310948)", m->now);
+    const MoveBoth_places_t *const own = pn_net.transition[self].places;
+    UNIT_slot_t *const at_done = pn_bag_reach(own->done, m);
+    UNIT_slot_t *const at_there_1 = pn_bag_reach(own->there_1, m);
+    UNIT_slot_t *const at_there_2 = pn_bag_reach(own->there_2, m);
+    if (!pn_has_room(cx, at_done->full, own->done)) {
+        return false;
     }
-    /* there 1: () (ID1412310976) */
-    m->Supervisor_Approach_Move_both_there_1.full = false;
-    /* there 2: () (ID1412311013) */
-    m->Supervisor_Approach_Move_both_there_2.full = false;
-    /* done: () (ID1412310957) */
-    m->Supervisor_Approach_done.full = true;
+    at_there_1->full = false; /* there 1: () (ID1412310976) */
+    at_there_2->full = false; /* there 2: () (ID1412311013) */
+    at_done->full = true; /* done: () (ID1412310957) */
     return true;
 }
 
-/* transition Cell.Supervisor.Approach.Move both.Reply 1: page `MoveBoth`, transition `Reply 1` (ID1412310962), cell.cpn:20209 */
-typedef struct Supervisor_Approach_Move_both_Reply_1_binding {
+/* transition: page `MoveBoth`, transition `Reply 1` (ID1412310962), cell.cpn:20209, at all of these:
+ *     Cell.Supervisor.Approach.Move both.Reply 1
+ *     Cell.Supervisor.Correct.Move both.Reply 1
+ *     Cell.Supervisor.Install.Shift.Reply 1
+ *     Cell.Supervisor.Install.Rivet.Advance.Reply 1
+ *     Cell.Supervisor.Install.Rivet.Retract.Reply 1
+ *     Cell.Supervisor.Install.Return.Reply 1
+ */
+typedef struct MoveBoth_Reply_1_binding {
     uint8_t none; /* no variables */
-} Supervisor_Approach_Move_both_Reply_1_binding_t;
+} MoveBoth_Reply_1_binding_t;
+static const pn_type_t s_binding_MoveBoth_Reply_1 = { .kind = PN_KIND_RECORD,
+    .name = "MoveBoth.Reply 1", .size = sizeof(MoveBoth_Reply_1_binding_t), .count = 0U,
+    .field = NULL };
 
-static const pn_type_t s_binding_Supervisor_Approach_Move_both_Reply_1 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Approach.Move both.Reply 1",
-    .size = sizeof(Supervisor_Approach_Move_both_Reply_1_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool MoveBoth_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Supervisor_Approach_Move_both_Reply_1_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* moving 1: () (ID1412310972) */
-    if (!m->Supervisor_Approach_Move_both_moving_1.full) {
+    MoveBoth_Reply_1_binding_t b = { 0 };
+    pn_begin(cx, "page `MoveBoth`, transition `Reply 1` (ID1412310962)", m->now);
+    const MoveBoth_places_t *const own = pn_net.transition[self].places;
+    const UNIT_slot_t *const at_moving_1 = pn_bag_look(own->moving_1, m);
+    if (!at_moving_1->full) { /* moving 1: () (ID1412310972) */
         return true;
     }
     /* flag1_externo: DONE (ID1412310994) */
     if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool MoveBoth_Reply_1_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Approach_Move_both_there_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_Move_both_there_1);
+    pn_begin(cx, "page `MoveBoth`, transition `Reply 1` (ID1412310962)", m->now);
+    const MoveBoth_places_t *const own = pn_net.transition[self].places;
+    UNIT_slot_t *const at_moving_1 = pn_bag_reach(own->moving_1, m);
+    UNIT_slot_t *const at_there_1 = pn_bag_reach(own->there_1, m);
+    if (!pn_has_room(cx, at_there_1->full, own->there_1)) {
+        return false;
     }
-    /* moving 1: () (ID1412310972) */
-    m->Supervisor_Approach_Move_both_moving_1.full = false;
-    /* flag1_externo: DONE (ID1412310994) */
-    m->flag1_externo.full = false;
-    /* there 1: () (ID1412310974) */
-    m->Supervisor_Approach_Move_both_there_1.full = true;
+    at_moving_1->full = false; /* moving 1: () (ID1412310972) */
+    m->flag1_externo.full = false; /* flag1_externo: DONE (ID1412310994) */
+    at_there_1->full = true; /* there 1: () (ID1412310974) */
     return true;
 }
 
-/* transition Cell.Supervisor.Approach.Move both.Reply 2: page `MoveBoth`, transition `Reply 2` (ID1412310999), cell.cpn:20283 */
-typedef struct Supervisor_Approach_Move_both_Reply_2_binding {
+/* transition: page `MoveBoth`, transition `Reply 2` (ID1412310999), cell.cpn:20283, at all of these:
+ *     Cell.Supervisor.Approach.Move both.Reply 2
+ *     Cell.Supervisor.Correct.Move both.Reply 2
+ *     Cell.Supervisor.Install.Shift.Reply 2
+ *     Cell.Supervisor.Install.Rivet.Advance.Reply 2
+ *     Cell.Supervisor.Install.Rivet.Retract.Reply 2
+ *     Cell.Supervisor.Install.Return.Reply 2
+ */
+typedef struct MoveBoth_Reply_2_binding {
     uint8_t none; /* no variables */
-} Supervisor_Approach_Move_both_Reply_2_binding_t;
+} MoveBoth_Reply_2_binding_t;
+static const pn_type_t s_binding_MoveBoth_Reply_2 = { .kind = PN_KIND_RECORD,
+    .name = "MoveBoth.Reply 2", .size = sizeof(MoveBoth_Reply_2_binding_t), .count = 0U,
+    .field = NULL };
 
-static const pn_type_t s_binding_Supervisor_Approach_Move_both_Reply_2 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Approach.Move both.Reply 2",
-    .size = sizeof(Supervisor_Approach_Move_both_Reply_2_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool MoveBoth_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Supervisor_Approach_Move_both_Reply_2_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* moving 2: () (ID1412311009) */
-    if (!m->Supervisor_Approach_Move_both_moving_2.full) {
+    MoveBoth_Reply_2_binding_t b = { 0 };
+    pn_begin(cx, "page `MoveBoth`, transition `Reply 2` (ID1412310999)", m->now);
+    const MoveBoth_places_t *const own = pn_net.transition[self].places;
+    const UNIT_slot_t *const at_moving_2 = pn_bag_look(own->moving_2, m);
+    if (!at_moving_2->full) { /* moving 2: () (ID1412311009) */
         return true;
     }
     /* flag2_externo: DONE (ID1412311031) */
     if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool MoveBoth_Reply_2_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Approach_Move_both_there_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Approach_Move_both_there_2);
+    pn_begin(cx, "page `MoveBoth`, transition `Reply 2` (ID1412310999)", m->now);
+    const MoveBoth_places_t *const own = pn_net.transition[self].places;
+    UNIT_slot_t *const at_moving_2 = pn_bag_reach(own->moving_2, m);
+    UNIT_slot_t *const at_there_2 = pn_bag_reach(own->there_2, m);
+    if (!pn_has_room(cx, at_there_2->full, own->there_2)) {
+        return false;
     }
-    /* moving 2: () (ID1412311009) */
-    m->Supervisor_Approach_Move_both_moving_2.full = false;
-    /* flag2_externo: DONE (ID1412311031) */
-    m->flag2_externo.full = false;
-    /* there 2: () (ID1412311011) */
-    m->Supervisor_Approach_Move_both_there_2.full = true;
+    at_moving_2->full = false; /* moving 2: () (ID1412311009) */
+    m->flag2_externo.full = false; /* flag2_externo: DONE (ID1412311031) */
+    at_there_2->full = true; /* there 2: () (ID1412311011) */
     return true;
 }
 
@@ -2027,70 +1628,50 @@ PN_NET_SEARCH static bool Supervisor_Approach_Move_both_Reply_2_fire(pn_ctx_t *c
 typedef struct Supervisor_Verify_Ask_first_binding {
     SEAM_t s;
 } Supervisor_Verify_Ask_first_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Verify_Ask_first[] = {
     { "s", &s_SEAM, offsetof(Supervisor_Verify_Ask_first_binding_t, s), false },
 };
-
-static const pn_type_t s_binding_Supervisor_Verify_Ask_first = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Verify_Ask_first = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Verify.Ask first",
-    .size = sizeof(Supervisor_Verify_Ask_first_binding_t),
-    .count = 1U,
-    .field = s_variables_Supervisor_Verify_Ask_first,
-};
+    .size = sizeof(Supervisor_Verify_Ask_first_binding_t), .count = 1U,
+    .field = s_variables_Supervisor_Verify_Ask_first };
 
 PN_NET_SEARCH static bool Supervisor_Verify_Ask_first_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Verify_Ask_first_binding_t b = { 0 };
-    cx->origin = "page `Verify`, transition `Ask first` (ID1412310377)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* approached: s (ID1412310418) */
-    if (!m->Supervisor_approached.full) {
+    pn_begin(cx, "page `Verify`, transition `Ask first` (ID1412310377)", m->now);
+    if (!m->Supervisor_approached.full) { /* approached: s (ID1412310418) */
         return true;
     }
     b.s = m->Supervisor_approached.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Verify_Ask_first_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Verify_Ask_first_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Verify_Ask_first_binding_t *const b = binding;
-    cx->origin = "page `Verify`, transition `Ask first` (ID1412310377)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Verify`, transition `Ask first` (ID1412310377)", m->now);
     const POSE_t referencia1_token = b->s.first;
     int64_t flag1_interno_token = val_MEASURE;
     pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Supervisor_Verify_first_asked.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Verify_first_asked);
+    if (!pn_has_room(cx, m->Supervisor_Verify_first_asked.full, &s_at_Supervisor_Verify_first_asked)
+        || !pn_has_room(cx, m->referencia1.full, &s_at_referencia1)
+        || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)) {
+        return false;
     }
-    if (m->referencia1.full) {
-        return pn_bag_fail_full(cx, &s_at_referencia1);
-    }
-    if (m->flag1_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_interno);
-    }
-    /* approached: s (ID1412310418) */
-    m->Supervisor_approached.full = false;
-    /* first asked: s (ID1412310420) */
-    m->Supervisor_Verify_first_asked.value = b->s;
+    m->Supervisor_approached.full = false; /* approached: s (ID1412310418) */
+    m->Supervisor_Verify_first_asked.value = b->s; /* first asked: s (ID1412310420) */
     m->Supervisor_Verify_first_asked.full = true;
-    /* referencia1: #first s (ID1412310430) */
-    m->referencia1.value = referencia1_token;
+    m->referencia1.value = referencia1_token; /* referencia1: #first s (ID1412310430) */
     m->referencia1.full = true;
-    /* flag1_interno: MEASURE (ID1412310432) */
-    m->flag1_interno.value = flag1_interno_token;
+    m->flag1_interno.value = flag1_interno_token; /* flag1_interno: MEASURE (ID1412310432) */
     m->flag1_interno.full = true;
     return true;
 }
@@ -2103,61 +1684,45 @@ typedef struct Supervisor_Verify_Ask_last_binding {
     int64_t e;
     SEAM_t s;
 } Supervisor_Verify_Ask_last_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Verify_Ask_last[] = {
     { "a", &s_POSE, offsetof(Supervisor_Verify_Ask_last_binding_t, a), false },
     { "e", &s_REPLY, offsetof(Supervisor_Verify_Ask_last_binding_t, e), false },
     { "s", &s_SEAM, offsetof(Supervisor_Verify_Ask_last_binding_t, s), false },
 };
-
-static const pn_type_t s_binding_Supervisor_Verify_Ask_last = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Verify.Ask last",
-    .size = sizeof(Supervisor_Verify_Ask_last_binding_t),
-    .count = 3U,
-    .field = s_variables_Supervisor_Verify_Ask_last,
-};
+static const pn_type_t s_binding_Supervisor_Verify_Ask_last = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Verify.Ask last", .size = sizeof(Supervisor_Verify_Ask_last_binding_t),
+    .count = 3U, .field = s_variables_Supervisor_Verify_Ask_last };
 
 PN_NET_SEARCH static bool Supervisor_Verify_Ask_last_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Verify_Ask_last_binding_t b = { 0 };
-    cx->origin = "page `Verify`, transition `Ask last` (ID1412310385)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* first asked: s (ID1412310422) */
-    if (!m->Supervisor_Verify_first_asked.full) {
+    pn_begin(cx, "page `Verify`, transition `Ask last` (ID1412310385)", m->now);
+    if (!m->Supervisor_Verify_first_asked.full) { /* first asked: s (ID1412310422) */
         return true;
     }
     b.s = m->Supervisor_Verify_first_asked.value;
-    /* medida1: a (ID1412310438) */
-    if (!m->medida1.full) {
+    if (!m->medida1.full) { /* medida1: a (ID1412310438) */
         return true;
     }
     b.a = m->medida1.value;
-    /* flag1_externo: e (ID1412310440) */
-    if (!m->flag1_externo.full) {
+    if (!m->flag1_externo.full) { /* flag1_externo: e (ID1412310440) */
         return true;
     }
     b.e = m->flag1_externo.value;
-    /* guard [usable (e, #first s, a)] */
-    if (!ml_usable(b.e, b.s.first, b.a)) {
+    if (!ml_usable(b.e, b.s.first, b.a)) { /* guard [usable (e, #first s, a)] */
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Verify_Ask_last_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Verify_Ask_last_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Verify_Ask_last_binding_t *const b = binding;
-    cx->origin = "page `Verify`, transition `Ask last` (ID1412310385)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Verify`, transition `Ask last` (ID1412310385)", m->now);
     const ASKED_t Supervisor_Verify_last_asked_token = (ASKED_t){ .c1 = b->s, .c2 = b->a };
     const POSE_t referencia1_token = b->s.last;
     int64_t flag1_interno_token = val_MEASURE;
@@ -2165,29 +1730,20 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_last_fire(pn_ctx_t *cx, void *ma
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Supervisor_Verify_last_asked.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Verify_last_asked);
+    if (!pn_has_room(cx, m->Supervisor_Verify_last_asked.full, &s_at_Supervisor_Verify_last_asked)
+        || !pn_has_room(cx, m->referencia1.full, &s_at_referencia1)
+        || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)) {
+        return false;
     }
-    if (m->referencia1.full) {
-        return pn_bag_fail_full(cx, &s_at_referencia1);
-    }
-    if (m->flag1_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_interno);
-    }
-    /* first asked: s (ID1412310422) */
-    m->Supervisor_Verify_first_asked.full = false;
-    /* medida1: a (ID1412310438) */
-    m->medida1.full = false;
-    /* flag1_externo: e (ID1412310440) */
-    m->flag1_externo.full = false;
+    m->Supervisor_Verify_first_asked.full = false; /* first asked: s (ID1412310422) */
+    m->medida1.full = false; /* medida1: a (ID1412310438) */
+    m->flag1_externo.full = false; /* flag1_externo: e (ID1412310440) */
     /* last asked: (s, a) (ID1412310424) */
     m->Supervisor_Verify_last_asked.value = Supervisor_Verify_last_asked_token;
     m->Supervisor_Verify_last_asked.full = true;
-    /* referencia1: #last s (ID1412310434) */
-    m->referencia1.value = referencia1_token;
+    m->referencia1.value = referencia1_token; /* referencia1: #last s (ID1412310434) */
     m->referencia1.full = true;
-    /* flag1_interno: MEASURE (ID1412310436) */
-    m->flag1_interno.value = flag1_interno_token;
+    m->flag1_interno.value = flag1_interno_token; /* flag1_interno: MEASURE (ID1412310436) */
     m->flag1_interno.full = true;
     return true;
 }
@@ -2201,73 +1757,54 @@ typedef struct Supervisor_Verify_Measured_binding {
     int64_t e;
     SEAM_t s;
 } Supervisor_Verify_Measured_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Verify_Measured[] = {
     { "a", &s_POSE, offsetof(Supervisor_Verify_Measured_binding_t, a), false },
     { "b", &s_POSE, offsetof(Supervisor_Verify_Measured_binding_t, b), false },
     { "e", &s_REPLY, offsetof(Supervisor_Verify_Measured_binding_t, e), false },
     { "s", &s_SEAM, offsetof(Supervisor_Verify_Measured_binding_t, s), false },
 };
-
-static const pn_type_t s_binding_Supervisor_Verify_Measured = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Verify.Measured",
-    .size = sizeof(Supervisor_Verify_Measured_binding_t),
-    .count = 4U,
-    .field = s_variables_Supervisor_Verify_Measured,
-};
+static const pn_type_t s_binding_Supervisor_Verify_Measured = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Verify.Measured", .size = sizeof(Supervisor_Verify_Measured_binding_t),
+    .count = 4U, .field = s_variables_Supervisor_Verify_Measured };
 
 PN_NET_SEARCH static bool Supervisor_Verify_Measured_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Verify_Measured_binding_t b = { 0 };
-    cx->origin = "page `Verify`, transition `Measured` (ID1412310393)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* last asked: (s, a) (ID1412310426) */
-    if (!m->Supervisor_Verify_last_asked.full) {
+    pn_begin(cx, "page `Verify`, transition `Measured` (ID1412310393)", m->now);
+    if (!m->Supervisor_Verify_last_asked.full) { /* last asked: (s, a) (ID1412310426) */
         return true;
     }
     b.s = m->Supervisor_Verify_last_asked.value.c1;
     b.a = m->Supervisor_Verify_last_asked.value.c2;
-    /* medida1: b (ID1412310442) */
-    if (!m->medida1.full) {
+    if (!m->medida1.full) { /* medida1: b (ID1412310442) */
         return true;
     }
     b.b = m->medida1.value;
-    /* flag1_externo: e (ID1412310444) */
-    if (!m->flag1_externo.full) {
+    if (!m->flag1_externo.full) { /* flag1_externo: e (ID1412310444) */
         return true;
     }
     b.e = m->flag1_externo.value;
-    /* guard [usable (e, #last s, b)] */
-    if (!ml_usable(b.e, b.s.last, b.b)) {
+    if (!ml_usable(b.e, b.s.last, b.b)) { /* guard [usable (e, #last s, b)] */
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Verify_Measured_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Verify_Measured_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Verify_Measured_binding_t *const b = binding;
-    cx->origin = "page `Verify`, transition `Measured` (ID1412310393)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Verify`, transition `Measured` (ID1412310393)", m->now);
     const VERIFIED_t Supervisor_verified_token = (VERIFIED_t){ .c1 = b->s, .c2 = b->a, .c3 = b->b };
-    if (m->Supervisor_verified.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_verified);
+    if (!pn_has_room(cx, m->Supervisor_verified.full, &s_at_Supervisor_verified)) {
+        return false;
     }
-    /* last asked: (s, a) (ID1412310426) */
-    m->Supervisor_Verify_last_asked.full = false;
-    /* medida1: b (ID1412310442) */
-    m->medida1.full = false;
-    /* flag1_externo: e (ID1412310444) */
-    m->flag1_externo.full = false;
+    m->Supervisor_Verify_last_asked.full = false; /* last asked: (s, a) (ID1412310426) */
+    m->medida1.full = false; /* medida1: b (ID1412310442) */
+    m->flag1_externo.full = false; /* flag1_externo: e (ID1412310444) */
     /* verified: (s, a, b) (ID1412310428) */
     m->Supervisor_verified.value = Supervisor_verified_token;
     m->Supervisor_verified.full = true;
@@ -2282,83 +1819,61 @@ typedef struct Supervisor_Verify_First_lost_binding {
     int64_t e;
     SEAM_t s;
 } Supervisor_Verify_First_lost_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Verify_First_lost[] = {
     { "a", &s_POSE, offsetof(Supervisor_Verify_First_lost_binding_t, a), false },
     { "e", &s_REPLY, offsetof(Supervisor_Verify_First_lost_binding_t, e), false },
     { "s", &s_SEAM, offsetof(Supervisor_Verify_First_lost_binding_t, s), false },
 };
-
-static const pn_type_t s_binding_Supervisor_Verify_First_lost = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Verify_First_lost = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Verify.First lost",
-    .size = sizeof(Supervisor_Verify_First_lost_binding_t),
-    .count = 3U,
-    .field = s_variables_Supervisor_Verify_First_lost,
-};
+    .size = sizeof(Supervisor_Verify_First_lost_binding_t), .count = 3U,
+    .field = s_variables_Supervisor_Verify_First_lost };
 
 PN_NET_SEARCH static bool Supervisor_Verify_First_lost_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Verify_First_lost_binding_t b = { 0 };
-    cx->origin = "page `Verify`, transition `First lost` (ID1412320018)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* first asked: s (ID1412320036) */
-    if (!m->Supervisor_Verify_first_asked.full) {
+    pn_begin(cx, "page `Verify`, transition `First lost` (ID1412320018)", m->now);
+    if (!m->Supervisor_Verify_first_asked.full) { /* first asked: s (ID1412320036) */
         return true;
     }
     b.s = m->Supervisor_Verify_first_asked.value;
-    /* flag1_externo: e (ID1412320038) */
-    if (!m->flag1_externo.full) {
+    if (!m->flag1_externo.full) { /* flag1_externo: e (ID1412320038) */
         return true;
     }
     b.e = m->flag1_externo.value;
-    /* medida1: a (ID1412320040) */
-    if (!m->medida1.full) {
+    if (!m->medida1.full) { /* medida1: a (ID1412320040) */
         return true;
     }
     b.a = m->medida1.value;
-    /* guard [not (usable (e, #first s, a))] */
-    if (ml_usable(b.e, b.s.first, b.a)) {
+    if (ml_usable(b.e, b.s.first, b.a)) { /* guard [not (usable (e, #first s, a))] */
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Verify_First_lost_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Verify_First_lost_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Verify`, transition `First lost` (ID1412320018)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Verify`, transition `First lost` (ID1412320018)", m->now);
     int64_t Supervisor_result_token = val_FAILED;
     pn_bag_check(cx, &s_at_Supervisor_result, &Supervisor_result_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Supervisor_result.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_result);
+    if (!pn_has_room(cx, m->Supervisor_result.full, &s_at_Supervisor_result)
+        || !pn_has_room(cx, m->Supervisor_ended.full, &s_at_Supervisor_ended)) {
+        return false;
     }
-    if (m->Supervisor_ended.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_ended);
-    }
-    /* first asked: s (ID1412320036) */
-    m->Supervisor_Verify_first_asked.full = false;
-    /* flag1_externo: e (ID1412320038) */
-    m->flag1_externo.full = false;
-    /* medida1: a (ID1412320040) */
-    m->medida1.full = false;
-    /* result: FAILED (ID1412320052) */
-    m->Supervisor_result.value = Supervisor_result_token;
+    m->Supervisor_Verify_first_asked.full = false; /* first asked: s (ID1412320036) */
+    m->flag1_externo.full = false; /* flag1_externo: e (ID1412320038) */
+    m->medida1.full = false; /* medida1: a (ID1412320040) */
+    m->Supervisor_result.value = Supervisor_result_token; /* result: FAILED (ID1412320052) */
     m->Supervisor_result.full = true;
-    /* ended: () (ID1412320054) */
-    m->Supervisor_ended.full = true;
+    m->Supervisor_ended.full = true; /* ended: () (ID1412320054) */
     return true;
 }
 
@@ -2371,85 +1886,63 @@ typedef struct Supervisor_Verify_Last_lost_binding {
     int64_t e;
     SEAM_t s;
 } Supervisor_Verify_Last_lost_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Verify_Last_lost[] = {
     { "a", &s_POSE, offsetof(Supervisor_Verify_Last_lost_binding_t, a), false },
     { "b", &s_POSE, offsetof(Supervisor_Verify_Last_lost_binding_t, b), false },
     { "e", &s_REPLY, offsetof(Supervisor_Verify_Last_lost_binding_t, e), false },
     { "s", &s_SEAM, offsetof(Supervisor_Verify_Last_lost_binding_t, s), false },
 };
-
-static const pn_type_t s_binding_Supervisor_Verify_Last_lost = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Verify_Last_lost = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Verify.Last lost",
-    .size = sizeof(Supervisor_Verify_Last_lost_binding_t),
-    .count = 4U,
-    .field = s_variables_Supervisor_Verify_Last_lost,
-};
+    .size = sizeof(Supervisor_Verify_Last_lost_binding_t), .count = 4U,
+    .field = s_variables_Supervisor_Verify_Last_lost };
 
 PN_NET_SEARCH static bool Supervisor_Verify_Last_lost_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Verify_Last_lost_binding_t b = { 0 };
-    cx->origin = "page `Verify`, transition `Last lost` (ID1412320023)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* last asked: (s, a) (ID1412320042) */
-    if (!m->Supervisor_Verify_last_asked.full) {
+    pn_begin(cx, "page `Verify`, transition `Last lost` (ID1412320023)", m->now);
+    if (!m->Supervisor_Verify_last_asked.full) { /* last asked: (s, a) (ID1412320042) */
         return true;
     }
     b.s = m->Supervisor_Verify_last_asked.value.c1;
     b.a = m->Supervisor_Verify_last_asked.value.c2;
-    /* flag1_externo: e (ID1412320044) */
-    if (!m->flag1_externo.full) {
+    if (!m->flag1_externo.full) { /* flag1_externo: e (ID1412320044) */
         return true;
     }
     b.e = m->flag1_externo.value;
-    /* medida1: b (ID1412320046) */
-    if (!m->medida1.full) {
+    if (!m->medida1.full) { /* medida1: b (ID1412320046) */
         return true;
     }
     b.b = m->medida1.value;
-    /* guard [not (usable (e, #last s, b))] */
-    if (ml_usable(b.e, b.s.last, b.b)) {
+    if (ml_usable(b.e, b.s.last, b.b)) { /* guard [not (usable (e, #last s, b))] */
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Verify_Last_lost_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Verify_Last_lost_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Verify`, transition `Last lost` (ID1412320023)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Verify`, transition `Last lost` (ID1412320023)", m->now);
     int64_t Supervisor_result_token = val_FAILED;
     pn_bag_check(cx, &s_at_Supervisor_result, &Supervisor_result_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Supervisor_result.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_result);
+    if (!pn_has_room(cx, m->Supervisor_result.full, &s_at_Supervisor_result)
+        || !pn_has_room(cx, m->Supervisor_ended.full, &s_at_Supervisor_ended)) {
+        return false;
     }
-    if (m->Supervisor_ended.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_ended);
-    }
-    /* last asked: (s, a) (ID1412320042) */
-    m->Supervisor_Verify_last_asked.full = false;
-    /* flag1_externo: e (ID1412320044) */
-    m->flag1_externo.full = false;
-    /* medida1: b (ID1412320046) */
-    m->medida1.full = false;
-    /* result: FAILED (ID1412320048) */
-    m->Supervisor_result.value = Supervisor_result_token;
+    m->Supervisor_Verify_last_asked.full = false; /* last asked: (s, a) (ID1412320042) */
+    m->flag1_externo.full = false; /* flag1_externo: e (ID1412320044) */
+    m->medida1.full = false; /* medida1: b (ID1412320046) */
+    m->Supervisor_result.value = Supervisor_result_token; /* result: FAILED (ID1412320048) */
     m->Supervisor_result.full = true;
-    /* ended: () (ID1412320050) */
-    m->Supervisor_ended.full = true;
+    m->Supervisor_ended.full = true; /* ended: () (ID1412320050) */
     return true;
 }
 
@@ -2461,7 +1954,6 @@ typedef struct Supervisor_Correct_Compare_binding {
     POSE_t p;
     POSE_t q;
 } Supervisor_Correct_Compare_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Correct_Compare[] = {
     { "a", &s_POSE, offsetof(Supervisor_Correct_Compare_binding_t, a), false },
     { "b", &s_POSE, offsetof(Supervisor_Correct_Compare_binding_t, b), false },
@@ -2469,23 +1961,16 @@ static const pn_field_t s_variables_Supervisor_Correct_Compare[] = {
     { "p", &s_POSE, offsetof(Supervisor_Correct_Compare_binding_t, p), false },
     { "q", &s_POSE, offsetof(Supervisor_Correct_Compare_binding_t, q), false },
 };
-
-static const pn_type_t s_binding_Supervisor_Correct_Compare = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Correct.Compare",
-    .size = sizeof(Supervisor_Correct_Compare_binding_t),
-    .count = 5U,
-    .field = s_variables_Supervisor_Correct_Compare,
-};
+static const pn_type_t s_binding_Supervisor_Correct_Compare = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Correct.Compare", .size = sizeof(Supervisor_Correct_Compare_binding_t),
+    .count = 5U, .field = s_variables_Supervisor_Correct_Compare };
 
 PN_NET_SEARCH static bool Supervisor_Correct_Compare_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Correct_Compare_binding_t b = { 0 };
-    cx->origin = "page `Correct`, transition `Compare` (ID1412310453)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Correct`, transition `Compare` (ID1412310453)", m->now);
     /* verified: ({points = n, first = p, last = q}, a, b) (ID1412310531) */
     if (!m->Supervisor_verified.full) {
         return true;
@@ -2495,19 +1980,15 @@ PN_NET_SEARCH static bool Supervisor_Correct_Compare_enumerate(pn_ctx_t *cx, con
     b.n = m->Supervisor_verified.value.c1.points;
     b.a = m->Supervisor_verified.value.c2;
     b.b = m->Supervisor_verified.value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Correct_Compare_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Correct_Compare_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Correct_Compare_binding_t *const b = binding;
-    cx->origin = "page `Correct`, transition `Compare` (ID1412310453)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Correct`, transition `Compare` (ID1412310453)", m->now);
     const VECTOR_t token = ml_difference(b->p, b->a);
     RIVETING_t Supervisor_Correct_seam_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
         .c3 = ml_pitch(cx, b->n, ml_corrected(b->p, b->a), ml_corrected(b->q, b->b)) };
@@ -2515,16 +1996,13 @@ PN_NET_SEARCH static bool Supervisor_Correct_Compare_fire(pn_ctx_t *cx, void *ma
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Supervisor_Correct_offset.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_offset);
-    }
-    if (m->Supervisor_Correct_seam.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_seam);
+    if (!pn_has_room(cx, m->Supervisor_Correct_offset.full, &s_at_Supervisor_Correct_offset)
+        || !pn_has_room(cx, m->Supervisor_Correct_seam.full, &s_at_Supervisor_Correct_seam)) {
+        return false;
     }
     /* verified: ({points = n, first = p, last = q}, a, b) (ID1412310531) */
     m->Supervisor_verified.full = false;
-    /* offset: difference (p, a) (ID1412310533) */
-    m->Supervisor_Correct_offset.value = token;
+    m->Supervisor_Correct_offset.value = token; /* offset: difference (p, a) (ID1412310533) */
     m->Supervisor_Correct_offset.full = true;
     /* seam: (n, p, pitch (n, corrected (p, a), corrected (q, b))) (ID1412310535) */
     m->Supervisor_Correct_seam.value = Supervisor_Correct_seam_token;
@@ -2541,59 +2019,45 @@ typedef struct Supervisor_Correct_Move_over_binding {
     POSE_t p;
     VECTOR_t v;
 } Supervisor_Correct_Move_over_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Correct_Move_over[] = {
     { "d", &s_FVECTOR, offsetof(Supervisor_Correct_Move_over_binding_t, d), false },
     { "n", &s_COUNT, offsetof(Supervisor_Correct_Move_over_binding_t, n), false },
     { "p", &s_POSE, offsetof(Supervisor_Correct_Move_over_binding_t, p), false },
     { "v", &s_VECTOR, offsetof(Supervisor_Correct_Move_over_binding_t, v), false },
 };
-
-static const pn_type_t s_binding_Supervisor_Correct_Move_over = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Correct_Move_over = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Correct.Move over",
-    .size = sizeof(Supervisor_Correct_Move_over_binding_t),
-    .count = 4U,
-    .field = s_variables_Supervisor_Correct_Move_over,
-};
+    .size = sizeof(Supervisor_Correct_Move_over_binding_t), .count = 4U,
+    .field = s_variables_Supervisor_Correct_Move_over };
 
 PN_NET_SEARCH static bool Supervisor_Correct_Move_over_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Correct_Move_over_binding_t b = { 0 };
-    cx->origin = "page `Correct`, transition `Move over` (ID1412310461)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* offset: v (ID1412310537) */
-    if (!m->Supervisor_Correct_offset.full) {
+    pn_begin(cx, "page `Correct`, transition `Move over` (ID1412310461)", m->now);
+    if (!m->Supervisor_Correct_offset.full) { /* offset: v (ID1412310537) */
         return true;
     }
     b.v = m->Supervisor_Correct_offset.value;
-    /* guard [moved v] */
-    if (!ml_moved(b.v.c1, b.v.c2, b.v.c3)) {
+    if (!ml_moved(b.v.c1, b.v.c2, b.v.c3)) { /* guard [moved v] */
         return true;
     }
-    /* seam: (n, p, d) (ID1412310539) */
-    if (!m->Supervisor_Correct_seam.full) {
+    if (!m->Supervisor_Correct_seam.full) { /* seam: (n, p, d) (ID1412310539) */
         return true;
     }
     b.n = m->Supervisor_Correct_seam.value.c1;
     b.p = m->Supervisor_Correct_seam.value.c2;
     b.d = m->Supervisor_Correct_seam.value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Correct_Move_over_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Correct_Move_over_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Correct_Move_over_binding_t *const b = binding;
-    cx->origin = "page `Correct`, transition `Move over` (ID1412310461)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Correct`, transition `Move over` (ID1412310461)", m->now);
     PLAN_t Supervisor_Correct_order_token = (PLAN_t){ .c1 = val_LINEAR, .c2 = ml_inTool(b->p, b->v),
         .c3 = ml_inTool(ml_facing(b->p), b->v) };
     pn_bag_check(cx, &s_at_Supervisor_Correct_order, &Supervisor_Correct_order_token);
@@ -2601,11 +2065,10 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_over_fire(pn_ctx_t *cx, void *
         return false;
     }
     /* seam: (n, p, d) (ID1412310539): stays where it is */
-    if (m->Supervisor_Correct_order.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_order);
+    if (!pn_has_room(cx, m->Supervisor_Correct_order.full, &s_at_Supervisor_Correct_order)) {
+        return false;
     }
-    /* offset: v (ID1412310537) */
-    m->Supervisor_Correct_offset.full = false;
+    m->Supervisor_Correct_offset.full = false; /* offset: v (ID1412310537) */
     /* order: (LINEAR, inTool (p, v), inTool (facing p, v)) (ID1412310541) */
     m->Supervisor_Correct_order.value = Supervisor_Correct_order_token;
     m->Supervisor_Correct_order.full = true;
@@ -2618,62 +2081,46 @@ typedef struct Supervisor_Correct_Moved_binding {
     int64_t n;
     POSE_t p;
 } Supervisor_Correct_Moved_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Correct_Moved[] = {
     { "d", &s_FVECTOR, offsetof(Supervisor_Correct_Moved_binding_t, d), false },
     { "n", &s_COUNT, offsetof(Supervisor_Correct_Moved_binding_t, n), false },
     { "p", &s_POSE, offsetof(Supervisor_Correct_Moved_binding_t, p), false },
 };
-
-static const pn_type_t s_binding_Supervisor_Correct_Moved = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Correct.Moved",
-    .size = sizeof(Supervisor_Correct_Moved_binding_t),
-    .count = 3U,
-    .field = s_variables_Supervisor_Correct_Moved,
-};
+static const pn_type_t s_binding_Supervisor_Correct_Moved = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Correct.Moved", .size = sizeof(Supervisor_Correct_Moved_binding_t),
+    .count = 3U, .field = s_variables_Supervisor_Correct_Moved };
 
 PN_NET_SEARCH static bool Supervisor_Correct_Moved_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Correct_Moved_binding_t b = { 0 };
-    cx->origin = "page `Correct`, transition `Moved` (ID1412310478)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* done: () (ID1412310547) */
-    if (!m->Supervisor_Correct_done.full) {
+    pn_begin(cx, "page `Correct`, transition `Moved` (ID1412310478)", m->now);
+    if (!m->Supervisor_Correct_done.full) { /* done: () (ID1412310547) */
         return true;
     }
-    /* seam: (n, p, d) (ID1412310549) */
-    if (!m->Supervisor_Correct_seam.full) {
+    if (!m->Supervisor_Correct_seam.full) { /* seam: (n, p, d) (ID1412310549) */
         return true;
     }
     b.n = m->Supervisor_Correct_seam.value.c1;
     b.p = m->Supervisor_Correct_seam.value.c2;
     b.d = m->Supervisor_Correct_seam.value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Correct_Moved_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Correct_Moved_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Correct_Moved_binding_t *const b = binding;
-    cx->origin = "page `Correct`, transition `Moved` (ID1412310478)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Correct`, transition `Moved` (ID1412310478)", m->now);
     const RIVETING_t Supervisor_corrected_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
         .c3 = b->d };
-    if (m->Supervisor_corrected.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_corrected);
+    if (!pn_has_room(cx, m->Supervisor_corrected.full, &s_at_Supervisor_corrected)) {
+        return false;
     }
-    /* done: () (ID1412310547) */
-    m->Supervisor_Correct_done.full = false;
-    /* seam: (n, p, d) (ID1412310549) */
-    m->Supervisor_Correct_seam.full = false;
+    m->Supervisor_Correct_done.full = false; /* done: () (ID1412310547) */
+    m->Supervisor_Correct_seam.full = false; /* seam: (n, p, d) (ID1412310549) */
     /* corrected: (n, p, d) (ID1412310551) */
     m->Supervisor_corrected.value = Supervisor_corrected_token;
     m->Supervisor_corrected.full = true;
@@ -2689,321 +2136,55 @@ typedef struct Supervisor_Correct_As_planned_binding {
     POSE_t p;
     VECTOR_t v;
 } Supervisor_Correct_As_planned_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Correct_As_planned[] = {
     { "d", &s_FVECTOR, offsetof(Supervisor_Correct_As_planned_binding_t, d), false },
     { "n", &s_COUNT, offsetof(Supervisor_Correct_As_planned_binding_t, n), false },
     { "p", &s_POSE, offsetof(Supervisor_Correct_As_planned_binding_t, p), false },
     { "v", &s_VECTOR, offsetof(Supervisor_Correct_As_planned_binding_t, v), false },
 };
-
-static const pn_type_t s_binding_Supervisor_Correct_As_planned = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Correct_As_planned = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Correct.As planned",
-    .size = sizeof(Supervisor_Correct_As_planned_binding_t),
-    .count = 4U,
-    .field = s_variables_Supervisor_Correct_As_planned,
-};
+    .size = sizeof(Supervisor_Correct_As_planned_binding_t), .count = 4U,
+    .field = s_variables_Supervisor_Correct_As_planned };
 
 PN_NET_SEARCH static bool Supervisor_Correct_As_planned_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Correct_As_planned_binding_t b = { 0 };
-    cx->origin = "page `Correct`, transition `As planned` (ID1412310526)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* offset: v (ID1412310553) */
-    if (!m->Supervisor_Correct_offset.full) {
+    pn_begin(cx, "page `Correct`, transition `As planned` (ID1412310526)", m->now);
+    if (!m->Supervisor_Correct_offset.full) { /* offset: v (ID1412310553) */
         return true;
     }
     b.v = m->Supervisor_Correct_offset.value;
-    /* guard [not (moved v)] */
-    if (ml_moved(b.v.c1, b.v.c2, b.v.c3)) {
+    if (ml_moved(b.v.c1, b.v.c2, b.v.c3)) { /* guard [not (moved v)] */
         return true;
     }
-    /* seam: (n, p, d) (ID1412310555) */
-    if (!m->Supervisor_Correct_seam.full) {
+    if (!m->Supervisor_Correct_seam.full) { /* seam: (n, p, d) (ID1412310555) */
         return true;
     }
     b.n = m->Supervisor_Correct_seam.value.c1;
     b.p = m->Supervisor_Correct_seam.value.c2;
     b.d = m->Supervisor_Correct_seam.value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Correct_As_planned_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Correct_As_planned_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Correct_As_planned_binding_t *const b = binding;
-    cx->origin = "page `Correct`, transition `As planned` (ID1412310526)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Correct`, transition `As planned` (ID1412310526)", m->now);
     const RIVETING_t Supervisor_corrected_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
         .c3 = b->d };
-    if (m->Supervisor_corrected.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_corrected);
+    if (!pn_has_room(cx, m->Supervisor_corrected.full, &s_at_Supervisor_corrected)) {
+        return false;
     }
-    /* offset: v (ID1412310553) */
-    m->Supervisor_Correct_offset.full = false;
-    /* seam: (n, p, d) (ID1412310555) */
-    m->Supervisor_Correct_seam.full = false;
+    m->Supervisor_Correct_offset.full = false; /* offset: v (ID1412310553) */
+    m->Supervisor_Correct_seam.full = false; /* seam: (n, p, d) (ID1412310555) */
     /* corrected: (n, p, d) (ID1412310557) */
     m->Supervisor_corrected.value = Supervisor_corrected_token;
     m->Supervisor_corrected.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Correct.Move both.Command: page `MoveBoth`, transition `Command` (ID1412310941), cell.cpn:20061 */
-typedef struct Supervisor_Correct_Move_both_Command_binding {
-    int64_t c;
-    POSE_t p;
-    POSE_t q;
-} Supervisor_Correct_Move_both_Command_binding_t;
-
-static const pn_field_t s_variables_Supervisor_Correct_Move_both_Command[] = {
-    { "c", &s_COMMAND, offsetof(Supervisor_Correct_Move_both_Command_binding_t, c), false },
-    { "p", &s_POSE, offsetof(Supervisor_Correct_Move_both_Command_binding_t, p), false },
-    { "q", &s_POSE, offsetof(Supervisor_Correct_Move_both_Command_binding_t, q), false },
-};
-
-static const pn_type_t s_binding_Supervisor_Correct_Move_both_Command = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Correct.Move both.Command",
-    .size = sizeof(Supervisor_Correct_Move_both_Command_binding_t),
-    .count = 3U,
-    .field = s_variables_Supervisor_Correct_Move_both_Command,
-};
-
-PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Command_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Correct_Move_both_Command_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* order: (c, p, q) (ID1412310946) */
-    if (!m->Supervisor_Correct_order.full) {
-        return true;
-    }
-    b.c = m->Supervisor_Correct_order.value.c1;
-    b.p = m->Supervisor_Correct_order.value.c2;
-    b.q = m->Supervisor_Correct_order.value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Supervisor_Correct_Move_both_Command_binding_t *const b = binding;
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Correct_Move_both_moving_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_Move_both_moving_1);
-    }
-    if (m->dadosrobo1.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo1);
-    }
-    if (m->flag1_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_interno);
-    }
-    if (m->Supervisor_Correct_Move_both_moving_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_Move_both_moving_2);
-    }
-    if (m->dadosrobo2.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo2);
-    }
-    if (m->flag2_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_interno);
-    }
-    /* order: (c, p, q) (ID1412310946) */
-    m->Supervisor_Correct_order.full = false;
-    /* moving 1: () (ID1412310970) */
-    m->Supervisor_Correct_Move_both_moving_1.full = true;
-    /* dadosrobo1: p (ID1412310982) */
-    m->dadosrobo1.value = b->p;
-    m->dadosrobo1.full = true;
-    /* flag1_interno: c (ID1412310988) */
-    m->flag1_interno.value = b->c;
-    m->flag1_interno.full = true;
-    /* moving 2: () (ID1412311007) */
-    m->Supervisor_Correct_Move_both_moving_2.full = true;
-    /* dadosrobo2: q (ID1412311019) */
-    m->dadosrobo2.value = b->q;
-    m->dadosrobo2.full = true;
-    /* flag2_interno: c (ID1412311025) */
-    m->flag2_interno.value = b->c;
-    m->flag2_interno.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Correct.Move both.Both: page `MoveBoth`, transition `Both` (ID1412310948), cell.cpn:20135 */
-typedef struct Supervisor_Correct_Move_both_Both_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Correct_Move_both_Both_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Correct_Move_both_Both = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Correct.Move both.Both",
-    .size = sizeof(Supervisor_Correct_Move_both_Both_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Both_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Correct_Move_both_Both_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* there 1: () (ID1412310976) */
-    if (!m->Supervisor_Correct_Move_both_there_1.full) {
-        return true;
-    }
-    /* there 2: () (ID1412311013) */
-    if (!m->Supervisor_Correct_Move_both_there_2.full) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Correct_done.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_done);
-    }
-    /* there 1: () (ID1412310976) */
-    m->Supervisor_Correct_Move_both_there_1.full = false;
-    /* there 2: () (ID1412311013) */
-    m->Supervisor_Correct_Move_both_there_2.full = false;
-    /* done: () (ID1412310957) */
-    m->Supervisor_Correct_done.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Correct.Move both.Reply 1: page `MoveBoth`, transition `Reply 1` (ID1412310962), cell.cpn:20209 */
-typedef struct Supervisor_Correct_Move_both_Reply_1_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Correct_Move_both_Reply_1_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Correct_Move_both_Reply_1 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Correct.Move both.Reply 1",
-    .size = sizeof(Supervisor_Correct_Move_both_Reply_1_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Correct_Move_both_Reply_1_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* moving 1: () (ID1412310972) */
-    if (!m->Supervisor_Correct_Move_both_moving_1.full) {
-        return true;
-    }
-    /* flag1_externo: DONE (ID1412310994) */
-    if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Correct_Move_both_there_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_Move_both_there_1);
-    }
-    /* moving 1: () (ID1412310972) */
-    m->Supervisor_Correct_Move_both_moving_1.full = false;
-    /* flag1_externo: DONE (ID1412310994) */
-    m->flag1_externo.full = false;
-    /* there 1: () (ID1412310974) */
-    m->Supervisor_Correct_Move_both_there_1.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Correct.Move both.Reply 2: page `MoveBoth`, transition `Reply 2` (ID1412310999), cell.cpn:20283 */
-typedef struct Supervisor_Correct_Move_both_Reply_2_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Correct_Move_both_Reply_2_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Correct_Move_both_Reply_2 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Correct.Move both.Reply 2",
-    .size = sizeof(Supervisor_Correct_Move_both_Reply_2_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Correct_Move_both_Reply_2_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* moving 2: () (ID1412311009) */
-    if (!m->Supervisor_Correct_Move_both_moving_2.full) {
-        return true;
-    }
-    /* flag2_externo: DONE (ID1412311031) */
-    if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Correct_Move_both_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Correct_Move_both_there_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Correct_Move_both_there_2);
-    }
-    /* moving 2: () (ID1412311009) */
-    m->Supervisor_Correct_Move_both_moving_2.full = false;
-    /* flag2_externo: DONE (ID1412311031) */
-    m->flag2_externo.full = false;
-    /* there 2: () (ID1412311011) */
-    m->Supervisor_Correct_Move_both_there_2.full = true;
     return true;
 }
 
@@ -3016,63 +2197,48 @@ typedef struct Supervisor_Install_Go_back_binding {
     int64_t n;
     POSE_t p;
 } Supervisor_Install_Go_back_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Install_Go_back[] = {
     { "d", &s_FVECTOR, offsetof(Supervisor_Install_Go_back_binding_t, d), false },
     { "k", &s_RIVETS, offsetof(Supervisor_Install_Go_back_binding_t, k), false },
     { "n", &s_COUNT, offsetof(Supervisor_Install_Go_back_binding_t, n), false },
     { "p", &s_POSE, offsetof(Supervisor_Install_Go_back_binding_t, p), false },
 };
-
-static const pn_type_t s_binding_Supervisor_Install_Go_back = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Go back",
-    .size = sizeof(Supervisor_Install_Go_back_binding_t),
-    .count = 4U,
-    .field = s_variables_Supervisor_Install_Go_back,
-};
+static const pn_type_t s_binding_Supervisor_Install_Go_back = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Install.Go back", .size = sizeof(Supervisor_Install_Go_back_binding_t),
+    .count = 4U, .field = s_variables_Supervisor_Install_Go_back };
 
 PN_NET_SEARCH static bool Supervisor_Install_Go_back_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Go_back_binding_t b = { 0 };
-    cx->origin = "page `Install`, transition `Go back` (ID1412310594)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* riveted: () (ID1412310685) */
-    if (!m->Supervisor_Install_riveted.full) {
+    pn_begin(cx, "page `Install`, transition `Go back` (ID1412310594)", m->now);
+    if (!m->Supervisor_Install_riveted.full) { /* riveted: () (ID1412310685) */
         return true;
     }
     /* result: DONE (ID1412320065) */
     if (!m->Supervisor_result.full || (m->Supervisor_result.value != val_DONE)) {
         return true;
     }
-    /* work: (n, k, p, d) (ID1412310705) */
-    if (!m->Supervisor_Install_work.full) {
+    if (!m->Supervisor_Install_work.full) { /* work: (n, k, p, d) (ID1412310705) */
         return true;
     }
     b.n = m->Supervisor_Install_work.value.c1;
     b.k = m->Supervisor_Install_work.value.c2;
     b.p = m->Supervisor_Install_work.value.c3;
     b.d = m->Supervisor_Install_work.value.c4;
-    /* guard [k = 1] */
-    if (b.k != 1) {
+    if (b.k != 1) { /* guard [k = 1] */
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Go_back_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Go_back_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Install_Go_back_binding_t *const b = binding;
-    cx->origin = "page `Install`, transition `Go back` (ID1412310594)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Install`, transition `Go back` (ID1412310594)", m->now);
     PLAN_t Supervisor_Install_return_token = (PLAN_t){ .c1 = val_LINEAR,
         .c2 = ml_inTool(b->p, ml_wayBack(cx, b->n, b->d)),
         .c3 = ml_inTool(ml_facing(b->p), ml_wayBack(cx, b->n, b->d)) };
@@ -3081,13 +2247,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Go_back_fire(pn_ctx_t *cx, void *ma
         return false;
     }
     /* result: DONE (ID1412320065): stays where it is */
-    if (m->Supervisor_Install_return.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_return);
+    if (!pn_has_room(cx, m->Supervisor_Install_return.full, &s_at_Supervisor_Install_return)) {
+        return false;
     }
-    /* riveted: () (ID1412310685) */
-    m->Supervisor_Install_riveted.full = false;
-    /* work: (n, k, p, d) (ID1412310705) */
-    m->Supervisor_Install_work.full = false;
+    m->Supervisor_Install_riveted.full = false; /* riveted: () (ID1412310685) */
+    m->Supervisor_Install_work.full = false; /* work: (n, k, p, d) (ID1412310705) */
     /* return: (LINEAR, inTool (p, wayBack (n, d)), inTool (facing p, wayBack (n, d))) (ID141 ... */
     m->Supervisor_Install_return.value = Supervisor_Install_return_token;
     m->Supervisor_Install_return.full = true;
@@ -3103,63 +2267,49 @@ typedef struct Supervisor_Install_Next_rivet_binding {
     int64_t n;
     POSE_t p;
 } Supervisor_Install_Next_rivet_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Install_Next_rivet[] = {
     { "d", &s_FVECTOR, offsetof(Supervisor_Install_Next_rivet_binding_t, d), false },
     { "k", &s_RIVETS, offsetof(Supervisor_Install_Next_rivet_binding_t, k), false },
     { "n", &s_COUNT, offsetof(Supervisor_Install_Next_rivet_binding_t, n), false },
     { "p", &s_POSE, offsetof(Supervisor_Install_Next_rivet_binding_t, p), false },
 };
-
-static const pn_type_t s_binding_Supervisor_Install_Next_rivet = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Install_Next_rivet = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Next rivet",
-    .size = sizeof(Supervisor_Install_Next_rivet_binding_t),
-    .count = 4U,
-    .field = s_variables_Supervisor_Install_Next_rivet,
-};
+    .size = sizeof(Supervisor_Install_Next_rivet_binding_t), .count = 4U,
+    .field = s_variables_Supervisor_Install_Next_rivet };
 
 PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Next_rivet_binding_t b = { 0 };
-    cx->origin = "page `Install`, transition `Next rivet` (ID1412310624)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* riveted: () (ID1412310697) */
-    if (!m->Supervisor_Install_riveted.full) {
+    pn_begin(cx, "page `Install`, transition `Next rivet` (ID1412310624)", m->now);
+    if (!m->Supervisor_Install_riveted.full) { /* riveted: () (ID1412310697) */
         return true;
     }
     /* result: DONE (ID1412320063) */
     if (!m->Supervisor_result.full || (m->Supervisor_result.value != val_DONE)) {
         return true;
     }
-    /* work: (n, k, p, d) (ID1412310701) */
-    if (!m->Supervisor_Install_work.full) {
+    if (!m->Supervisor_Install_work.full) { /* work: (n, k, p, d) (ID1412310701) */
         return true;
     }
     b.n = m->Supervisor_Install_work.value.c1;
     b.k = m->Supervisor_Install_work.value.c2;
     b.p = m->Supervisor_Install_work.value.c3;
     b.d = m->Supervisor_Install_work.value.c4;
-    /* guard [k > 1] */
-    if (!(b.k > 1)) {
+    if (!(b.k > 1)) { /* guard [k > 1] */
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Install_Next_rivet_binding_t *const b = binding;
-    cx->origin = "page `Install`, transition `Next rivet` (ID1412310624)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Install`, transition `Next rivet` (ID1412310624)", m->now);
     PLAN_t Supervisor_Install_shift_token = (PLAN_t){ .c1 = val_LINEAR, .c2 = ml_inTool(b->p, b->d),
         .c3 = ml_inTool(ml_facing(b->p), b->d) };
     pn_bag_check(cx, &s_at_Supervisor_Install_shift, &Supervisor_Install_shift_token);
@@ -3169,13 +2319,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_fire(pn_ctx_t *cx, void 
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Supervisor_Install_shift.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_shift);
+    if (!pn_has_room(cx, m->Supervisor_Install_shift.full, &s_at_Supervisor_Install_shift)) {
+        return false;
     }
-    /* riveted: () (ID1412310697) */
-    m->Supervisor_Install_riveted.full = false;
-    /* result: DONE (ID1412320063) */
-    m->Supervisor_result.full = false;
+    m->Supervisor_Install_riveted.full = false; /* riveted: () (ID1412310697) */
+    m->Supervisor_result.full = false; /* result: DONE (ID1412320063) */
     /* work: (n, k, p, d) (ID1412310701): replaced below */
     /* shift: (LINEAR, inTool (p, d), inTool (facing p, d)) (ID1412310699) */
     m->Supervisor_Install_shift.value = Supervisor_Install_shift_token;
@@ -3191,65 +2339,48 @@ typedef struct Supervisor_Install_Start_binding {
     int64_t n;
     POSE_t p;
 } Supervisor_Install_Start_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Install_Start[] = {
     { "d", &s_FVECTOR, offsetof(Supervisor_Install_Start_binding_t, d), false },
     { "n", &s_COUNT, offsetof(Supervisor_Install_Start_binding_t, n), false },
     { "p", &s_POSE, offsetof(Supervisor_Install_Start_binding_t, p), false },
 };
-
-static const pn_type_t s_binding_Supervisor_Install_Start = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Start",
-    .size = sizeof(Supervisor_Install_Start_binding_t),
-    .count = 3U,
-    .field = s_variables_Supervisor_Install_Start,
-};
+static const pn_type_t s_binding_Supervisor_Install_Start = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Install.Start", .size = sizeof(Supervisor_Install_Start_binding_t),
+    .count = 3U, .field = s_variables_Supervisor_Install_Start };
 
 PN_NET_SEARCH static bool Supervisor_Install_Start_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Start_binding_t b = { 0 };
-    cx->origin = "page `Install`, transition `Start` (ID1412310632)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* corrected: (n, p, d) (ID1412310691) */
-    if (!m->Supervisor_corrected.full) {
+    pn_begin(cx, "page `Install`, transition `Start` (ID1412310632)", m->now);
+    if (!m->Supervisor_corrected.full) { /* corrected: (n, p, d) (ID1412310691) */
         return true;
     }
     b.n = m->Supervisor_corrected.value.c1;
     b.p = m->Supervisor_corrected.value.c2;
     b.d = m->Supervisor_corrected.value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Start_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Start_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Install_Start_binding_t *const b = binding;
-    cx->origin = "page `Install`, transition `Start` (ID1412310632)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Install`, transition `Start` (ID1412310632)", m->now);
     WORK_t Supervisor_Install_work_token = (WORK_t){ .c1 = b->n, .c2 = pn_int_add(cx, b->n, 2),
         .c3 = b->p, .c4 = b->d };
     pn_bag_check(cx, &s_at_Supervisor_Install_work, &Supervisor_Install_work_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Supervisor_Install_ready.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_ready);
+    if (!pn_has_room(cx, m->Supervisor_Install_ready.full, &s_at_Supervisor_Install_ready)
+        || !pn_has_room(cx, m->Supervisor_Install_work.full, &s_at_Supervisor_Install_work)) {
+        return false;
     }
-    if (m->Supervisor_Install_work.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_work);
-    }
-    /* corrected: (n, p, d) (ID1412310691) */
-    m->Supervisor_corrected.full = false;
-    /* ready: () (ID1412310693) */
-    m->Supervisor_Install_ready.full = true;
+    m->Supervisor_corrected.full = false; /* corrected: (n, p, d) (ID1412310691) */
+    m->Supervisor_Install_ready.full = true; /* ready: () (ID1412310693) */
     /* work: (n, n + 2, p, d) (ID1412310695) */
     m->Supervisor_Install_work.value = Supervisor_Install_work_token;
     m->Supervisor_Install_work.full = true;
@@ -3263,319 +2394,52 @@ typedef struct Supervisor_Install_Give_up_binding {
     int64_t n;
     POSE_t p;
 } Supervisor_Install_Give_up_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Install_Give_up[] = {
     { "d", &s_FVECTOR, offsetof(Supervisor_Install_Give_up_binding_t, d), false },
     { "k", &s_RIVETS, offsetof(Supervisor_Install_Give_up_binding_t, k), false },
     { "n", &s_COUNT, offsetof(Supervisor_Install_Give_up_binding_t, n), false },
     { "p", &s_POSE, offsetof(Supervisor_Install_Give_up_binding_t, p), false },
 };
-
-static const pn_type_t s_binding_Supervisor_Install_Give_up = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Give up",
-    .size = sizeof(Supervisor_Install_Give_up_binding_t),
-    .count = 4U,
-    .field = s_variables_Supervisor_Install_Give_up,
-};
+static const pn_type_t s_binding_Supervisor_Install_Give_up = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Install.Give up", .size = sizeof(Supervisor_Install_Give_up_binding_t),
+    .count = 4U, .field = s_variables_Supervisor_Install_Give_up };
 
 PN_NET_SEARCH static bool Supervisor_Install_Give_up_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Give_up_binding_t b = { 0 };
-    cx->origin = "page `Install`, transition `Give up` (ID1412320067)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* riveted: () (ID1412320072) */
-    if (!m->Supervisor_Install_riveted.full) {
+    pn_begin(cx, "page `Install`, transition `Give up` (ID1412320067)", m->now);
+    if (!m->Supervisor_Install_riveted.full) { /* riveted: () (ID1412320072) */
         return true;
     }
     /* result: FAILED (ID1412320074) */
     if (!m->Supervisor_result.full || (m->Supervisor_result.value != val_FAILED)) {
         return true;
     }
-    /* work: (n, k, p, d) (ID1412320076) */
-    if (!m->Supervisor_Install_work.full) {
+    if (!m->Supervisor_Install_work.full) { /* work: (n, k, p, d) (ID1412320076) */
         return true;
     }
     b.n = m->Supervisor_Install_work.value.c1;
     b.k = m->Supervisor_Install_work.value.c2;
     b.p = m->Supervisor_Install_work.value.c3;
     b.d = m->Supervisor_Install_work.value.c4;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Give_up_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Give_up_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Install`, transition `Give up` (ID1412320067)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Install`, transition `Give up` (ID1412320067)", m->now);
     /* result: FAILED (ID1412320074): stays where it is */
-    if (m->Supervisor_ended.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_ended);
-    }
-    /* riveted: () (ID1412320072) */
-    m->Supervisor_Install_riveted.full = false;
-    /* work: (n, k, p, d) (ID1412320076) */
-    m->Supervisor_Install_work.full = false;
-    /* ended: () (ID1412320078) */
-    m->Supervisor_ended.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Shift.Command: page `MoveBoth`, transition `Command` (ID1412310941), cell.cpn:20061 */
-typedef struct Supervisor_Install_Shift_Command_binding {
-    int64_t c;
-    POSE_t p;
-    POSE_t q;
-} Supervisor_Install_Shift_Command_binding_t;
-
-static const pn_field_t s_variables_Supervisor_Install_Shift_Command[] = {
-    { "c", &s_COMMAND, offsetof(Supervisor_Install_Shift_Command_binding_t, c), false },
-    { "p", &s_POSE, offsetof(Supervisor_Install_Shift_Command_binding_t, p), false },
-    { "q", &s_POSE, offsetof(Supervisor_Install_Shift_Command_binding_t, q), false },
-};
-
-static const pn_type_t s_binding_Supervisor_Install_Shift_Command = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Shift.Command",
-    .size = sizeof(Supervisor_Install_Shift_Command_binding_t),
-    .count = 3U,
-    .field = s_variables_Supervisor_Install_Shift_Command,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Shift_Command_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Shift_Command_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* shift: (c, p, q) (ID1412310946) */
-    if (!m->Supervisor_Install_shift.full) {
-        return true;
-    }
-    b.c = m->Supervisor_Install_shift.value.c1;
-    b.p = m->Supervisor_Install_shift.value.c2;
-    b.q = m->Supervisor_Install_shift.value.c3;
-    if (!sink(user, self, &b)) {
+    if (!pn_has_room(cx, m->Supervisor_ended.full, &s_at_Supervisor_ended)) {
         return false;
     }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Shift_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Supervisor_Install_Shift_Command_binding_t *const b = binding;
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Install_Shift_moving_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Shift_moving_1);
-    }
-    if (m->dadosrobo1.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo1);
-    }
-    if (m->flag1_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_interno);
-    }
-    if (m->Supervisor_Install_Shift_moving_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Shift_moving_2);
-    }
-    if (m->dadosrobo2.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo2);
-    }
-    if (m->flag2_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_interno);
-    }
-    /* shift: (c, p, q) (ID1412310946) */
-    m->Supervisor_Install_shift.full = false;
-    /* moving 1: () (ID1412310970) */
-    m->Supervisor_Install_Shift_moving_1.full = true;
-    /* dadosrobo1: p (ID1412310982) */
-    m->dadosrobo1.value = b->p;
-    m->dadosrobo1.full = true;
-    /* flag1_interno: c (ID1412310988) */
-    m->flag1_interno.value = b->c;
-    m->flag1_interno.full = true;
-    /* moving 2: () (ID1412311007) */
-    m->Supervisor_Install_Shift_moving_2.full = true;
-    /* dadosrobo2: q (ID1412311019) */
-    m->dadosrobo2.value = b->q;
-    m->dadosrobo2.full = true;
-    /* flag2_interno: c (ID1412311025) */
-    m->flag2_interno.value = b->c;
-    m->flag2_interno.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Shift.Both: page `MoveBoth`, transition `Both` (ID1412310948), cell.cpn:20135 */
-typedef struct Supervisor_Install_Shift_Both_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Shift_Both_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Shift_Both = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Shift.Both",
-    .size = sizeof(Supervisor_Install_Shift_Both_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Shift_Both_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Shift_Both_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* there 1: () (ID1412310976) */
-    if (!m->Supervisor_Install_Shift_there_1.full) {
-        return true;
-    }
-    /* there 2: () (ID1412311013) */
-    if (!m->Supervisor_Install_Shift_there_2.full) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Shift_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Install_ready.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_ready);
-    }
-    /* there 1: () (ID1412310976) */
-    m->Supervisor_Install_Shift_there_1.full = false;
-    /* there 2: () (ID1412311013) */
-    m->Supervisor_Install_Shift_there_2.full = false;
-    /* ready: () (ID1412310957) */
-    m->Supervisor_Install_ready.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Shift.Reply 1: page `MoveBoth`, transition `Reply 1` (ID1412310962), cell.cpn:20209 */
-typedef struct Supervisor_Install_Shift_Reply_1_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Shift_Reply_1_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Shift_Reply_1 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Shift.Reply 1",
-    .size = sizeof(Supervisor_Install_Shift_Reply_1_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Shift_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Shift_Reply_1_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* moving 1: () (ID1412310972) */
-    if (!m->Supervisor_Install_Shift_moving_1.full) {
-        return true;
-    }
-    /* flag1_externo: DONE (ID1412310994) */
-    if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Shift_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Install_Shift_there_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Shift_there_1);
-    }
-    /* moving 1: () (ID1412310972) */
-    m->Supervisor_Install_Shift_moving_1.full = false;
-    /* flag1_externo: DONE (ID1412310994) */
-    m->flag1_externo.full = false;
-    /* there 1: () (ID1412310974) */
-    m->Supervisor_Install_Shift_there_1.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Shift.Reply 2: page `MoveBoth`, transition `Reply 2` (ID1412310999), cell.cpn:20283 */
-typedef struct Supervisor_Install_Shift_Reply_2_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Shift_Reply_2_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Shift_Reply_2 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Shift.Reply 2",
-    .size = sizeof(Supervisor_Install_Shift_Reply_2_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Shift_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Shift_Reply_2_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* moving 2: () (ID1412311009) */
-    if (!m->Supervisor_Install_Shift_moving_2.full) {
-        return true;
-    }
-    /* flag2_externo: DONE (ID1412311031) */
-    if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Shift_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Install_Shift_there_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Shift_there_2);
-    }
-    /* moving 2: () (ID1412311009) */
-    m->Supervisor_Install_Shift_moving_2.full = false;
-    /* flag2_externo: DONE (ID1412311031) */
-    m->flag2_externo.full = false;
-    /* there 2: () (ID1412311011) */
-    m->Supervisor_Install_Shift_there_2.full = true;
+    m->Supervisor_Install_riveted.full = false; /* riveted: () (ID1412320072) */
+    m->Supervisor_Install_work.full = false; /* work: (n, k, p, d) (ID1412320076) */
+    m->Supervisor_ended.full = true; /* ended: () (ID1412320078) */
     return true;
 }
 
@@ -3583,40 +2447,28 @@ PN_NET_SEARCH static bool Supervisor_Install_Shift_Reply_2_fire(pn_ctx_t *cx, vo
 typedef struct Supervisor_Install_Rivet_Go_in_binding {
     uint8_t none; /* no variables */
 } Supervisor_Install_Rivet_Go_in_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Go_in = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Install_Rivet_Go_in = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Rivet.Go in",
-    .size = sizeof(Supervisor_Install_Rivet_Go_in_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
+    .size = sizeof(Supervisor_Install_Rivet_Go_in_binding_t), .count = 0U, .field = NULL };
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Go_in_binding_t b = { 0 };
-    cx->origin = "page `Rivet`, transition `Go in` (ID1412310716)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* ready: () (ID1412310816) */
-    if (!m->Supervisor_Install_ready.full) {
+    pn_begin(cx, "page `Rivet`, transition `Go in` (ID1412310716)", m->now);
+    if (!m->Supervisor_Install_ready.full) { /* ready: () (ID1412310816) */
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Rivet`, transition `Go in` (ID1412310716)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Rivet`, transition `Go in` (ID1412310716)", m->now);
     PLAN_t Supervisor_Install_Rivet_advance_token = (PLAN_t){ .c1 = val_LINEAR,
         .c2 = ml_alongTool(val_approachDistance), .c3 = ml_alongTool(val_approachDistance) };
     pn_bag_check(cx, &s_at_Supervisor_Install_Rivet_advance,
@@ -3624,11 +2476,11 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_fire(pn_ctx_t *cx, void
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Supervisor_Install_Rivet_advance.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_advance);
+    if (!pn_has_room(cx, m->Supervisor_Install_Rivet_advance.full,
+        &s_at_Supervisor_Install_Rivet_advance)) {
+        return false;
     }
-    /* ready: () (ID1412310816) */
-    m->Supervisor_Install_ready.full = false;
+    m->Supervisor_Install_ready.full = false; /* ready: () (ID1412310816) */
     /* advance: (LINEAR, alongTool approachDistance, alongTool approachDistance) (ID1412310818) */
     m->Supervisor_Install_Rivet_advance.value = Supervisor_Install_Rivet_advance_token;
     m->Supervisor_Install_Rivet_advance.full = true;
@@ -3639,45 +2491,33 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_fire(pn_ctx_t *cx, void
 typedef struct Supervisor_Install_Rivet_Go_out_binding {
     int64_t e;
 } Supervisor_Install_Rivet_Go_out_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Install_Rivet_Go_out[] = {
     { "e", &s_REPLY, offsetof(Supervisor_Install_Rivet_Go_out_binding_t, e), false },
 };
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Go_out = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Install_Rivet_Go_out = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Rivet.Go out",
-    .size = sizeof(Supervisor_Install_Rivet_Go_out_binding_t),
-    .count = 1U,
-    .field = s_variables_Supervisor_Install_Rivet_Go_out,
-};
+    .size = sizeof(Supervisor_Install_Rivet_Go_out_binding_t), .count = 1U,
+    .field = s_variables_Supervisor_Install_Rivet_Go_out };
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Go_out_binding_t b = { 0 };
-    cx->origin = "page `Rivet`, transition `Go out` (ID1412310742)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* fastened: e (ID1412310828) */
-    if (!m->Supervisor_Install_Rivet_fastened.full) {
+    pn_begin(cx, "page `Rivet`, transition `Go out` (ID1412310742)", m->now);
+    if (!m->Supervisor_Install_Rivet_fastened.full) { /* fastened: e (ID1412310828) */
         return true;
     }
     b.e = m->Supervisor_Install_Rivet_fastened.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Install_Rivet_Go_out_binding_t *const b = binding;
-    cx->origin = "page `Rivet`, transition `Go out` (ID1412310742)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Rivet`, transition `Go out` (ID1412310742)", m->now);
     PLAN_t Supervisor_Install_Rivet_retract_token = (PLAN_t){ .c1 = val_LINEAR,
         .c2 = ml_alongTool(-val_approachDistance), .c3 = ml_alongTool(-val_approachDistance) };
     pn_bag_check(cx, &s_at_Supervisor_Install_Rivet_retract,
@@ -3685,270 +2525,17 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_fire(pn_ctx_t *cx, voi
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Supervisor_Install_Rivet_retract.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_retract);
+    if (!pn_has_room(cx, m->Supervisor_Install_Rivet_retract.full,
+        &s_at_Supervisor_Install_Rivet_retract)
+        || !pn_has_room(cx, m->Supervisor_result.full, &s_at_Supervisor_result)) {
+        return false;
     }
-    if (m->Supervisor_result.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_result);
-    }
-    /* fastened: e (ID1412310828) */
-    m->Supervisor_Install_Rivet_fastened.full = false;
+    m->Supervisor_Install_Rivet_fastened.full = false; /* fastened: e (ID1412310828) */
     /* retract: (LINEAR, alongTool (~approachDistance), alongTool (~approachDistance)) (ID141 ... */
     m->Supervisor_Install_Rivet_retract.value = Supervisor_Install_Rivet_retract_token;
     m->Supervisor_Install_Rivet_retract.full = true;
-    /* result: e (ID1412320085) */
-    m->Supervisor_result.value = b->e;
+    m->Supervisor_result.value = b->e; /* result: e (ID1412320085) */
     m->Supervisor_result.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Rivet.Advance.Command: page `MoveBoth`, transition `Command` (ID1412310941), cell.cpn:20061 */
-typedef struct Supervisor_Install_Rivet_Advance_Command_binding {
-    int64_t c;
-    POSE_t p;
-    POSE_t q;
-} Supervisor_Install_Rivet_Advance_Command_binding_t;
-
-static const pn_field_t s_variables_Supervisor_Install_Rivet_Advance_Command[] = {
-    { "c", &s_COMMAND, offsetof(Supervisor_Install_Rivet_Advance_Command_binding_t, c), false },
-    { "p", &s_POSE, offsetof(Supervisor_Install_Rivet_Advance_Command_binding_t, p), false },
-    { "q", &s_POSE, offsetof(Supervisor_Install_Rivet_Advance_Command_binding_t, q), false },
-};
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Advance_Command = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Rivet.Advance.Command",
-    .size = sizeof(Supervisor_Install_Rivet_Advance_Command_binding_t),
-    .count = 3U,
-    .field = s_variables_Supervisor_Install_Rivet_Advance_Command,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Command_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Rivet_Advance_Command_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* advance: (c, p, q) (ID1412310946) */
-    if (!m->Supervisor_Install_Rivet_advance.full) {
-        return true;
-    }
-    b.c = m->Supervisor_Install_Rivet_advance.value.c1;
-    b.p = m->Supervisor_Install_Rivet_advance.value.c2;
-    b.q = m->Supervisor_Install_Rivet_advance.value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Supervisor_Install_Rivet_Advance_Command_binding_t *const b = binding;
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Install_Rivet_Advance_moving_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Advance_moving_1);
-    }
-    if (m->dadosrobo1.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo1);
-    }
-    if (m->flag1_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_interno);
-    }
-    if (m->Supervisor_Install_Rivet_Advance_moving_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Advance_moving_2);
-    }
-    if (m->dadosrobo2.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo2);
-    }
-    if (m->flag2_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_interno);
-    }
-    /* advance: (c, p, q) (ID1412310946) */
-    m->Supervisor_Install_Rivet_advance.full = false;
-    /* moving 1: () (ID1412310970) */
-    m->Supervisor_Install_Rivet_Advance_moving_1.full = true;
-    /* dadosrobo1: p (ID1412310982) */
-    m->dadosrobo1.value = b->p;
-    m->dadosrobo1.full = true;
-    /* flag1_interno: c (ID1412310988) */
-    m->flag1_interno.value = b->c;
-    m->flag1_interno.full = true;
-    /* moving 2: () (ID1412311007) */
-    m->Supervisor_Install_Rivet_Advance_moving_2.full = true;
-    /* dadosrobo2: q (ID1412311019) */
-    m->dadosrobo2.value = b->q;
-    m->dadosrobo2.full = true;
-    /* flag2_interno: c (ID1412311025) */
-    m->flag2_interno.value = b->c;
-    m->flag2_interno.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Rivet.Advance.Both: page `MoveBoth`, transition `Both` (ID1412310948), cell.cpn:20135 */
-typedef struct Supervisor_Install_Rivet_Advance_Both_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Rivet_Advance_Both_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Advance_Both = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Rivet.Advance.Both",
-    .size = sizeof(Supervisor_Install_Rivet_Advance_Both_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Both_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Rivet_Advance_Both_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* there 1: () (ID1412310976) */
-    if (!m->Supervisor_Install_Rivet_Advance_there_1.full) {
-        return true;
-    }
-    /* there 2: () (ID1412311013) */
-    if (!m->Supervisor_Install_Rivet_Advance_there_2.full) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Install_Rivet_contact.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_contact);
-    }
-    /* there 1: () (ID1412310976) */
-    m->Supervisor_Install_Rivet_Advance_there_1.full = false;
-    /* there 2: () (ID1412311013) */
-    m->Supervisor_Install_Rivet_Advance_there_2.full = false;
-    /* contact: () (ID1412310957) */
-    m->Supervisor_Install_Rivet_contact.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Rivet.Advance.Reply 1: page `MoveBoth`, transition `Reply 1` (ID1412310962), cell.cpn:20209 */
-typedef struct Supervisor_Install_Rivet_Advance_Reply_1_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Rivet_Advance_Reply_1_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Advance_Reply_1 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 1",
-    .size = sizeof(Supervisor_Install_Rivet_Advance_Reply_1_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Rivet_Advance_Reply_1_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* moving 1: () (ID1412310972) */
-    if (!m->Supervisor_Install_Rivet_Advance_moving_1.full) {
-        return true;
-    }
-    /* flag1_externo: DONE (ID1412310994) */
-    if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Install_Rivet_Advance_there_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Advance_there_1);
-    }
-    /* moving 1: () (ID1412310972) */
-    m->Supervisor_Install_Rivet_Advance_moving_1.full = false;
-    /* flag1_externo: DONE (ID1412310994) */
-    m->flag1_externo.full = false;
-    /* there 1: () (ID1412310974) */
-    m->Supervisor_Install_Rivet_Advance_there_1.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Rivet.Advance.Reply 2: page `MoveBoth`, transition `Reply 2` (ID1412310999), cell.cpn:20283 */
-typedef struct Supervisor_Install_Rivet_Advance_Reply_2_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Rivet_Advance_Reply_2_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Advance_Reply_2 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 2",
-    .size = sizeof(Supervisor_Install_Rivet_Advance_Reply_2_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Rivet_Advance_Reply_2_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* moving 2: () (ID1412311009) */
-    if (!m->Supervisor_Install_Rivet_Advance_moving_2.full) {
-        return true;
-    }
-    /* flag2_externo: DONE (ID1412311031) */
-    if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Install_Rivet_Advance_there_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Advance_there_2);
-    }
-    /* moving 2: () (ID1412311009) */
-    m->Supervisor_Install_Rivet_Advance_moving_2.full = false;
-    /* flag2_externo: DONE (ID1412311031) */
-    m->flag2_externo.full = false;
-    /* there 2: () (ID1412311011) */
-    m->Supervisor_Install_Rivet_Advance_there_2.full = true;
     return true;
 }
 
@@ -3956,57 +2543,41 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Advance_Reply_2_fire(pn_ctx_t
 typedef struct Supervisor_Install_Rivet_Fasten_Press_binding {
     uint8_t none; /* no variables */
 } Supervisor_Install_Rivet_Fasten_Press_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Press = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Press = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Rivet.Fasten.Press",
-    .size = sizeof(Supervisor_Install_Rivet_Fasten_Press_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
+    .size = sizeof(Supervisor_Install_Rivet_Fasten_Press_binding_t), .count = 0U, .field = NULL };
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Fasten_Press_binding_t b = { 0 };
-    cx->origin = "page `Fasten`, transition `Press` (ID1412310842)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* contact: () (ID1412310883) */
-    if (!m->Supervisor_Install_Rivet_contact.full) {
+    pn_begin(cx, "page `Fasten`, transition `Press` (ID1412310842)", m->now);
+    if (!m->Supervisor_Install_Rivet_contact.full) { /* contact: () (ID1412310883) */
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Fasten`, transition `Press` (ID1412310842)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Fasten`, transition `Press` (ID1412310842)", m->now);
     int64_t flag2_interno_token = val_PRESS;
     pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Supervisor_Install_Rivet_Fasten_pressing.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Fasten_pressing);
+    if (!pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_pressing.full,
+        &s_at_Supervisor_Install_Rivet_Fasten_pressing)
+        || !pn_has_room(cx, m->flag2_interno.full, &s_at_flag2_interno)) {
+        return false;
     }
-    if (m->flag2_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_interno);
-    }
-    /* contact: () (ID1412310883) */
-    m->Supervisor_Install_Rivet_contact.full = false;
-    /* pressing: () (ID1412310885) */
-    m->Supervisor_Install_Rivet_Fasten_pressing.full = true;
-    /* flag2_interno: PRESS (ID1412310927) */
-    m->flag2_interno.value = flag2_interno_token;
+    m->Supervisor_Install_Rivet_contact.full = false; /* contact: () (ID1412310883) */
+    m->Supervisor_Install_Rivet_Fasten_pressing.full = true; /* pressing: () (ID1412310885) */
+    m->flag2_interno.value = flag2_interno_token; /* flag2_interno: PRESS (ID1412310927) */
     m->flag2_interno.full = true;
     return true;
 }
@@ -4015,63 +2586,46 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_fire(pn_ctx_t *c
 typedef struct Supervisor_Install_Rivet_Fasten_Drill_binding {
     uint8_t none; /* no variables */
 } Supervisor_Install_Rivet_Fasten_Drill_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Drill = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Drill = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill",
-    .size = sizeof(Supervisor_Install_Rivet_Fasten_Drill_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
+    .size = sizeof(Supervisor_Install_Rivet_Fasten_Drill_binding_t), .count = 0U, .field = NULL };
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Fasten_Drill_binding_t b = { 0 };
-    cx->origin = "page `Fasten`, transition `Drill` (ID1412310850)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* pressing: () (ID1412310887) */
-    if (!m->Supervisor_Install_Rivet_Fasten_pressing.full) {
+    pn_begin(cx, "page `Fasten`, transition `Drill` (ID1412310850)", m->now);
+    if (!m->Supervisor_Install_Rivet_Fasten_pressing.full) { /* pressing: () (ID1412310887) */
         return true;
     }
     /* flag2_externo: DONE (ID1412310931) */
     if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Fasten`, transition `Drill` (ID1412310850)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Fasten`, transition `Drill` (ID1412310850)", m->now);
     int64_t flag1_interno_token = val_DRILL;
     pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Supervisor_Install_Rivet_Fasten_drilling.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Fasten_drilling);
+    if (!pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_drilling.full,
+        &s_at_Supervisor_Install_Rivet_Fasten_drilling)
+        || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)) {
+        return false;
     }
-    if (m->flag1_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_interno);
-    }
-    /* pressing: () (ID1412310887) */
-    m->Supervisor_Install_Rivet_Fasten_pressing.full = false;
-    /* flag2_externo: DONE (ID1412310931) */
-    m->flag2_externo.full = false;
-    /* drilling: () (ID1412310889) */
-    m->Supervisor_Install_Rivet_Fasten_drilling.full = true;
-    /* flag1_interno: DRILL (ID1412310919) */
-    m->flag1_interno.value = flag1_interno_token;
+    m->Supervisor_Install_Rivet_Fasten_pressing.full = false; /* pressing: () (ID1412310887) */
+    m->flag2_externo.full = false; /* flag2_externo: DONE (ID1412310931) */
+    m->Supervisor_Install_Rivet_Fasten_drilling.full = true; /* drilling: () (ID1412310889) */
+    m->flag1_interno.value = flag1_interno_token; /* flag1_interno: DRILL (ID1412310919) */
     m->flag1_interno.full = true;
     return true;
 }
@@ -4080,63 +2634,46 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_fire(pn_ctx_t *c
 typedef struct Supervisor_Install_Rivet_Fasten_Insert_binding {
     uint8_t none; /* no variables */
 } Supervisor_Install_Rivet_Fasten_Insert_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Insert = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Insert = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Rivet.Fasten.Insert",
-    .size = sizeof(Supervisor_Install_Rivet_Fasten_Insert_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
+    .size = sizeof(Supervisor_Install_Rivet_Fasten_Insert_binding_t), .count = 0U, .field = NULL };
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Insert_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Fasten_Insert_binding_t b = { 0 };
-    cx->origin = "page `Fasten`, transition `Insert` (ID1412310858)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* drilling: () (ID1412310891) */
-    if (!m->Supervisor_Install_Rivet_Fasten_drilling.full) {
+    pn_begin(cx, "page `Fasten`, transition `Insert` (ID1412310858)", m->now);
+    if (!m->Supervisor_Install_Rivet_Fasten_drilling.full) { /* drilling: () (ID1412310891) */
         return true;
     }
     /* flag1_externo: DONE (ID1412310923) */
     if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Insert_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Insert_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Fasten`, transition `Insert` (ID1412310858)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Fasten`, transition `Insert` (ID1412310858)", m->now);
     int64_t flag1_interno_token = val_INSERT;
     pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Supervisor_Install_Rivet_Fasten_inserting.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Fasten_inserting);
+    if (!pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_inserting.full,
+        &s_at_Supervisor_Install_Rivet_Fasten_inserting)
+        || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)) {
+        return false;
     }
-    if (m->flag1_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_interno);
-    }
-    /* drilling: () (ID1412310891) */
-    m->Supervisor_Install_Rivet_Fasten_drilling.full = false;
-    /* flag1_externo: DONE (ID1412310923) */
-    m->flag1_externo.full = false;
-    /* inserting: () (ID1412310893) */
-    m->Supervisor_Install_Rivet_Fasten_inserting.full = true;
-    /* flag1_interno: INSERT (ID1412310921) */
-    m->flag1_interno.value = flag1_interno_token;
+    m->Supervisor_Install_Rivet_Fasten_drilling.full = false; /* drilling: () (ID1412310891) */
+    m->flag1_externo.full = false; /* flag1_externo: DONE (ID1412310923) */
+    m->Supervisor_Install_Rivet_Fasten_inserting.full = true; /* inserting: () (ID1412310893) */
+    m->flag1_interno.value = flag1_interno_token; /* flag1_interno: INSERT (ID1412310921) */
     m->flag1_interno.full = true;
     return true;
 }
@@ -4145,69 +2682,51 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Insert_fire(pn_ctx_t *
 typedef struct Supervisor_Install_Rivet_Fasten_Release_binding {
     int64_t e;
 } Supervisor_Install_Rivet_Fasten_Release_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Install_Rivet_Fasten_Release[] = {
     { "e", &s_REPLY, offsetof(Supervisor_Install_Rivet_Fasten_Release_binding_t, e), false },
 };
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Release = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Release = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Rivet.Fasten.Release",
-    .size = sizeof(Supervisor_Install_Rivet_Fasten_Release_binding_t),
-    .count = 1U,
-    .field = s_variables_Supervisor_Install_Rivet_Fasten_Release,
-};
+    .size = sizeof(Supervisor_Install_Rivet_Fasten_Release_binding_t), .count = 1U,
+    .field = s_variables_Supervisor_Install_Rivet_Fasten_Release };
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Release_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Fasten_Release_binding_t b = { 0 };
-    cx->origin = "page `Fasten`, transition `Release` (ID1412310866)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* inserting: () (ID1412310895) */
-    if (!m->Supervisor_Install_Rivet_Fasten_inserting.full) {
+    pn_begin(cx, "page `Fasten`, transition `Release` (ID1412310866)", m->now);
+    if (!m->Supervisor_Install_Rivet_Fasten_inserting.full) { /* inserting: () (ID1412310895) */
         return true;
     }
-    /* flag1_externo: e (ID1412310925) */
-    if (!m->flag1_externo.full) {
+    if (!m->flag1_externo.full) { /* flag1_externo: e (ID1412310925) */
         return true;
     }
     b.e = m->flag1_externo.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Release_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Release_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Install_Rivet_Fasten_Release_binding_t *const b = binding;
-    cx->origin = "page `Fasten`, transition `Release` (ID1412310866)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Fasten`, transition `Release` (ID1412310866)", m->now);
     int64_t flag2_interno_token = val_RELEASE;
     pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Supervisor_Install_Rivet_Fasten_releasing.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Fasten_releasing);
+    if (!pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_releasing.full,
+        &s_at_Supervisor_Install_Rivet_Fasten_releasing)
+        || !pn_has_room(cx, m->flag2_interno.full, &s_at_flag2_interno)) {
+        return false;
     }
-    if (m->flag2_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_interno);
-    }
-    /* inserting: () (ID1412310895) */
-    m->Supervisor_Install_Rivet_Fasten_inserting.full = false;
-    /* flag1_externo: e (ID1412310925) */
-    m->flag1_externo.full = false;
-    /* releasing: e (ID1412310897) */
-    m->Supervisor_Install_Rivet_Fasten_releasing.value = b->e;
+    m->Supervisor_Install_Rivet_Fasten_inserting.full = false; /* inserting: () (ID1412310895) */
+    m->flag1_externo.full = false; /* flag1_externo: e (ID1412310925) */
+    m->Supervisor_Install_Rivet_Fasten_releasing.value = b->e; /* releasing: e (ID1412310897) */
     m->Supervisor_Install_Rivet_Fasten_releasing.full = true;
-    /* flag2_interno: RELEASE (ID1412310929) */
-    m->flag2_interno.value = flag2_interno_token;
+    m->flag2_interno.value = flag2_interno_token; /* flag2_interno: RELEASE (ID1412310929) */
     m->flag2_interno.full = true;
     return true;
 }
@@ -4217,64 +2736,50 @@ typedef struct Supervisor_Install_Rivet_Fasten_Finish_binding {
     int64_t e;
     int64_t f;
 } Supervisor_Install_Rivet_Fasten_Finish_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Install_Rivet_Fasten_Finish[] = {
     { "e", &s_REPLY, offsetof(Supervisor_Install_Rivet_Fasten_Finish_binding_t, e), false },
     { "f", &s_REPLY, offsetof(Supervisor_Install_Rivet_Fasten_Finish_binding_t, f), false },
 };
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Finish = {
-    .kind = PN_KIND_RECORD,
+static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Finish = { .kind = PN_KIND_RECORD,
     .name = "Cell.Supervisor.Install.Rivet.Fasten.Finish",
-    .size = sizeof(Supervisor_Install_Rivet_Fasten_Finish_binding_t),
-    .count = 2U,
-    .field = s_variables_Supervisor_Install_Rivet_Fasten_Finish,
-};
+    .size = sizeof(Supervisor_Install_Rivet_Fasten_Finish_binding_t), .count = 2U,
+    .field = s_variables_Supervisor_Install_Rivet_Fasten_Finish };
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Fasten_Finish_binding_t b = { 0 };
-    cx->origin = "page `Fasten`, transition `Finish` (ID1412310874)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* releasing: e (ID1412310899) */
-    if (!m->Supervisor_Install_Rivet_Fasten_releasing.full) {
+    pn_begin(cx, "page `Fasten`, transition `Finish` (ID1412310874)", m->now);
+    if (!m->Supervisor_Install_Rivet_Fasten_releasing.full) { /* releasing: e (ID1412310899) */
         return true;
     }
     b.e = m->Supervisor_Install_Rivet_Fasten_releasing.value;
-    /* flag2_externo: f (ID1412310933) */
-    if (!m->flag2_externo.full) {
+    if (!m->flag2_externo.full) { /* flag2_externo: f (ID1412310933) */
         return true;
     }
     b.f = m->flag2_externo.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Install_Rivet_Fasten_Finish_binding_t *const b = binding;
-    cx->origin = "page `Fasten`, transition `Finish` (ID1412310874)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Fasten`, transition `Finish` (ID1412310874)", m->now);
     int64_t Supervisor_Install_Rivet_fastened_token = ml_worse(b->e, b->f);
     pn_bag_check(cx, &s_at_Supervisor_Install_Rivet_fastened,
         &Supervisor_Install_Rivet_fastened_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Supervisor_Install_Rivet_fastened.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_fastened);
+    if (!pn_has_room(cx, m->Supervisor_Install_Rivet_fastened.full,
+        &s_at_Supervisor_Install_Rivet_fastened)) {
+        return false;
     }
-    /* releasing: e (ID1412310899) */
-    m->Supervisor_Install_Rivet_Fasten_releasing.full = false;
-    /* flag2_externo: f (ID1412310933) */
-    m->flag2_externo.full = false;
+    m->Supervisor_Install_Rivet_Fasten_releasing.full = false; /* releasing: e (ID1412310899) */
+    m->flag2_externo.full = false; /* flag2_externo: f (ID1412310933) */
     /* fastened: worse (e, f) (ID1412310901) */
     m->Supervisor_Install_Rivet_fastened.value = Supervisor_Install_Rivet_fastened_token;
     m->Supervisor_Install_Rivet_fastened.full = true;
@@ -4285,62 +2790,47 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_fire(pn_ctx_t *
 typedef struct Supervisor_Install_Rivet_Fasten_Press_failed_binding {
     uint8_t none; /* no variables */
 } Supervisor_Install_Rivet_Fasten_Press_failed_binding_t;
-
 static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Press_failed = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Rivet.Fasten.Press failed",
-    .size = sizeof(Supervisor_Install_Rivet_Fasten_Press_failed_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
+    .kind = PN_KIND_RECORD, .name = "Cell.Supervisor.Install.Rivet.Fasten.Press failed",
+    .size = sizeof(Supervisor_Install_Rivet_Fasten_Press_failed_binding_t), .count = 0U,
+    .field = NULL };
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_failed_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Fasten_Press_failed_binding_t b = { 0 };
-    cx->origin = "page `Fasten`, transition `Press failed` (ID1412320087)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* pressing: () (ID1412320097) */
-    if (!m->Supervisor_Install_Rivet_Fasten_pressing.full) {
+    pn_begin(cx, "page `Fasten`, transition `Press failed` (ID1412320087)", m->now);
+    if (!m->Supervisor_Install_Rivet_Fasten_pressing.full) { /* pressing: () (ID1412320097) */
         return true;
     }
     /* flag2_externo: FAILED (ID1412320101) */
     if (!m->flag2_externo.full || (m->flag2_externo.value != val_FAILED)) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_failed_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_failed_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Fasten`, transition `Press failed` (ID1412320087)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Fasten`, transition `Press failed` (ID1412320087)", m->now);
     int64_t flag2_interno_token = val_RELEASE;
     pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
     const int64_t Supervisor_Install_Rivet_Fasten_releasing_token = val_FAILED;
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->flag2_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_interno);
+    if (!pn_has_room(cx, m->flag2_interno.full, &s_at_flag2_interno)
+        || !pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_releasing.full,
+        &s_at_Supervisor_Install_Rivet_Fasten_releasing)) {
+        return false;
     }
-    if (m->Supervisor_Install_Rivet_Fasten_releasing.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Fasten_releasing);
-    }
-    /* pressing: () (ID1412320097) */
-    m->Supervisor_Install_Rivet_Fasten_pressing.full = false;
-    /* flag2_externo: FAILED (ID1412320101) */
-    m->flag2_externo.full = false;
-    /* flag2_interno: RELEASE (ID1412320103) */
-    m->flag2_interno.value = flag2_interno_token;
+    m->Supervisor_Install_Rivet_Fasten_pressing.full = false; /* pressing: () (ID1412320097) */
+    m->flag2_externo.full = false; /* flag2_externo: FAILED (ID1412320101) */
+    m->flag2_interno.value = flag2_interno_token; /* flag2_interno: RELEASE (ID1412320103) */
     m->flag2_interno.full = true;
     /* releasing: FAILED (ID1412320105) */
     m->Supervisor_Install_Rivet_Fasten_releasing.value =
@@ -4353,62 +2843,47 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_failed_fire(pn_c
 typedef struct Supervisor_Install_Rivet_Fasten_Drill_failed_binding {
     uint8_t none; /* no variables */
 } Supervisor_Install_Rivet_Fasten_Drill_failed_binding_t;
-
 static const pn_type_t s_binding_Supervisor_Install_Rivet_Fasten_Drill_failed = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill failed",
-    .size = sizeof(Supervisor_Install_Rivet_Fasten_Drill_failed_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
+    .kind = PN_KIND_RECORD, .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill failed",
+    .size = sizeof(Supervisor_Install_Rivet_Fasten_Drill_failed_binding_t), .count = 0U,
+    .field = NULL };
 
 PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_failed_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Install_Rivet_Fasten_Drill_failed_binding_t b = { 0 };
-    cx->origin = "page `Fasten`, transition `Drill failed` (ID1412320092)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* drilling: () (ID1412320099) */
-    if (!m->Supervisor_Install_Rivet_Fasten_drilling.full) {
+    pn_begin(cx, "page `Fasten`, transition `Drill failed` (ID1412320092)", m->now);
+    if (!m->Supervisor_Install_Rivet_Fasten_drilling.full) { /* drilling: () (ID1412320099) */
         return true;
     }
     /* flag1_externo: FAILED (ID1412320107) */
     if (!m->flag1_externo.full || (m->flag1_externo.value != val_FAILED)) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_failed_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_failed_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Fasten`, transition `Drill failed` (ID1412320092)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Fasten`, transition `Drill failed` (ID1412320092)", m->now);
     int64_t flag2_interno_token = val_RELEASE;
     pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
     const int64_t Supervisor_Install_Rivet_Fasten_releasing_token = val_FAILED;
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->flag2_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_interno);
+    if (!pn_has_room(cx, m->flag2_interno.full, &s_at_flag2_interno)
+        || !pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_releasing.full,
+        &s_at_Supervisor_Install_Rivet_Fasten_releasing)) {
+        return false;
     }
-    if (m->Supervisor_Install_Rivet_Fasten_releasing.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Fasten_releasing);
-    }
-    /* drilling: () (ID1412320099) */
-    m->Supervisor_Install_Rivet_Fasten_drilling.full = false;
-    /* flag1_externo: FAILED (ID1412320107) */
-    m->flag1_externo.full = false;
-    /* flag2_interno: RELEASE (ID1412320109) */
-    m->flag2_interno.value = flag2_interno_token;
+    m->Supervisor_Install_Rivet_Fasten_drilling.full = false; /* drilling: () (ID1412320099) */
+    m->flag1_externo.full = false; /* flag1_externo: FAILED (ID1412320107) */
+    m->flag2_interno.value = flag2_interno_token; /* flag2_interno: RELEASE (ID1412320109) */
     m->flag2_interno.full = true;
     /* releasing: FAILED (ID1412320111) */
     m->Supervisor_Install_Rivet_Fasten_releasing.value =
@@ -4417,544 +2892,32 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_failed_fire(pn_c
     return true;
 }
 
-/* transition Cell.Supervisor.Install.Rivet.Retract.Command: page `MoveBoth`, transition `Command` (ID1412310941), cell.cpn:20061 */
-typedef struct Supervisor_Install_Rivet_Retract_Command_binding {
-    int64_t c;
-    POSE_t p;
-    POSE_t q;
-} Supervisor_Install_Rivet_Retract_Command_binding_t;
-
-static const pn_field_t s_variables_Supervisor_Install_Rivet_Retract_Command[] = {
-    { "c", &s_COMMAND, offsetof(Supervisor_Install_Rivet_Retract_Command_binding_t, c), false },
-    { "p", &s_POSE, offsetof(Supervisor_Install_Rivet_Retract_Command_binding_t, p), false },
-    { "q", &s_POSE, offsetof(Supervisor_Install_Rivet_Retract_Command_binding_t, q), false },
-};
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Retract_Command = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Rivet.Retract.Command",
-    .size = sizeof(Supervisor_Install_Rivet_Retract_Command_binding_t),
-    .count = 3U,
-    .field = s_variables_Supervisor_Install_Rivet_Retract_Command,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Command_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Rivet_Retract_Command_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* retract: (c, p, q) (ID1412310946) */
-    if (!m->Supervisor_Install_Rivet_retract.full) {
-        return true;
-    }
-    b.c = m->Supervisor_Install_Rivet_retract.value.c1;
-    b.p = m->Supervisor_Install_Rivet_retract.value.c2;
-    b.q = m->Supervisor_Install_Rivet_retract.value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Supervisor_Install_Rivet_Retract_Command_binding_t *const b = binding;
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Install_Rivet_Retract_moving_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Retract_moving_1);
-    }
-    if (m->dadosrobo1.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo1);
-    }
-    if (m->flag1_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_interno);
-    }
-    if (m->Supervisor_Install_Rivet_Retract_moving_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Retract_moving_2);
-    }
-    if (m->dadosrobo2.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo2);
-    }
-    if (m->flag2_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_interno);
-    }
-    /* retract: (c, p, q) (ID1412310946) */
-    m->Supervisor_Install_Rivet_retract.full = false;
-    /* moving 1: () (ID1412310970) */
-    m->Supervisor_Install_Rivet_Retract_moving_1.full = true;
-    /* dadosrobo1: p (ID1412310982) */
-    m->dadosrobo1.value = b->p;
-    m->dadosrobo1.full = true;
-    /* flag1_interno: c (ID1412310988) */
-    m->flag1_interno.value = b->c;
-    m->flag1_interno.full = true;
-    /* moving 2: () (ID1412311007) */
-    m->Supervisor_Install_Rivet_Retract_moving_2.full = true;
-    /* dadosrobo2: q (ID1412311019) */
-    m->dadosrobo2.value = b->q;
-    m->dadosrobo2.full = true;
-    /* flag2_interno: c (ID1412311025) */
-    m->flag2_interno.value = b->c;
-    m->flag2_interno.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Rivet.Retract.Both: page `MoveBoth`, transition `Both` (ID1412310948), cell.cpn:20135 */
-typedef struct Supervisor_Install_Rivet_Retract_Both_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Rivet_Retract_Both_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Retract_Both = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Rivet.Retract.Both",
-    .size = sizeof(Supervisor_Install_Rivet_Retract_Both_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Both_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Rivet_Retract_Both_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* there 1: () (ID1412310976) */
-    if (!m->Supervisor_Install_Rivet_Retract_there_1.full) {
-        return true;
-    }
-    /* there 2: () (ID1412311013) */
-    if (!m->Supervisor_Install_Rivet_Retract_there_2.full) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Install_riveted.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_riveted);
-    }
-    /* there 1: () (ID1412310976) */
-    m->Supervisor_Install_Rivet_Retract_there_1.full = false;
-    /* there 2: () (ID1412311013) */
-    m->Supervisor_Install_Rivet_Retract_there_2.full = false;
-    /* riveted: () (ID1412310957) */
-    m->Supervisor_Install_riveted.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Rivet.Retract.Reply 1: page `MoveBoth`, transition `Reply 1` (ID1412310962), cell.cpn:20209 */
-typedef struct Supervisor_Install_Rivet_Retract_Reply_1_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Rivet_Retract_Reply_1_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Retract_Reply_1 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 1",
-    .size = sizeof(Supervisor_Install_Rivet_Retract_Reply_1_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Rivet_Retract_Reply_1_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* moving 1: () (ID1412310972) */
-    if (!m->Supervisor_Install_Rivet_Retract_moving_1.full) {
-        return true;
-    }
-    /* flag1_externo: DONE (ID1412310994) */
-    if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Install_Rivet_Retract_there_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Retract_there_1);
-    }
-    /* moving 1: () (ID1412310972) */
-    m->Supervisor_Install_Rivet_Retract_moving_1.full = false;
-    /* flag1_externo: DONE (ID1412310994) */
-    m->flag1_externo.full = false;
-    /* there 1: () (ID1412310974) */
-    m->Supervisor_Install_Rivet_Retract_there_1.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Rivet.Retract.Reply 2: page `MoveBoth`, transition `Reply 2` (ID1412310999), cell.cpn:20283 */
-typedef struct Supervisor_Install_Rivet_Retract_Reply_2_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Rivet_Retract_Reply_2_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Rivet_Retract_Reply_2 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 2",
-    .size = sizeof(Supervisor_Install_Rivet_Retract_Reply_2_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Rivet_Retract_Reply_2_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* moving 2: () (ID1412311009) */
-    if (!m->Supervisor_Install_Rivet_Retract_moving_2.full) {
-        return true;
-    }
-    /* flag2_externo: DONE (ID1412311031) */
-    if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Rivet_Retract_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Install_Rivet_Retract_there_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Rivet_Retract_there_2);
-    }
-    /* moving 2: () (ID1412311009) */
-    m->Supervisor_Install_Rivet_Retract_moving_2.full = false;
-    /* flag2_externo: DONE (ID1412311031) */
-    m->flag2_externo.full = false;
-    /* there 2: () (ID1412311011) */
-    m->Supervisor_Install_Rivet_Retract_there_2.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Return.Command: page `MoveBoth`, transition `Command` (ID1412310941), cell.cpn:20061 */
-typedef struct Supervisor_Install_Return_Command_binding {
-    int64_t c;
-    POSE_t p;
-    POSE_t q;
-} Supervisor_Install_Return_Command_binding_t;
-
-static const pn_field_t s_variables_Supervisor_Install_Return_Command[] = {
-    { "c", &s_COMMAND, offsetof(Supervisor_Install_Return_Command_binding_t, c), false },
-    { "p", &s_POSE, offsetof(Supervisor_Install_Return_Command_binding_t, p), false },
-    { "q", &s_POSE, offsetof(Supervisor_Install_Return_Command_binding_t, q), false },
-};
-
-static const pn_type_t s_binding_Supervisor_Install_Return_Command = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Return.Command",
-    .size = sizeof(Supervisor_Install_Return_Command_binding_t),
-    .count = 3U,
-    .field = s_variables_Supervisor_Install_Return_Command,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Return_Command_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Return_Command_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* return: (c, p, q) (ID1412310946) */
-    if (!m->Supervisor_Install_return.full) {
-        return true;
-    }
-    b.c = m->Supervisor_Install_return.value.c1;
-    b.p = m->Supervisor_Install_return.value.c2;
-    b.q = m->Supervisor_Install_return.value.c3;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Return_Command_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Supervisor_Install_Return_Command_binding_t *const b = binding;
-    cx->origin = "page `MoveBoth`, transition `Command` (ID1412310941)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Install_Return_moving_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Return_moving_1);
-    }
-    if (m->dadosrobo1.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo1);
-    }
-    if (m->flag1_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_interno);
-    }
-    if (m->Supervisor_Install_Return_moving_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Return_moving_2);
-    }
-    if (m->dadosrobo2.full) {
-        return pn_bag_fail_full(cx, &s_at_dadosrobo2);
-    }
-    if (m->flag2_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_interno);
-    }
-    /* return: (c, p, q) (ID1412310946) */
-    m->Supervisor_Install_return.full = false;
-    /* moving 1: () (ID1412310970) */
-    m->Supervisor_Install_Return_moving_1.full = true;
-    /* dadosrobo1: p (ID1412310982) */
-    m->dadosrobo1.value = b->p;
-    m->dadosrobo1.full = true;
-    /* flag1_interno: c (ID1412310988) */
-    m->flag1_interno.value = b->c;
-    m->flag1_interno.full = true;
-    /* moving 2: () (ID1412311007) */
-    m->Supervisor_Install_Return_moving_2.full = true;
-    /* dadosrobo2: q (ID1412311019) */
-    m->dadosrobo2.value = b->q;
-    m->dadosrobo2.full = true;
-    /* flag2_interno: c (ID1412311025) */
-    m->flag2_interno.value = b->c;
-    m->flag2_interno.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Return.Both: page `MoveBoth`, transition `Both` (ID1412310948), cell.cpn:20135 */
-typedef struct Supervisor_Install_Return_Both_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Return_Both_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Return_Both = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Return.Both",
-    .size = sizeof(Supervisor_Install_Return_Both_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Return_Both_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Return_Both_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* there 1: () (ID1412310976) */
-    if (!m->Supervisor_Install_Return_there_1.full) {
-        return true;
-    }
-    /* there 2: () (ID1412311013) */
-    if (!m->Supervisor_Install_Return_there_2.full) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Return_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Both` (ID1412310948)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_ended.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_ended);
-    }
-    /* there 1: () (ID1412310976) */
-    m->Supervisor_Install_Return_there_1.full = false;
-    /* there 2: () (ID1412311013) */
-    m->Supervisor_Install_Return_there_2.full = false;
-    /* ended: () (ID1412310957) */
-    m->Supervisor_ended.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Return.Reply 1: page `MoveBoth`, transition `Reply 1` (ID1412310962), cell.cpn:20209 */
-typedef struct Supervisor_Install_Return_Reply_1_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Return_Reply_1_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Return_Reply_1 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Return.Reply 1",
-    .size = sizeof(Supervisor_Install_Return_Reply_1_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Return_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Return_Reply_1_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* moving 1: () (ID1412310972) */
-    if (!m->Supervisor_Install_Return_moving_1.full) {
-        return true;
-    }
-    /* flag1_externo: DONE (ID1412310994) */
-    if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Return_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Install_Return_there_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Return_there_1);
-    }
-    /* moving 1: () (ID1412310972) */
-    m->Supervisor_Install_Return_moving_1.full = false;
-    /* flag1_externo: DONE (ID1412310994) */
-    m->flag1_externo.full = false;
-    /* there 1: () (ID1412310974) */
-    m->Supervisor_Install_Return_there_1.full = true;
-    return true;
-}
-
-/* transition Cell.Supervisor.Install.Return.Reply 2: page `MoveBoth`, transition `Reply 2` (ID1412310999), cell.cpn:20283 */
-typedef struct Supervisor_Install_Return_Reply_2_binding {
-    uint8_t none; /* no variables */
-} Supervisor_Install_Return_Reply_2_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Install_Return_Reply_2 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Install.Return.Reply 2",
-    .size = sizeof(Supervisor_Install_Return_Reply_2_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
-
-PN_NET_SEARCH static bool Supervisor_Install_Return_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Supervisor_Install_Return_Reply_2_binding_t b = { 0 };
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* moving 2: () (ID1412311009) */
-    if (!m->Supervisor_Install_Return_moving_2.full) {
-        return true;
-    }
-    /* flag2_externo: DONE (ID1412311031) */
-    if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Supervisor_Install_Return_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Install_Return_there_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Install_Return_there_2);
-    }
-    /* moving 2: () (ID1412311009) */
-    m->Supervisor_Install_Return_moving_2.full = false;
-    /* flag2_externo: DONE (ID1412311031) */
-    m->flag2_externo.full = false;
-    /* there 2: () (ID1412311011) */
-    m->Supervisor_Install_Return_there_2.full = true;
-    return true;
-}
-
 /* transition Cell.Supervisor.Home.Send home: page `Home`, transition `Send home` (ID1412311039), cell.cpn:21759 */
 typedef struct Supervisor_Home_Send_home_binding {
     uint8_t none; /* no variables */
 } Supervisor_Home_Send_home_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Home_Send_home = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Home.Send home",
-    .size = sizeof(Supervisor_Home_Send_home_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
+static const pn_type_t s_binding_Supervisor_Home_Send_home = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Home.Send home", .size = sizeof(Supervisor_Home_Send_home_binding_t),
+    .count = 0U, .field = NULL };
 
 PN_NET_SEARCH static bool Supervisor_Home_Send_home_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Home_Send_home_binding_t b = { 0 };
-    cx->origin = "page `Home`, transition `Send home` (ID1412311039)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* ended: () (ID1412311044) */
-    if (!m->Supervisor_ended.full) {
+    pn_begin(cx, "page `Home`, transition `Send home` (ID1412311039)", m->now);
+    if (!m->Supervisor_ended.full) { /* ended: () (ID1412311044) */
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Home_Send_home_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Home_Send_home_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Home`, transition `Send home` (ID1412311039)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Home`, transition `Send home` (ID1412311039)", m->now);
     int64_t flag1_interno_token = val_HOME;
     pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
     int64_t flag2_interno_token = val_HOME;
@@ -4962,29 +2925,18 @@ PN_NET_SEARCH static bool Supervisor_Home_Send_home_fire(pn_ctx_t *cx, void *mar
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Supervisor_Home_leaving_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Home_leaving_1);
+    if (!pn_has_room(cx, m->Supervisor_Home_leaving_1.full, &s_at_Supervisor_Home_leaving_1)
+        || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)
+        || !pn_has_room(cx, m->Supervisor_Home_leaving_2.full, &s_at_Supervisor_Home_leaving_2)
+        || !pn_has_room(cx, m->flag2_interno.full, &s_at_flag2_interno)) {
+        return false;
     }
-    if (m->flag1_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_interno);
-    }
-    if (m->Supervisor_Home_leaving_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Home_leaving_2);
-    }
-    if (m->flag2_interno.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_interno);
-    }
-    /* ended: () (ID1412311044) */
-    m->Supervisor_ended.full = false;
-    /* leaving 1: () (ID1412311068) */
-    m->Supervisor_Home_leaving_1.full = true;
-    /* flag1_interno: HOME (ID1412311080) */
-    m->flag1_interno.value = flag1_interno_token;
+    m->Supervisor_ended.full = false; /* ended: () (ID1412311044) */
+    m->Supervisor_Home_leaving_1.full = true; /* leaving 1: () (ID1412311068) */
+    m->flag1_interno.value = flag1_interno_token; /* flag1_interno: HOME (ID1412311080) */
     m->flag1_interno.full = true;
-    /* leaving 2: () (ID1412311099) */
-    m->Supervisor_Home_leaving_2.full = true;
-    /* flag2_interno: HOME (ID1412311111) */
-    m->flag2_interno.value = flag2_interno_token;
+    m->Supervisor_Home_leaving_2.full = true; /* leaving 2: () (ID1412311099) */
+    m->flag2_interno.value = flag2_interno_token; /* flag2_interno: HOME (ID1412311111) */
     m->flag2_interno.full = true;
     return true;
 }
@@ -4993,53 +2945,38 @@ PN_NET_SEARCH static bool Supervisor_Home_Send_home_fire(pn_ctx_t *cx, void *mar
 typedef struct Supervisor_Home_Both_binding {
     int64_t e;
 } Supervisor_Home_Both_binding_t;
-
 static const pn_field_t s_variables_Supervisor_Home_Both[] = {
     { "e", &s_REPLY, offsetof(Supervisor_Home_Both_binding_t, e), false },
 };
-
-static const pn_type_t s_binding_Supervisor_Home_Both = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Home.Both",
-    .size = sizeof(Supervisor_Home_Both_binding_t),
-    .count = 1U,
-    .field = s_variables_Supervisor_Home_Both,
-};
+static const pn_type_t s_binding_Supervisor_Home_Both = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Home.Both", .size = sizeof(Supervisor_Home_Both_binding_t),
+    .count = 1U, .field = s_variables_Supervisor_Home_Both };
 
 PN_NET_SEARCH static bool Supervisor_Home_Both_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Home_Both_binding_t b = { 0 };
-    cx->origin = "page `Home`, transition `Both` (ID1412311046)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* home 1: () (ID1412311074) */
-    if (!m->Supervisor_Home_home_1.full) {
+    pn_begin(cx, "page `Home`, transition `Both` (ID1412311046)", m->now);
+    if (!m->Supervisor_Home_home_1.full) { /* home 1: () (ID1412311074) */
         return true;
     }
-    /* home 2: () (ID1412311105) */
-    if (!m->Supervisor_Home_home_2.full) {
+    if (!m->Supervisor_Home_home_2.full) { /* home 2: () (ID1412311105) */
         return true;
     }
-    /* result: e (ID1412320124) */
-    if (!m->Supervisor_result.full) {
+    if (!m->Supervisor_result.full) { /* result: e (ID1412320124) */
         return true;
     }
     b.e = m->Supervisor_result.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Home_Both_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Home_Both_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Supervisor_Home_Both_binding_t *const b = binding;
-    cx->origin = "page `Home`, transition `Both` (ID1412311046)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Home`, transition `Both` (ID1412311046)", m->now);
     pn_unit_t Supervisor_Finished_token = PN_UNIT;
     uint32_t Supervisor_Finished_tokens = 0U;
     pn_unit_t Supervisor_Failed_token = PN_UNIT;
@@ -5054,20 +2991,17 @@ PN_NET_SEARCH static bool Supervisor_Home_Both_fire(pn_ctx_t *cx, void *marking,
         Supervisor_Failed_token = PN_UNIT;
         Supervisor_Failed_tokens = 1U;
     }
-    if ((Supervisor_Finished_tokens > 1U)
-        || ((Supervisor_Finished_tokens == 1U) && m->Supervisor_Finished.full)) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Finished);
+    if (!pn_has_room(cx, (Supervisor_Finished_tokens > 1U)
+        || ((Supervisor_Finished_tokens == 1U) && m->Supervisor_Finished.full),
+        &s_at_Supervisor_Finished)
+        || !pn_has_room(cx, (Supervisor_Failed_tokens > 1U)
+        || ((Supervisor_Failed_tokens == 1U) && m->Supervisor_Failed.full),
+        &s_at_Supervisor_Failed)) {
+        return false;
     }
-    if ((Supervisor_Failed_tokens > 1U)
-        || ((Supervisor_Failed_tokens == 1U) && m->Supervisor_Failed.full)) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Failed);
-    }
-    /* result: e (ID1412320124) */
-    m->Supervisor_result.full = false;
-    /* home 1: () (ID1412311074) */
-    m->Supervisor_Home_home_1.full = false;
-    /* home 2: () (ID1412311105) */
-    m->Supervisor_Home_home_2.full = false;
+    m->Supervisor_result.full = false; /* result: e (ID1412320124) */
+    m->Supervisor_Home_home_1.full = false; /* home 1: () (ID1412311074) */
+    m->Supervisor_Home_home_2.full = false; /* home 2: () (ID1412311105) */
     if (Supervisor_Finished_tokens > 0U) {
         m->Supervisor_Finished.value = Supervisor_Finished_token;
         m->Supervisor_Finished.full = true;
@@ -5083,53 +3017,38 @@ PN_NET_SEARCH static bool Supervisor_Home_Both_fire(pn_ctx_t *cx, void *marking,
 typedef struct Supervisor_Home_Reply_1_binding {
     uint8_t none; /* no variables */
 } Supervisor_Home_Reply_1_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Home_Reply_1 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Home.Reply 1",
-    .size = sizeof(Supervisor_Home_Reply_1_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
+static const pn_type_t s_binding_Supervisor_Home_Reply_1 = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Home.Reply 1", .size = sizeof(Supervisor_Home_Reply_1_binding_t),
+    .count = 0U, .field = NULL };
 
 PN_NET_SEARCH static bool Supervisor_Home_Reply_1_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Home_Reply_1_binding_t b = { 0 };
-    cx->origin = "page `Home`, transition `Reply 1` (ID1412311060)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* leaving 1: () (ID1412311070) */
-    if (!m->Supervisor_Home_leaving_1.full) {
+    pn_begin(cx, "page `Home`, transition `Reply 1` (ID1412311060)", m->now);
+    if (!m->Supervisor_Home_leaving_1.full) { /* leaving 1: () (ID1412311070) */
         return true;
     }
     /* flag1_externo: DONE (ID1412311086) */
     if (!m->flag1_externo.full || (m->flag1_externo.value != val_DONE)) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Home_Reply_1_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Home_Reply_1_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Home`, transition `Reply 1` (ID1412311060)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Home_home_1.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Home_home_1);
+    pn_begin(cx, "page `Home`, transition `Reply 1` (ID1412311060)", m->now);
+    if (!pn_has_room(cx, m->Supervisor_Home_home_1.full, &s_at_Supervisor_Home_home_1)) {
+        return false;
     }
-    /* leaving 1: () (ID1412311070) */
-    m->Supervisor_Home_leaving_1.full = false;
-    /* flag1_externo: DONE (ID1412311086) */
-    m->flag1_externo.full = false;
-    /* home 1: () (ID1412311072) */
-    m->Supervisor_Home_home_1.full = true;
+    m->Supervisor_Home_leaving_1.full = false; /* leaving 1: () (ID1412311070) */
+    m->flag1_externo.full = false; /* flag1_externo: DONE (ID1412311086) */
+    m->Supervisor_Home_home_1.full = true; /* home 1: () (ID1412311072) */
     return true;
 }
 
@@ -5137,441 +3056,369 @@ PN_NET_SEARCH static bool Supervisor_Home_Reply_1_fire(pn_ctx_t *cx, void *marki
 typedef struct Supervisor_Home_Reply_2_binding {
     uint8_t none; /* no variables */
 } Supervisor_Home_Reply_2_binding_t;
-
-static const pn_type_t s_binding_Supervisor_Home_Reply_2 = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Supervisor.Home.Reply 2",
-    .size = sizeof(Supervisor_Home_Reply_2_binding_t),
-    .count = 0U,
-    .field = NULL,
-};
+static const pn_type_t s_binding_Supervisor_Home_Reply_2 = { .kind = PN_KIND_RECORD,
+    .name = "Cell.Supervisor.Home.Reply 2", .size = sizeof(Supervisor_Home_Reply_2_binding_t),
+    .count = 0U, .field = NULL };
 
 PN_NET_SEARCH static bool Supervisor_Home_Reply_2_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Supervisor_Home_Reply_2_binding_t b = { 0 };
-    cx->origin = "page `Home`, transition `Reply 2` (ID1412311091)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* leaving 2: () (ID1412311101) */
-    if (!m->Supervisor_Home_leaving_2.full) {
+    pn_begin(cx, "page `Home`, transition `Reply 2` (ID1412311091)", m->now);
+    if (!m->Supervisor_Home_leaving_2.full) { /* leaving 2: () (ID1412311101) */
         return true;
     }
     /* flag2_externo: DONE (ID1412311117) */
     if (!m->flag2_externo.full || (m->flag2_externo.value != val_DONE)) {
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Supervisor_Home_Reply_2_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Supervisor_Home_Reply_2_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     (void)binding;
-    cx->origin = "page `Home`, transition `Reply 2` (ID1412311091)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Supervisor_Home_home_2.full) {
-        return pn_bag_fail_full(cx, &s_at_Supervisor_Home_home_2);
+    pn_begin(cx, "page `Home`, transition `Reply 2` (ID1412311091)", m->now);
+    if (!pn_has_room(cx, m->Supervisor_Home_home_2.full, &s_at_Supervisor_Home_home_2)) {
+        return false;
     }
-    /* leaving 2: () (ID1412311101) */
-    m->Supervisor_Home_leaving_2.full = false;
-    /* flag2_externo: DONE (ID1412311117) */
-    m->flag2_externo.full = false;
-    /* home 2: () (ID1412311103) */
-    m->Supervisor_Home_home_2.full = true;
+    m->Supervisor_Home_leaving_2.full = false; /* leaving 2: () (ID1412311101) */
+    m->flag2_externo.full = false; /* flag2_externo: DONE (ID1412311117) */
+    m->Supervisor_Home_home_2.full = true; /* home 2: () (ID1412311103) */
     return true;
 }
 
-/* transition Cell.Robot1.Accept: page `Robot`, transition `Accept` (ID1412311125), cell.cpn:23214 */
-typedef struct Robot1_Accept_binding {
+/* transition: page `Robot`, transition `Accept` (ID1412311125), cell.cpn:23214, at all of these:
+ *     Cell.Robot1.Accept
+ *     Cell.Robot2.Accept
+ */
+typedef struct Robot_Accept_binding {
     int64_t c;
-} Robot1_Accept_binding_t;
-
-static const pn_field_t s_variables_Robot1_Accept[] = {
-    { "c", &s_COMMAND, offsetof(Robot1_Accept_binding_t, c), false },
+} Robot_Accept_binding_t;
+static const pn_field_t s_variables_Robot_Accept[] = {
+    { "c", &s_COMMAND, offsetof(Robot_Accept_binding_t, c), false },
 };
+static const pn_type_t s_binding_Robot_Accept = { .kind = PN_KIND_RECORD, .name = "Robot.Accept",
+    .size = sizeof(Robot_Accept_binding_t), .count = 1U, .field = s_variables_Robot_Accept };
 
-static const pn_type_t s_binding_Robot1_Accept = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot1.Accept",
-    .size = sizeof(Robot1_Accept_binding_t),
-    .count = 1U,
-    .field = s_variables_Robot1_Accept,
-};
-
-PN_NET_SEARCH static bool Robot1_Accept_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot_Accept_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Robot1_Accept_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Accept` (ID1412311125)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Waiting: () (ID1412311138) */
-    if (!m->Robot1_Waiting.full) {
+    Robot_Accept_binding_t b = { 0 };
+    pn_begin(cx, "page `Robot`, transition `Accept` (ID1412311125)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    const COMMAND_slot_t *const at_flag_interno = pn_bag_look(own->flag_interno, m);
+    const UNIT_slot_t *const at_Waiting = pn_bag_look(own->Waiting, m);
+    if (!at_Waiting->full) { /* Waiting: () (ID1412311138) */
         return true;
     }
-    /* flag1_interno: c (ID1412311136) */
-    if (!m->flag1_interno.full) {
+    if (!at_flag_interno->full) { /* flag_interno: c (ID1412311136) */
         return true;
     }
-    b.c = m->flag1_interno.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    b.c = at_flag_interno->value;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Robot1_Accept_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot_Accept_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
-    Robot1_Accept_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Accept` (ID1412311125)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Robot1_Commanded.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot1_Commanded);
+    Robot_Accept_binding_t *const b = binding;
+    pn_begin(cx, "page `Robot`, transition `Accept` (ID1412311125)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    COMMAND_slot_t *const at_flag_interno = pn_bag_reach(own->flag_interno, m);
+    UNIT_slot_t *const at_Waiting = pn_bag_reach(own->Waiting, m);
+    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    if (!pn_has_room(cx, at_Commanded->full, own->Commanded)) {
+        return false;
     }
-    /* flag1_interno: c (ID1412311136) */
-    m->flag1_interno.full = false;
-    /* Waiting: () (ID1412311138) */
-    m->Robot1_Waiting.full = false;
-    /* Commanded: c (ID1412311140) */
-    m->Robot1_Commanded.value = b->c;
-    m->Robot1_Commanded.full = true;
+    at_flag_interno->full = false; /* flag_interno: c (ID1412311136) */
+    at_Waiting->full = false; /* Waiting: () (ID1412311138) */
+    at_Commanded->value = b->c; /* Commanded: c (ID1412311140) */
+    at_Commanded->full = true;
     return true;
 }
 
-/* transition Cell.Robot1.Report: page `Robot`, transition `Report` (ID1412311145), cell.cpn:23288 */
-typedef struct Robot1_Report_binding {
+/* transition: page `Robot`, transition `Report` (ID1412311145), cell.cpn:23288, at all of these:
+ *     Cell.Robot1.Report
+ *     Cell.Robot2.Report
+ */
+typedef struct Robot_Report_binding {
     int64_t e;
-} Robot1_Report_binding_t;
-
-static const pn_field_t s_variables_Robot1_Report[] = {
-    { "e", &s_REPLY, offsetof(Robot1_Report_binding_t, e), false },
+} Robot_Report_binding_t;
+static const pn_field_t s_variables_Robot_Report[] = {
+    { "e", &s_REPLY, offsetof(Robot_Report_binding_t, e), false },
 };
+static const pn_type_t s_binding_Robot_Report = { .kind = PN_KIND_RECORD, .name = "Robot.Report",
+    .size = sizeof(Robot_Report_binding_t), .count = 1U, .field = s_variables_Robot_Report };
 
-static const pn_type_t s_binding_Robot1_Report = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot1.Report",
-    .size = sizeof(Robot1_Report_binding_t),
-    .count = 1U,
-    .field = s_variables_Robot1_Report,
-};
-
-PN_NET_SEARCH static bool Robot1_Report_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot_Report_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Robot1_Report_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Report` (ID1412311145)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Done: e (ID1412311154) */
-    if (!m->Robot1_Done.full) {
+    Robot_Report_binding_t b = { 0 };
+    pn_begin(cx, "page `Robot`, transition `Report` (ID1412311145)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    const REPLY_slot_t *const at_Done = pn_bag_look(own->Done, m);
+    if (!at_Done->full) { /* Done: e (ID1412311154) */
         return true;
     }
-    b.e = m->Robot1_Done.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    b.e = at_Done->value;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Robot1_Report_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot_Report_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
-    Robot1_Report_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Report` (ID1412311145)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->flag1_externo.full) {
-        return pn_bag_fail_full(cx, &s_at_flag1_externo);
+    Robot_Report_binding_t *const b = binding;
+    pn_begin(cx, "page `Robot`, transition `Report` (ID1412311145)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    REPLY_slot_t *const at_flag_externo = pn_bag_reach(own->flag_externo, m);
+    UNIT_slot_t *const at_Waiting = pn_bag_reach(own->Waiting, m);
+    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
+    if (!pn_has_room(cx, at_flag_externo->full, own->flag_externo)
+        || !pn_has_room(cx, at_Waiting->full, own->Waiting)) {
+        return false;
     }
-    if (m->Robot1_Waiting.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot1_Waiting);
-    }
-    /* Done: e (ID1412311154) */
-    m->Robot1_Done.full = false;
-    /* flag1_externo: e (ID1412311156) */
-    m->flag1_externo.value = b->e;
-    m->flag1_externo.full = true;
-    /* Waiting: () (ID1412311158) */
-    m->Robot1_Waiting.full = true;
+    at_Done->full = false; /* Done: e (ID1412311154) */
+    at_flag_externo->value = b->e; /* flag_externo: e (ID1412311156) */
+    at_flag_externo->full = true;
+    at_Waiting->full = true; /* Waiting: () (ID1412311158) */
     return true;
 }
 
-/* transition Cell.Robot1.MoveJoint: page `Robot`, transition `MoveJoint` (ID1412311160), cell.cpn:23362
+/* transition: page `Robot`, transition `MoveJoint` (ID1412311160), cell.cpn:23362, at all of these:
+ *     Cell.Robot1.MoveJoint
+ *     Cell.Robot2.MoveJoint
  * guard [c = JOINT]
  */
-typedef struct Robot1_MoveJoint_binding {
+typedef struct Robot_MoveJoint_binding {
     int64_t c;
     POSE_t p;
-} Robot1_MoveJoint_binding_t;
-
-static const pn_field_t s_variables_Robot1_MoveJoint[] = {
-    { "c", &s_COMMAND, offsetof(Robot1_MoveJoint_binding_t, c), false },
-    { "p", &s_POSE, offsetof(Robot1_MoveJoint_binding_t, p), false },
+} Robot_MoveJoint_binding_t;
+static const pn_field_t s_variables_Robot_MoveJoint[] = {
+    { "c", &s_COMMAND, offsetof(Robot_MoveJoint_binding_t, c), false },
+    { "p", &s_POSE, offsetof(Robot_MoveJoint_binding_t, p), false },
 };
+static const pn_type_t s_binding_Robot_MoveJoint = { .kind = PN_KIND_RECORD,
+    .name = "Robot.MoveJoint", .size = sizeof(Robot_MoveJoint_binding_t), .count = 2U,
+    .field = s_variables_Robot_MoveJoint };
 
-static const pn_type_t s_binding_Robot1_MoveJoint = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot1.MoveJoint",
-    .size = sizeof(Robot1_MoveJoint_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot1_MoveJoint,
-};
-
-PN_NET_SEARCH static bool Robot1_MoveJoint_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot_MoveJoint_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Robot1_MoveJoint_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `MoveJoint` (ID1412311160)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311165) */
-    if (!m->Robot1_Commanded.full) {
+    Robot_MoveJoint_binding_t b = { 0 };
+    pn_begin(cx, "page `Robot`, transition `MoveJoint` (ID1412311160)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    const POSE_slot_t *const at_dadosrobo = pn_bag_look(own->dadosrobo, m);
+    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    if (!at_Commanded->full) { /* Commanded: c (ID1412311165) */
         return true;
     }
-    b.c = m->Robot1_Commanded.value;
-    /* guard [c = JOINT] */
-    if (b.c != val_JOINT) {
+    b.c = at_Commanded->value;
+    if (b.c != val_JOINT) { /* guard [c = JOINT] */
         return true;
     }
-    /* dadosrobo1: p (ID1412311244) */
-    if (!m->dadosrobo1.full) {
+    if (!at_dadosrobo->full) { /* dadosrobo: p (ID1412311244) */
         return true;
     }
-    b.p = m->dadosrobo1.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    b.p = at_dadosrobo->value;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Robot1_MoveJoint_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot_MoveJoint_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
-    Robot1_MoveJoint_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `MoveJoint` (ID1412311160)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_MoveJoint_binding_t *const b = binding;
+    pn_begin(cx, "page `Robot`, transition `MoveJoint` (ID1412311160)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    POSE_slot_t *const at_dadosrobo = pn_bag_reach(own->dadosrobo, m);
+    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action moveJoint p */
     ml_moveJoint(b->p);
-    int64_t Robot1_Done_token = val_DONE;
-    pn_bag_check(cx, &s_at_Robot1_Done, &Robot1_Done_token);
+    int64_t Done_token = val_DONE;
+    pn_bag_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Robot1_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
+    if (!pn_has_room(cx, at_Done->full, own->Done)) {
+        return false;
     }
-    /* Commanded: c (ID1412311165) */
-    m->Robot1_Commanded.full = false;
-    /* dadosrobo1: p (ID1412311244) */
-    m->dadosrobo1.full = false;
-    /* Done: DONE (ID1412311167) */
-    m->Robot1_Done.value = Robot1_Done_token;
-    m->Robot1_Done.full = true;
+    at_Commanded->full = false; /* Commanded: c (ID1412311165) */
+    at_dadosrobo->full = false; /* dadosrobo: p (ID1412311244) */
+    at_Done->value = Done_token; /* Done: DONE (ID1412311167) */
+    at_Done->full = true;
     return true;
 }
 
-/* transition Cell.Robot1.MoveLinear: page `Robot`, transition `MoveLinear` (ID1412311169), cell.cpn:23438
+/* transition: page `Robot`, transition `MoveLinear` (ID1412311169), cell.cpn:23438, at all of these:
+ *     Cell.Robot1.MoveLinear
+ *     Cell.Robot2.MoveLinear
  * guard [c = LINEAR]
  */
-typedef struct Robot1_MoveLinear_binding {
+typedef struct Robot_MoveLinear_binding {
     int64_t c;
     POSE_t p;
-} Robot1_MoveLinear_binding_t;
-
-static const pn_field_t s_variables_Robot1_MoveLinear[] = {
-    { "c", &s_COMMAND, offsetof(Robot1_MoveLinear_binding_t, c), false },
-    { "p", &s_POSE, offsetof(Robot1_MoveLinear_binding_t, p), false },
+} Robot_MoveLinear_binding_t;
+static const pn_field_t s_variables_Robot_MoveLinear[] = {
+    { "c", &s_COMMAND, offsetof(Robot_MoveLinear_binding_t, c), false },
+    { "p", &s_POSE, offsetof(Robot_MoveLinear_binding_t, p), false },
 };
+static const pn_type_t s_binding_Robot_MoveLinear = { .kind = PN_KIND_RECORD,
+    .name = "Robot.MoveLinear", .size = sizeof(Robot_MoveLinear_binding_t), .count = 2U,
+    .field = s_variables_Robot_MoveLinear };
 
-static const pn_type_t s_binding_Robot1_MoveLinear = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot1.MoveLinear",
-    .size = sizeof(Robot1_MoveLinear_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot1_MoveLinear,
-};
-
-PN_NET_SEARCH static bool Robot1_MoveLinear_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot_MoveLinear_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Robot1_MoveLinear_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `MoveLinear` (ID1412311169)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311174) */
-    if (!m->Robot1_Commanded.full) {
+    Robot_MoveLinear_binding_t b = { 0 };
+    pn_begin(cx, "page `Robot`, transition `MoveLinear` (ID1412311169)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    const POSE_slot_t *const at_dadosrobo = pn_bag_look(own->dadosrobo, m);
+    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    if (!at_Commanded->full) { /* Commanded: c (ID1412311174) */
         return true;
     }
-    b.c = m->Robot1_Commanded.value;
-    /* guard [c = LINEAR] */
-    if (b.c != val_LINEAR) {
+    b.c = at_Commanded->value;
+    if (b.c != val_LINEAR) { /* guard [c = LINEAR] */
         return true;
     }
-    /* dadosrobo1: p (ID1412311246) */
-    if (!m->dadosrobo1.full) {
+    if (!at_dadosrobo->full) { /* dadosrobo: p (ID1412311246) */
         return true;
     }
-    b.p = m->dadosrobo1.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    b.p = at_dadosrobo->value;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Robot1_MoveLinear_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot_MoveLinear_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
-    Robot1_MoveLinear_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `MoveLinear` (ID1412311169)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_MoveLinear_binding_t *const b = binding;
+    pn_begin(cx, "page `Robot`, transition `MoveLinear` (ID1412311169)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    POSE_slot_t *const at_dadosrobo = pn_bag_reach(own->dadosrobo, m);
+    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action moveLinear p */
     ml_moveLinear(b->p);
-    int64_t Robot1_Done_token = val_DONE;
-    pn_bag_check(cx, &s_at_Robot1_Done, &Robot1_Done_token);
+    int64_t Done_token = val_DONE;
+    pn_bag_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Robot1_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
+    if (!pn_has_room(cx, at_Done->full, own->Done)) {
+        return false;
     }
-    /* Commanded: c (ID1412311174) */
-    m->Robot1_Commanded.full = false;
-    /* dadosrobo1: p (ID1412311246) */
-    m->dadosrobo1.full = false;
-    /* Done: DONE (ID1412311176) */
-    m->Robot1_Done.value = Robot1_Done_token;
-    m->Robot1_Done.full = true;
+    at_Commanded->full = false; /* Commanded: c (ID1412311174) */
+    at_dadosrobo->full = false; /* dadosrobo: p (ID1412311246) */
+    at_Done->value = Done_token; /* Done: DONE (ID1412311176) */
+    at_Done->full = true;
     return true;
 }
 
-/* transition Cell.Robot1.MoveHome: page `Robot`, transition `MoveHome` (ID1412311178), cell.cpn:23514
+/* transition: page `Robot`, transition `MoveHome` (ID1412311178), cell.cpn:23514, at all of these:
+ *     Cell.Robot1.MoveHome
+ *     Cell.Robot2.MoveHome
  * guard [c = HOME]
  */
-typedef struct Robot1_MoveHome_binding {
+typedef struct Robot_MoveHome_binding {
     int64_t c;
-} Robot1_MoveHome_binding_t;
-
-static const pn_field_t s_variables_Robot1_MoveHome[] = {
-    { "c", &s_COMMAND, offsetof(Robot1_MoveHome_binding_t, c), false },
+} Robot_MoveHome_binding_t;
+static const pn_field_t s_variables_Robot_MoveHome[] = {
+    { "c", &s_COMMAND, offsetof(Robot_MoveHome_binding_t, c), false },
 };
+static const pn_type_t s_binding_Robot_MoveHome = { .kind = PN_KIND_RECORD,
+    .name = "Robot.MoveHome", .size = sizeof(Robot_MoveHome_binding_t), .count = 1U,
+    .field = s_variables_Robot_MoveHome };
 
-static const pn_type_t s_binding_Robot1_MoveHome = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot1.MoveHome",
-    .size = sizeof(Robot1_MoveHome_binding_t),
-    .count = 1U,
-    .field = s_variables_Robot1_MoveHome,
-};
-
-PN_NET_SEARCH static bool Robot1_MoveHome_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot_MoveHome_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Robot1_MoveHome_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `MoveHome` (ID1412311178)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311183) */
-    if (!m->Robot1_Commanded.full) {
+    Robot_MoveHome_binding_t b = { 0 };
+    pn_begin(cx, "page `Robot`, transition `MoveHome` (ID1412311178)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    if (!at_Commanded->full) { /* Commanded: c (ID1412311183) */
         return true;
     }
-    b.c = m->Robot1_Commanded.value;
-    /* guard [c = HOME] */
-    if (b.c != val_HOME) {
+    b.c = at_Commanded->value;
+    if (b.c != val_HOME) { /* guard [c = HOME] */
         return true;
     }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
+    return sink(user, self, &b);
 }
 
-PN_NET_SEARCH static bool Robot1_MoveHome_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot_MoveHome_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
     (void)binding;
-    cx->origin = "page `Robot`, transition `MoveHome` (ID1412311178)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Robot`, transition `MoveHome` (ID1412311178)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action moveHome () */
     ml_moveHome();
-    int64_t Robot1_Done_token = val_DONE;
-    pn_bag_check(cx, &s_at_Robot1_Done, &Robot1_Done_token);
+    int64_t Done_token = val_DONE;
+    pn_bag_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Robot1_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
+    if (!pn_has_room(cx, at_Done->full, own->Done)) {
+        return false;
     }
-    /* Commanded: c (ID1412311183) */
-    m->Robot1_Commanded.full = false;
-    /* Done: DONE (ID1412311185) */
-    m->Robot1_Done.value = Robot1_Done_token;
-    m->Robot1_Done.full = true;
+    at_Commanded->full = false; /* Commanded: c (ID1412311183) */
+    at_Done->value = Done_token; /* Done: DONE (ID1412311185) */
+    at_Done->full = true;
     return true;
 }
 
-/* transition Cell.Robot1.Measure: page `Robot`, transition `Measure` (ID1412311187), cell.cpn:23589
+/* transition: page `Robot`, transition `Measure` (ID1412311187), cell.cpn:23589, at all of these:
+ *     Cell.Robot1.Measure
+ *     Cell.Robot2.Measure
  * guard [c = MEASURE]
  */
-typedef struct Robot1_Measure_binding {
+typedef struct Robot_Measure_binding {
     int64_t c;
     POSE_t r;
     int64_t seen;
     POSE_t m; /* output of the code segment */
-} Robot1_Measure_binding_t;
-
-static const pn_field_t s_variables_Robot1_Measure[] = {
-    { "c", &s_COMMAND, offsetof(Robot1_Measure_binding_t, c), false },
-    { "r", &s_POSE, offsetof(Robot1_Measure_binding_t, r), false },
-    { "seen", &s_REPLY, offsetof(Robot1_Measure_binding_t, seen), false },
-    { "m", &s_POSE, offsetof(Robot1_Measure_binding_t, m), false },
+} Robot_Measure_binding_t;
+static const pn_field_t s_variables_Robot_Measure[] = {
+    { "c", &s_COMMAND, offsetof(Robot_Measure_binding_t, c), false },
+    { "r", &s_POSE, offsetof(Robot_Measure_binding_t, r), false },
+    { "seen", &s_REPLY, offsetof(Robot_Measure_binding_t, seen), false },
+    { "m", &s_POSE, offsetof(Robot_Measure_binding_t, m), false },
 };
+static const pn_type_t s_binding_Robot_Measure = { .kind = PN_KIND_RECORD, .name = "Robot.Measure",
+    .size = sizeof(Robot_Measure_binding_t), .count = 4U, .field = s_variables_Robot_Measure };
 
-static const pn_type_t s_binding_Robot1_Measure = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot1.Measure",
-    .size = sizeof(Robot1_Measure_binding_t),
-    .count = 4U,
-    .field = s_variables_Robot1_Measure,
-};
-
-PN_NET_SEARCH static bool Robot1_Measure_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot_Measure_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Robot1_Measure_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Measure` (ID1412311187)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311192) */
-    if (!m->Robot1_Commanded.full) {
+    Robot_Measure_binding_t b = { 0 };
+    pn_begin(cx, "page `Robot`, transition `Measure` (ID1412311187)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    const POSE_slot_t *const at_referencia = pn_bag_look(own->referencia, m);
+    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    if (!at_Commanded->full) { /* Commanded: c (ID1412311192) */
         return true;
     }
-    b.c = m->Robot1_Commanded.value;
-    /* guard [c = MEASURE] */
-    if (b.c != val_MEASURE) {
+    b.c = at_Commanded->value;
+    if (b.c != val_MEASURE) { /* guard [c = MEASURE] */
         return true;
     }
-    /* referencia1: r (ID1412311248) */
-    if (!m->referencia1.full) {
+    if (!at_referencia->full) { /* referencia: r (ID1412311248) */
         return true;
     }
-    b.r = m->referencia1.value;
+    b.r = at_referencia->value;
     /* seen over all of REPLY */
     for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
         pn_type_value(&s_REPLY, number, &b.seen);
@@ -5588,75 +3435,65 @@ PN_NET_SEARCH static bool Robot1_Measure_enumerate(pn_ctx_t *cx, const void *mar
     return true;
 }
 
-PN_NET_SEARCH static bool Robot1_Measure_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot_Measure_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
-    Robot1_Measure_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Measure` (ID1412311187)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_Measure_binding_t *const b = binding;
+    pn_begin(cx, "page `Robot`, transition `Measure` (ID1412311187)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    POSE_slot_t *const at_referencia = pn_bag_reach(own->referencia, m);
+    POSE_slot_t *const at_medida = pn_bag_reach(own->medida, m);
+    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action measure r */
     b->m = ml_measure(b->r);
-    int64_t Robot1_Done_token = ml_outcome(b->seen);
-    pn_bag_check(cx, &s_at_Robot1_Done, &Robot1_Done_token);
+    int64_t Done_token = ml_outcome(b->seen);
+    pn_bag_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Robot1_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
+    if (!pn_has_room(cx, at_Done->full, own->Done)
+        || !pn_has_room(cx, at_medida->full, own->medida)) {
+        return false;
     }
-    if (m->medida1.full) {
-        return pn_bag_fail_full(cx, &s_at_medida1);
-    }
-    /* Commanded: c (ID1412311192) */
-    m->Robot1_Commanded.full = false;
-    /* referencia1: r (ID1412311248) */
-    m->referencia1.full = false;
-    /* Done: outcome seen (ID1412311194) */
-    m->Robot1_Done.value = Robot1_Done_token;
-    m->Robot1_Done.full = true;
-    /* medida1: m (ID1412311250) */
-    m->medida1.value = b->m;
-    m->medida1.full = true;
+    at_Commanded->full = false; /* Commanded: c (ID1412311192) */
+    at_referencia->full = false; /* referencia: r (ID1412311248) */
+    at_Done->value = Done_token; /* Done: outcome seen (ID1412311194) */
+    at_Done->full = true;
+    at_medida->value = b->m; /* medida: m (ID1412311250) */
+    at_medida->full = true;
     return true;
 }
 
-/* transition Cell.Robot1.Drill: page `Robot`, transition `Drill` (ID1412311196), cell.cpn:23666
+/* transition: page `Robot`, transition `Drill` (ID1412311196), cell.cpn:23666, at all of these:
+ *     Cell.Robot1.Drill
+ *     Cell.Robot2.Drill
  * guard [c = DRILL]
  */
-typedef struct Robot1_Drill_binding {
+typedef struct Robot_Drill_binding {
     int64_t c;
     int64_t drilled;
-} Robot1_Drill_binding_t;
-
-static const pn_field_t s_variables_Robot1_Drill[] = {
-    { "c", &s_COMMAND, offsetof(Robot1_Drill_binding_t, c), false },
-    { "drilled", &s_REPLY, offsetof(Robot1_Drill_binding_t, drilled), false },
+} Robot_Drill_binding_t;
+static const pn_field_t s_variables_Robot_Drill[] = {
+    { "c", &s_COMMAND, offsetof(Robot_Drill_binding_t, c), false },
+    { "drilled", &s_REPLY, offsetof(Robot_Drill_binding_t, drilled), false },
 };
+static const pn_type_t s_binding_Robot_Drill = { .kind = PN_KIND_RECORD, .name = "Robot.Drill",
+    .size = sizeof(Robot_Drill_binding_t), .count = 2U, .field = s_variables_Robot_Drill };
 
-static const pn_type_t s_binding_Robot1_Drill = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot1.Drill",
-    .size = sizeof(Robot1_Drill_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot1_Drill,
-};
-
-PN_NET_SEARCH static bool Robot1_Drill_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot_Drill_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Robot1_Drill_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Drill` (ID1412311196)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311201) */
-    if (!m->Robot1_Commanded.full) {
+    Robot_Drill_binding_t b = { 0 };
+    pn_begin(cx, "page `Robot`, transition `Drill` (ID1412311196)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    if (!at_Commanded->full) { /* Commanded: c (ID1412311201) */
         return true;
     }
-    b.c = m->Robot1_Commanded.value;
-    /* guard [c = DRILL] */
-    if (b.c != val_DRILL) {
+    b.c = at_Commanded->value;
+    if (b.c != val_DRILL) { /* guard [c = DRILL] */
         return true;
     }
     /* drilled over all of REPLY */
@@ -5675,67 +3512,59 @@ PN_NET_SEARCH static bool Robot1_Drill_enumerate(pn_ctx_t *cx, const void *marki
     return true;
 }
 
-PN_NET_SEARCH static bool Robot1_Drill_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot_Drill_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
-    Robot1_Drill_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Drill` (ID1412311196)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_Drill_binding_t *const b = binding;
+    pn_begin(cx, "page `Robot`, transition `Drill` (ID1412311196)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action drill () */
     ml_drill();
-    int64_t Robot1_Done_token = ml_outcome(b->drilled);
-    pn_bag_check(cx, &s_at_Robot1_Done, &Robot1_Done_token);
+    int64_t Done_token = ml_outcome(b->drilled);
+    pn_bag_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Robot1_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
+    if (!pn_has_room(cx, at_Done->full, own->Done)) {
+        return false;
     }
-    /* Commanded: c (ID1412311201) */
-    m->Robot1_Commanded.full = false;
-    /* Done: outcome drilled (ID1412311203) */
-    m->Robot1_Done.value = Robot1_Done_token;
-    m->Robot1_Done.full = true;
+    at_Commanded->full = false; /* Commanded: c (ID1412311201) */
+    at_Done->value = Done_token; /* Done: outcome drilled (ID1412311203) */
+    at_Done->full = true;
     return true;
 }
 
-/* transition Cell.Robot1.Insert: page `Robot`, transition `Insert` (ID1412311205), cell.cpn:23741
+/* transition: page `Robot`, transition `Insert` (ID1412311205), cell.cpn:23741, at all of these:
+ *     Cell.Robot1.Insert
+ *     Cell.Robot2.Insert
  * guard [c = INSERT]
  */
-typedef struct Robot1_Insert_binding {
+typedef struct Robot_Insert_binding {
     int64_t c;
     int64_t inserted;
-} Robot1_Insert_binding_t;
-
-static const pn_field_t s_variables_Robot1_Insert[] = {
-    { "c", &s_COMMAND, offsetof(Robot1_Insert_binding_t, c), false },
-    { "inserted", &s_REPLY, offsetof(Robot1_Insert_binding_t, inserted), false },
+} Robot_Insert_binding_t;
+static const pn_field_t s_variables_Robot_Insert[] = {
+    { "c", &s_COMMAND, offsetof(Robot_Insert_binding_t, c), false },
+    { "inserted", &s_REPLY, offsetof(Robot_Insert_binding_t, inserted), false },
 };
+static const pn_type_t s_binding_Robot_Insert = { .kind = PN_KIND_RECORD, .name = "Robot.Insert",
+    .size = sizeof(Robot_Insert_binding_t), .count = 2U, .field = s_variables_Robot_Insert };
 
-static const pn_type_t s_binding_Robot1_Insert = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot1.Insert",
-    .size = sizeof(Robot1_Insert_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot1_Insert,
-};
-
-PN_NET_SEARCH static bool Robot1_Insert_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot_Insert_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Robot1_Insert_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Insert` (ID1412311205)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311210) */
-    if (!m->Robot1_Commanded.full) {
+    Robot_Insert_binding_t b = { 0 };
+    pn_begin(cx, "page `Robot`, transition `Insert` (ID1412311205)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    if (!at_Commanded->full) { /* Commanded: c (ID1412311210) */
         return true;
     }
-    b.c = m->Robot1_Commanded.value;
-    /* guard [c = INSERT] */
-    if (b.c != val_INSERT) {
+    b.c = at_Commanded->value;
+    if (b.c != val_INSERT) { /* guard [c = INSERT] */
         return true;
     }
     /* inserted over all of REPLY */
@@ -5754,67 +3583,59 @@ PN_NET_SEARCH static bool Robot1_Insert_enumerate(pn_ctx_t *cx, const void *mark
     return true;
 }
 
-PN_NET_SEARCH static bool Robot1_Insert_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot_Insert_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
-    Robot1_Insert_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Insert` (ID1412311205)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_Insert_binding_t *const b = binding;
+    pn_begin(cx, "page `Robot`, transition `Insert` (ID1412311205)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action insert () */
     ml_insert();
-    int64_t Robot1_Done_token = ml_outcome(b->inserted);
-    pn_bag_check(cx, &s_at_Robot1_Done, &Robot1_Done_token);
+    int64_t Done_token = ml_outcome(b->inserted);
+    pn_bag_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Robot1_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
+    if (!pn_has_room(cx, at_Done->full, own->Done)) {
+        return false;
     }
-    /* Commanded: c (ID1412311210) */
-    m->Robot1_Commanded.full = false;
-    /* Done: outcome inserted (ID1412311212) */
-    m->Robot1_Done.value = Robot1_Done_token;
-    m->Robot1_Done.full = true;
+    at_Commanded->full = false; /* Commanded: c (ID1412311210) */
+    at_Done->value = Done_token; /* Done: outcome inserted (ID1412311212) */
+    at_Done->full = true;
     return true;
 }
 
-/* transition Cell.Robot1.Press: page `Robot`, transition `Press` (ID1412311214), cell.cpn:23816
+/* transition: page `Robot`, transition `Press` (ID1412311214), cell.cpn:23816, at all of these:
+ *     Cell.Robot1.Press
+ *     Cell.Robot2.Press
  * guard [c = PRESS]
  */
-typedef struct Robot1_Press_binding {
+typedef struct Robot_Press_binding {
     int64_t c;
     int64_t pressed;
-} Robot1_Press_binding_t;
-
-static const pn_field_t s_variables_Robot1_Press[] = {
-    { "c", &s_COMMAND, offsetof(Robot1_Press_binding_t, c), false },
-    { "pressed", &s_REPLY, offsetof(Robot1_Press_binding_t, pressed), false },
+} Robot_Press_binding_t;
+static const pn_field_t s_variables_Robot_Press[] = {
+    { "c", &s_COMMAND, offsetof(Robot_Press_binding_t, c), false },
+    { "pressed", &s_REPLY, offsetof(Robot_Press_binding_t, pressed), false },
 };
+static const pn_type_t s_binding_Robot_Press = { .kind = PN_KIND_RECORD, .name = "Robot.Press",
+    .size = sizeof(Robot_Press_binding_t), .count = 2U, .field = s_variables_Robot_Press };
 
-static const pn_type_t s_binding_Robot1_Press = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot1.Press",
-    .size = sizeof(Robot1_Press_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot1_Press,
-};
-
-PN_NET_SEARCH static bool Robot1_Press_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot_Press_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Robot1_Press_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Press` (ID1412311214)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311219) */
-    if (!m->Robot1_Commanded.full) {
+    Robot_Press_binding_t b = { 0 };
+    pn_begin(cx, "page `Robot`, transition `Press` (ID1412311214)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    if (!at_Commanded->full) { /* Commanded: c (ID1412311219) */
         return true;
     }
-    b.c = m->Robot1_Commanded.value;
-    /* guard [c = PRESS] */
-    if (b.c != val_PRESS) {
+    b.c = at_Commanded->value;
+    if (b.c != val_PRESS) { /* guard [c = PRESS] */
         return true;
     }
     /* pressed over all of REPLY */
@@ -5833,67 +3654,59 @@ PN_NET_SEARCH static bool Robot1_Press_enumerate(pn_ctx_t *cx, const void *marki
     return true;
 }
 
-PN_NET_SEARCH static bool Robot1_Press_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot_Press_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
-    Robot1_Press_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Press` (ID1412311214)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_Press_binding_t *const b = binding;
+    pn_begin(cx, "page `Robot`, transition `Press` (ID1412311214)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action press () */
     ml_press();
-    int64_t Robot1_Done_token = ml_outcome(b->pressed);
-    pn_bag_check(cx, &s_at_Robot1_Done, &Robot1_Done_token);
+    int64_t Done_token = ml_outcome(b->pressed);
+    pn_bag_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Robot1_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
+    if (!pn_has_room(cx, at_Done->full, own->Done)) {
+        return false;
     }
-    /* Commanded: c (ID1412311219) */
-    m->Robot1_Commanded.full = false;
-    /* Done: outcome pressed (ID1412311221) */
-    m->Robot1_Done.value = Robot1_Done_token;
-    m->Robot1_Done.full = true;
+    at_Commanded->full = false; /* Commanded: c (ID1412311219) */
+    at_Done->value = Done_token; /* Done: outcome pressed (ID1412311221) */
+    at_Done->full = true;
     return true;
 }
 
-/* transition Cell.Robot1.Release: page `Robot`, transition `Release` (ID1412311223), cell.cpn:23891
+/* transition: page `Robot`, transition `Release` (ID1412311223), cell.cpn:23891, at all of these:
+ *     Cell.Robot1.Release
+ *     Cell.Robot2.Release
  * guard [c = RELEASE]
  */
-typedef struct Robot1_Release_binding {
+typedef struct Robot_Release_binding {
     int64_t c;
     int64_t released;
-} Robot1_Release_binding_t;
-
-static const pn_field_t s_variables_Robot1_Release[] = {
-    { "c", &s_COMMAND, offsetof(Robot1_Release_binding_t, c), false },
-    { "released", &s_REPLY, offsetof(Robot1_Release_binding_t, released), false },
+} Robot_Release_binding_t;
+static const pn_field_t s_variables_Robot_Release[] = {
+    { "c", &s_COMMAND, offsetof(Robot_Release_binding_t, c), false },
+    { "released", &s_REPLY, offsetof(Robot_Release_binding_t, released), false },
 };
+static const pn_type_t s_binding_Robot_Release = { .kind = PN_KIND_RECORD, .name = "Robot.Release",
+    .size = sizeof(Robot_Release_binding_t), .count = 2U, .field = s_variables_Robot_Release };
 
-static const pn_type_t s_binding_Robot1_Release = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot1.Release",
-    .size = sizeof(Robot1_Release_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot1_Release,
-};
-
-PN_NET_SEARCH static bool Robot1_Release_enumerate(pn_ctx_t *cx, const void *marking,
+PN_NET_SEARCH static bool Robot_Release_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
-    Robot1_Release_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Release` (ID1412311223)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311228) */
-    if (!m->Robot1_Commanded.full) {
+    Robot_Release_binding_t b = { 0 };
+    pn_begin(cx, "page `Robot`, transition `Release` (ID1412311223)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    if (!at_Commanded->full) { /* Commanded: c (ID1412311228) */
         return true;
     }
-    b.c = m->Robot1_Commanded.value;
-    /* guard [c = RELEASE] */
-    if (b.c != val_RELEASE) {
+    b.c = at_Commanded->value;
+    if (b.c != val_RELEASE) { /* guard [c = RELEASE] */
         return true;
     }
     /* released over all of REPLY */
@@ -5912,2500 +3725,609 @@ PN_NET_SEARCH static bool Robot1_Release_enumerate(pn_ctx_t *cx, const void *mar
     return true;
 }
 
-PN_NET_SEARCH static bool Robot1_Release_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Robot_Release_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
-    Robot1_Release_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Release` (ID1412311223)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    Robot_Release_binding_t *const b = binding;
+    pn_begin(cx, "page `Robot`, transition `Release` (ID1412311223)", m->now);
+    const Robot_places_t *const own = pn_net.transition[self].places;
+    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action release () */
     ml_release();
-    int64_t Robot1_Done_token = ml_outcome(b->released);
-    pn_bag_check(cx, &s_at_Robot1_Done, &Robot1_Done_token);
+    int64_t Done_token = ml_outcome(b->released);
+    pn_bag_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
     }
-    if (m->Robot1_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot1_Done);
-    }
-    /* Commanded: c (ID1412311228) */
-    m->Robot1_Commanded.full = false;
-    /* Done: outcome released (ID1412311230) */
-    m->Robot1_Done.value = Robot1_Done_token;
-    m->Robot1_Done.full = true;
-    return true;
-}
-
-/* transition Cell.Robot2.Accept: page `Robot`, transition `Accept` (ID1412311125), cell.cpn:23214 */
-typedef struct Robot2_Accept_binding {
-    int64_t c;
-} Robot2_Accept_binding_t;
-
-static const pn_field_t s_variables_Robot2_Accept[] = {
-    { "c", &s_COMMAND, offsetof(Robot2_Accept_binding_t, c), false },
-};
-
-static const pn_type_t s_binding_Robot2_Accept = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot2.Accept",
-    .size = sizeof(Robot2_Accept_binding_t),
-    .count = 1U,
-    .field = s_variables_Robot2_Accept,
-};
-
-PN_NET_SEARCH static bool Robot2_Accept_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Robot2_Accept_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Accept` (ID1412311125)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Waiting: () (ID1412311138) */
-    if (!m->Robot2_Waiting.full) {
-        return true;
-    }
-    /* flag2_interno: c (ID1412311136) */
-    if (!m->flag2_interno.full) {
-        return true;
-    }
-    b.c = m->flag2_interno.value;
-    if (!sink(user, self, &b)) {
+    if (!pn_has_room(cx, at_Done->full, own->Done)) {
         return false;
     }
-    return true;
-}
-
-PN_NET_SEARCH static bool Robot2_Accept_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Robot2_Accept_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Accept` (ID1412311125)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->Robot2_Commanded.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot2_Commanded);
-    }
-    /* flag2_interno: c (ID1412311136) */
-    m->flag2_interno.full = false;
-    /* Waiting: () (ID1412311138) */
-    m->Robot2_Waiting.full = false;
-    /* Commanded: c (ID1412311140) */
-    m->Robot2_Commanded.value = b->c;
-    m->Robot2_Commanded.full = true;
-    return true;
-}
-
-/* transition Cell.Robot2.Report: page `Robot`, transition `Report` (ID1412311145), cell.cpn:23288 */
-typedef struct Robot2_Report_binding {
-    int64_t e;
-} Robot2_Report_binding_t;
-
-static const pn_field_t s_variables_Robot2_Report[] = {
-    { "e", &s_REPLY, offsetof(Robot2_Report_binding_t, e), false },
-};
-
-static const pn_type_t s_binding_Robot2_Report = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot2.Report",
-    .size = sizeof(Robot2_Report_binding_t),
-    .count = 1U,
-    .field = s_variables_Robot2_Report,
-};
-
-PN_NET_SEARCH static bool Robot2_Report_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Robot2_Report_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Report` (ID1412311145)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Done: e (ID1412311154) */
-    if (!m->Robot2_Done.full) {
-        return true;
-    }
-    b.e = m->Robot2_Done.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Robot2_Report_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Robot2_Report_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Report` (ID1412311145)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    if (m->flag2_externo.full) {
-        return pn_bag_fail_full(cx, &s_at_flag2_externo);
-    }
-    if (m->Robot2_Waiting.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot2_Waiting);
-    }
-    /* Done: e (ID1412311154) */
-    m->Robot2_Done.full = false;
-    /* flag2_externo: e (ID1412311156) */
-    m->flag2_externo.value = b->e;
-    m->flag2_externo.full = true;
-    /* Waiting: () (ID1412311158) */
-    m->Robot2_Waiting.full = true;
-    return true;
-}
-
-/* transition Cell.Robot2.MoveJoint: page `Robot`, transition `MoveJoint` (ID1412311160), cell.cpn:23362
- * guard [c = JOINT]
- */
-typedef struct Robot2_MoveJoint_binding {
-    int64_t c;
-    POSE_t p;
-} Robot2_MoveJoint_binding_t;
-
-static const pn_field_t s_variables_Robot2_MoveJoint[] = {
-    { "c", &s_COMMAND, offsetof(Robot2_MoveJoint_binding_t, c), false },
-    { "p", &s_POSE, offsetof(Robot2_MoveJoint_binding_t, p), false },
-};
-
-static const pn_type_t s_binding_Robot2_MoveJoint = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot2.MoveJoint",
-    .size = sizeof(Robot2_MoveJoint_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot2_MoveJoint,
-};
-
-PN_NET_SEARCH static bool Robot2_MoveJoint_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Robot2_MoveJoint_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `MoveJoint` (ID1412311160)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311165) */
-    if (!m->Robot2_Commanded.full) {
-        return true;
-    }
-    b.c = m->Robot2_Commanded.value;
-    /* guard [c = JOINT] */
-    if (b.c != val_JOINT) {
-        return true;
-    }
-    /* dadosrobo2: p (ID1412311244) */
-    if (!m->dadosrobo2.full) {
-        return true;
-    }
-    b.p = m->dadosrobo2.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Robot2_MoveJoint_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Robot2_MoveJoint_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `MoveJoint` (ID1412311160)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* code segment: action moveJoint p */
-    ml_moveJoint(b->p);
-    int64_t Robot2_Done_token = val_DONE;
-    pn_bag_check(cx, &s_at_Robot2_Done, &Robot2_Done_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
-    if (m->Robot2_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
-    }
-    /* Commanded: c (ID1412311165) */
-    m->Robot2_Commanded.full = false;
-    /* dadosrobo2: p (ID1412311244) */
-    m->dadosrobo2.full = false;
-    /* Done: DONE (ID1412311167) */
-    m->Robot2_Done.value = Robot2_Done_token;
-    m->Robot2_Done.full = true;
-    return true;
-}
-
-/* transition Cell.Robot2.MoveLinear: page `Robot`, transition `MoveLinear` (ID1412311169), cell.cpn:23438
- * guard [c = LINEAR]
- */
-typedef struct Robot2_MoveLinear_binding {
-    int64_t c;
-    POSE_t p;
-} Robot2_MoveLinear_binding_t;
-
-static const pn_field_t s_variables_Robot2_MoveLinear[] = {
-    { "c", &s_COMMAND, offsetof(Robot2_MoveLinear_binding_t, c), false },
-    { "p", &s_POSE, offsetof(Robot2_MoveLinear_binding_t, p), false },
-};
-
-static const pn_type_t s_binding_Robot2_MoveLinear = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot2.MoveLinear",
-    .size = sizeof(Robot2_MoveLinear_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot2_MoveLinear,
-};
-
-PN_NET_SEARCH static bool Robot2_MoveLinear_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Robot2_MoveLinear_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `MoveLinear` (ID1412311169)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311174) */
-    if (!m->Robot2_Commanded.full) {
-        return true;
-    }
-    b.c = m->Robot2_Commanded.value;
-    /* guard [c = LINEAR] */
-    if (b.c != val_LINEAR) {
-        return true;
-    }
-    /* dadosrobo2: p (ID1412311246) */
-    if (!m->dadosrobo2.full) {
-        return true;
-    }
-    b.p = m->dadosrobo2.value;
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Robot2_MoveLinear_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Robot2_MoveLinear_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `MoveLinear` (ID1412311169)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* code segment: action moveLinear p */
-    ml_moveLinear(b->p);
-    int64_t Robot2_Done_token = val_DONE;
-    pn_bag_check(cx, &s_at_Robot2_Done, &Robot2_Done_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
-    if (m->Robot2_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
-    }
-    /* Commanded: c (ID1412311174) */
-    m->Robot2_Commanded.full = false;
-    /* dadosrobo2: p (ID1412311246) */
-    m->dadosrobo2.full = false;
-    /* Done: DONE (ID1412311176) */
-    m->Robot2_Done.value = Robot2_Done_token;
-    m->Robot2_Done.full = true;
-    return true;
-}
-
-/* transition Cell.Robot2.MoveHome: page `Robot`, transition `MoveHome` (ID1412311178), cell.cpn:23514
- * guard [c = HOME]
- */
-typedef struct Robot2_MoveHome_binding {
-    int64_t c;
-} Robot2_MoveHome_binding_t;
-
-static const pn_field_t s_variables_Robot2_MoveHome[] = {
-    { "c", &s_COMMAND, offsetof(Robot2_MoveHome_binding_t, c), false },
-};
-
-static const pn_type_t s_binding_Robot2_MoveHome = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot2.MoveHome",
-    .size = sizeof(Robot2_MoveHome_binding_t),
-    .count = 1U,
-    .field = s_variables_Robot2_MoveHome,
-};
-
-PN_NET_SEARCH static bool Robot2_MoveHome_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Robot2_MoveHome_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `MoveHome` (ID1412311178)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311183) */
-    if (!m->Robot2_Commanded.full) {
-        return true;
-    }
-    b.c = m->Robot2_Commanded.value;
-    /* guard [c = HOME] */
-    if (b.c != val_HOME) {
-        return true;
-    }
-    if (!sink(user, self, &b)) {
-        return false;
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Robot2_MoveHome_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    (void)binding;
-    cx->origin = "page `Robot`, transition `MoveHome` (ID1412311178)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* code segment: action moveHome () */
-    ml_moveHome();
-    int64_t Robot2_Done_token = val_DONE;
-    pn_bag_check(cx, &s_at_Robot2_Done, &Robot2_Done_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
-    if (m->Robot2_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
-    }
-    /* Commanded: c (ID1412311183) */
-    m->Robot2_Commanded.full = false;
-    /* Done: DONE (ID1412311185) */
-    m->Robot2_Done.value = Robot2_Done_token;
-    m->Robot2_Done.full = true;
-    return true;
-}
-
-/* transition Cell.Robot2.Measure: page `Robot`, transition `Measure` (ID1412311187), cell.cpn:23589
- * guard [c = MEASURE]
- */
-typedef struct Robot2_Measure_binding {
-    int64_t c;
-    POSE_t r;
-    int64_t seen;
-    POSE_t m; /* output of the code segment */
-} Robot2_Measure_binding_t;
-
-static const pn_field_t s_variables_Robot2_Measure[] = {
-    { "c", &s_COMMAND, offsetof(Robot2_Measure_binding_t, c), false },
-    { "r", &s_POSE, offsetof(Robot2_Measure_binding_t, r), false },
-    { "seen", &s_REPLY, offsetof(Robot2_Measure_binding_t, seen), false },
-    { "m", &s_POSE, offsetof(Robot2_Measure_binding_t, m), false },
-};
-
-static const pn_type_t s_binding_Robot2_Measure = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot2.Measure",
-    .size = sizeof(Robot2_Measure_binding_t),
-    .count = 4U,
-    .field = s_variables_Robot2_Measure,
-};
-
-PN_NET_SEARCH static bool Robot2_Measure_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Robot2_Measure_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Measure` (ID1412311187)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311192) */
-    if (!m->Robot2_Commanded.full) {
-        return true;
-    }
-    b.c = m->Robot2_Commanded.value;
-    /* guard [c = MEASURE] */
-    if (b.c != val_MEASURE) {
-        return true;
-    }
-    /* referencia2: r (ID1412311248) */
-    if (!m->referencia2.full) {
-        return true;
-    }
-    b.r = m->referencia2.value;
-    /* seen over all of REPLY */
-    for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
-        pn_type_value(&s_REPLY, number, &b.seen);
-        if (!pn_is_legal(cx, &s_REPLY, &b.seen)) {
-            continue;
-        }
-        if (!pn_ok(cx)) {
-            return true;
-        }
-        if (!sink(user, self, &b)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Robot2_Measure_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Robot2_Measure_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Measure` (ID1412311187)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* code segment: action measure r */
-    b->m = ml_measure(b->r);
-    int64_t Robot2_Done_token = ml_outcome(b->seen);
-    pn_bag_check(cx, &s_at_Robot2_Done, &Robot2_Done_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
-    if (m->Robot2_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
-    }
-    if (m->medida2.full) {
-        return pn_bag_fail_full(cx, &s_at_medida2);
-    }
-    /* Commanded: c (ID1412311192) */
-    m->Robot2_Commanded.full = false;
-    /* referencia2: r (ID1412311248) */
-    m->referencia2.full = false;
-    /* Done: outcome seen (ID1412311194) */
-    m->Robot2_Done.value = Robot2_Done_token;
-    m->Robot2_Done.full = true;
-    /* medida2: m (ID1412311250) */
-    m->medida2.value = b->m;
-    m->medida2.full = true;
-    return true;
-}
-
-/* transition Cell.Robot2.Drill: page `Robot`, transition `Drill` (ID1412311196), cell.cpn:23666
- * guard [c = DRILL]
- */
-typedef struct Robot2_Drill_binding {
-    int64_t c;
-    int64_t drilled;
-} Robot2_Drill_binding_t;
-
-static const pn_field_t s_variables_Robot2_Drill[] = {
-    { "c", &s_COMMAND, offsetof(Robot2_Drill_binding_t, c), false },
-    { "drilled", &s_REPLY, offsetof(Robot2_Drill_binding_t, drilled), false },
-};
-
-static const pn_type_t s_binding_Robot2_Drill = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot2.Drill",
-    .size = sizeof(Robot2_Drill_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot2_Drill,
-};
-
-PN_NET_SEARCH static bool Robot2_Drill_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Robot2_Drill_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Drill` (ID1412311196)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311201) */
-    if (!m->Robot2_Commanded.full) {
-        return true;
-    }
-    b.c = m->Robot2_Commanded.value;
-    /* guard [c = DRILL] */
-    if (b.c != val_DRILL) {
-        return true;
-    }
-    /* drilled over all of REPLY */
-    for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
-        pn_type_value(&s_REPLY, number, &b.drilled);
-        if (!pn_is_legal(cx, &s_REPLY, &b.drilled)) {
-            continue;
-        }
-        if (!pn_ok(cx)) {
-            return true;
-        }
-        if (!sink(user, self, &b)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Robot2_Drill_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Robot2_Drill_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Drill` (ID1412311196)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* code segment: action drill () */
-    ml_drill();
-    int64_t Robot2_Done_token = ml_outcome(b->drilled);
-    pn_bag_check(cx, &s_at_Robot2_Done, &Robot2_Done_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
-    if (m->Robot2_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
-    }
-    /* Commanded: c (ID1412311201) */
-    m->Robot2_Commanded.full = false;
-    /* Done: outcome drilled (ID1412311203) */
-    m->Robot2_Done.value = Robot2_Done_token;
-    m->Robot2_Done.full = true;
-    return true;
-}
-
-/* transition Cell.Robot2.Insert: page `Robot`, transition `Insert` (ID1412311205), cell.cpn:23741
- * guard [c = INSERT]
- */
-typedef struct Robot2_Insert_binding {
-    int64_t c;
-    int64_t inserted;
-} Robot2_Insert_binding_t;
-
-static const pn_field_t s_variables_Robot2_Insert[] = {
-    { "c", &s_COMMAND, offsetof(Robot2_Insert_binding_t, c), false },
-    { "inserted", &s_REPLY, offsetof(Robot2_Insert_binding_t, inserted), false },
-};
-
-static const pn_type_t s_binding_Robot2_Insert = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot2.Insert",
-    .size = sizeof(Robot2_Insert_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot2_Insert,
-};
-
-PN_NET_SEARCH static bool Robot2_Insert_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Robot2_Insert_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Insert` (ID1412311205)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311210) */
-    if (!m->Robot2_Commanded.full) {
-        return true;
-    }
-    b.c = m->Robot2_Commanded.value;
-    /* guard [c = INSERT] */
-    if (b.c != val_INSERT) {
-        return true;
-    }
-    /* inserted over all of REPLY */
-    for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
-        pn_type_value(&s_REPLY, number, &b.inserted);
-        if (!pn_is_legal(cx, &s_REPLY, &b.inserted)) {
-            continue;
-        }
-        if (!pn_ok(cx)) {
-            return true;
-        }
-        if (!sink(user, self, &b)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Robot2_Insert_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Robot2_Insert_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Insert` (ID1412311205)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* code segment: action insert () */
-    ml_insert();
-    int64_t Robot2_Done_token = ml_outcome(b->inserted);
-    pn_bag_check(cx, &s_at_Robot2_Done, &Robot2_Done_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
-    if (m->Robot2_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
-    }
-    /* Commanded: c (ID1412311210) */
-    m->Robot2_Commanded.full = false;
-    /* Done: outcome inserted (ID1412311212) */
-    m->Robot2_Done.value = Robot2_Done_token;
-    m->Robot2_Done.full = true;
-    return true;
-}
-
-/* transition Cell.Robot2.Press: page `Robot`, transition `Press` (ID1412311214), cell.cpn:23816
- * guard [c = PRESS]
- */
-typedef struct Robot2_Press_binding {
-    int64_t c;
-    int64_t pressed;
-} Robot2_Press_binding_t;
-
-static const pn_field_t s_variables_Robot2_Press[] = {
-    { "c", &s_COMMAND, offsetof(Robot2_Press_binding_t, c), false },
-    { "pressed", &s_REPLY, offsetof(Robot2_Press_binding_t, pressed), false },
-};
-
-static const pn_type_t s_binding_Robot2_Press = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot2.Press",
-    .size = sizeof(Robot2_Press_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot2_Press,
-};
-
-PN_NET_SEARCH static bool Robot2_Press_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Robot2_Press_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Press` (ID1412311214)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311219) */
-    if (!m->Robot2_Commanded.full) {
-        return true;
-    }
-    b.c = m->Robot2_Commanded.value;
-    /* guard [c = PRESS] */
-    if (b.c != val_PRESS) {
-        return true;
-    }
-    /* pressed over all of REPLY */
-    for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
-        pn_type_value(&s_REPLY, number, &b.pressed);
-        if (!pn_is_legal(cx, &s_REPLY, &b.pressed)) {
-            continue;
-        }
-        if (!pn_ok(cx)) {
-            return true;
-        }
-        if (!sink(user, self, &b)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Robot2_Press_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Robot2_Press_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Press` (ID1412311214)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* code segment: action press () */
-    ml_press();
-    int64_t Robot2_Done_token = ml_outcome(b->pressed);
-    pn_bag_check(cx, &s_at_Robot2_Done, &Robot2_Done_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
-    if (m->Robot2_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
-    }
-    /* Commanded: c (ID1412311219) */
-    m->Robot2_Commanded.full = false;
-    /* Done: outcome pressed (ID1412311221) */
-    m->Robot2_Done.value = Robot2_Done_token;
-    m->Robot2_Done.full = true;
-    return true;
-}
-
-/* transition Cell.Robot2.Release: page `Robot`, transition `Release` (ID1412311223), cell.cpn:23891
- * guard [c = RELEASE]
- */
-typedef struct Robot2_Release_binding {
-    int64_t c;
-    int64_t released;
-} Robot2_Release_binding_t;
-
-static const pn_field_t s_variables_Robot2_Release[] = {
-    { "c", &s_COMMAND, offsetof(Robot2_Release_binding_t, c), false },
-    { "released", &s_REPLY, offsetof(Robot2_Release_binding_t, released), false },
-};
-
-static const pn_type_t s_binding_Robot2_Release = {
-    .kind = PN_KIND_RECORD,
-    .name = "Cell.Robot2.Release",
-    .size = sizeof(Robot2_Release_binding_t),
-    .count = 2U,
-    .field = s_variables_Robot2_Release,
-};
-
-PN_NET_SEARCH static bool Robot2_Release_enumerate(pn_ctx_t *cx, const void *marking,
-    uint32_t self, pn_binding_sink_t sink, void *user)
-{
-    const net_marking_t *const m = marking;
-    Robot2_Release_binding_t b = { 0 };
-    cx->origin = "page `Robot`, transition `Release` (ID1412311223)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* Commanded: c (ID1412311228) */
-    if (!m->Robot2_Commanded.full) {
-        return true;
-    }
-    b.c = m->Robot2_Commanded.value;
-    /* guard [c = RELEASE] */
-    if (b.c != val_RELEASE) {
-        return true;
-    }
-    /* released over all of REPLY */
-    for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
-        pn_type_value(&s_REPLY, number, &b.released);
-        if (!pn_is_legal(cx, &s_REPLY, &b.released)) {
-            continue;
-        }
-        if (!pn_ok(cx)) {
-            return true;
-        }
-        if (!sink(user, self, &b)) {
-            return false;
-        }
-    }
-    return true;
-}
-
-PN_NET_SEARCH static bool Robot2_Release_fire(pn_ctx_t *cx, void *marking, void *binding)
-{
-    net_marking_t *const m = marking;
-    Robot2_Release_binding_t *const b = binding;
-    cx->origin = "page `Robot`, transition `Release` (ID1412311223)";
-    cx->now = m->now;
-    cx->rounds = 0U;
-    /* code segment: action release () */
-    ml_release();
-    int64_t Robot2_Done_token = ml_outcome(b->released);
-    pn_bag_check(cx, &s_at_Robot2_Done, &Robot2_Done_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
-    if (m->Robot2_Done.full) {
-        return pn_bag_fail_full(cx, &s_at_Robot2_Done);
-    }
-    /* Commanded: c (ID1412311228) */
-    m->Robot2_Commanded.full = false;
-    /* Done: outcome released (ID1412311230) */
-    m->Robot2_Done.value = Robot2_Done_token;
-    m->Robot2_Done.full = true;
+    at_Commanded->full = false; /* Commanded: c (ID1412311228) */
+    at_Done->value = Done_token; /* Done: outcome released (ID1412311230) */
+    at_Done->full = true;
     return true;
 }
 
 /* --- the net as hosts see it ------------------------------------------------------------------- */
 
 static const pn_place_t s_places[] = {
-    {
-        .name = "Cell.dadosrobo1", .colset = "POSE", .owner = -1, .bag = &s_at_dadosrobo1,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
-        .line_count = 1U, .line_leaves = s_POSE_lines,
-    },
-    {
-        .name = "Cell.flag1_interno", .colset = "COMMAND", .owner = -1, .bag = &s_at_flag1_interno,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_COMMAND_kinds, .leaf_name = s_COMMAND_leaves,
-        .line_count = 1U, .line_leaves = s_COMMAND_lines,
-    },
-    {
-        .name = "Cell.flag1_externo", .colset = "REPLY", .owner = -1, .bag = &s_at_flag1_externo,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
-        .line_count = 1U, .line_leaves = s_REPLY_lines,
-    },
-    {
-        .name = "Cell.referencia1", .colset = "POSE", .owner = -1, .bag = &s_at_referencia1,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
-        .line_count = 1U, .line_leaves = s_POSE_lines,
-    },
-    {
-        .name = "Cell.medida1", .colset = "POSE", .owner = -1, .bag = &s_at_medida1,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
-        .line_count = 1U, .line_leaves = s_POSE_lines,
-    },
-    {
-        .name = "Cell.dadosrobo2", .colset = "POSE", .owner = -1, .bag = &s_at_dadosrobo2,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
-        .line_count = 1U, .line_leaves = s_POSE_lines,
-    },
-    {
-        .name = "Cell.flag2_interno", .colset = "COMMAND", .owner = -1, .bag = &s_at_flag2_interno,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_COMMAND_kinds, .leaf_name = s_COMMAND_leaves,
-        .line_count = 1U, .line_leaves = s_COMMAND_lines,
-    },
-    {
-        .name = "Cell.flag2_externo", .colset = "REPLY", .owner = -1, .bag = &s_at_flag2_externo,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
-        .line_count = 1U, .line_leaves = s_REPLY_lines,
-    },
-    {
-        .name = "Cell.referencia2", .colset = "POSE", .owner = 2, .bag = &s_at_referencia2,
-        .is_bounded = true, .bound = 0U,
-        .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
-        .line_count = 1U, .line_leaves = s_POSE_lines,
-    },
-    {
-        .name = "Cell.medida2", .colset = "POSE", .owner = 2, .bag = &s_at_medida2,
-        .is_bounded = true, .bound = 0U,
-        .leaf_count = 6U, .leaf_kind = s_POSE_kinds, .leaf_name = s_POSE_leaves,
-        .line_count = 1U, .line_leaves = s_POSE_lines,
-    },
-    {
-        .name = "Cell.Supervisor.coordenadas", .colset = "PLAN", .owner = 0, .bag = &s_at_Supervisor_coordenadas,
-        .is_bounded = true, .bound = 1U,
-        .initial = Supervisor_coordenadas_init,
-        .leaf_count = 13U, .leaf_kind = s_PLAN_kinds, .leaf_name = s_PLAN_leaves,
-        .line_count = 3U, .line_leaves = s_PLAN_lines,
-    },
-    {
-        .name = "Cell.Supervisor.planned", .colset = "SEAM", .owner = 0, .bag = &s_at_Supervisor_planned,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 13U, .leaf_kind = s_SEAM_kinds, .leaf_name = s_SEAM_leaves,
-        .line_count = 3U, .line_leaves = s_SEAM_lines,
-    },
-    {
-        .name = "Cell.Supervisor.approached", .colset = "SEAM", .owner = 0, .bag = &s_at_Supervisor_approached,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 13U, .leaf_kind = s_SEAM_kinds, .leaf_name = s_SEAM_leaves,
-        .line_count = 3U, .line_leaves = s_SEAM_lines,
-    },
-    {
-        .name = "Cell.Supervisor.verified", .colset = "VERIFIED", .owner = 0, .bag = &s_at_Supervisor_verified,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 25U, .leaf_kind = s_VERIFIED_kinds, .leaf_name = s_VERIFIED_leaves,
-        .line_count = 3U, .line_leaves = s_VERIFIED_lines,
-    },
-    {
-        .name = "Cell.Supervisor.corrected", .colset = "RIVETING", .owner = 0, .bag = &s_at_Supervisor_corrected,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 10U, .leaf_kind = s_RIVETING_kinds, .leaf_name = s_RIVETING_leaves,
-        .line_count = 3U, .line_leaves = s_RIVETING_lines,
-    },
-    {
-        .name = "Cell.Supervisor.ended", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_ended,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Finished", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Finished,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.result", .colset = "REPLY", .owner = 0, .bag = &s_at_Supervisor_result,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
-        .line_count = 1U, .line_leaves = s_REPLY_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Failed", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Failed,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.order", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Approach_order,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
-        .line_count = 3U, .line_leaves = s_ORDER_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.done", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Approach_done,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.seam", .colset = "SEAM", .owner = 0, .bag = &s_at_Supervisor_Approach_seam,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 13U, .leaf_kind = s_SEAM_kinds, .leaf_name = s_SEAM_leaves,
-        .line_count = 3U, .line_leaves = s_SEAM_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.Move both.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Approach_Move_both_moving_1,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.Move both.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Approach_Move_both_there_1,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.Move both.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Approach_Move_both_moving_2,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.Move both.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Approach_Move_both_there_2,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Verify.first asked", .colset = "SEAM", .owner = 0, .bag = &s_at_Supervisor_Verify_first_asked,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 13U, .leaf_kind = s_SEAM_kinds, .leaf_name = s_SEAM_leaves,
-        .line_count = 3U, .line_leaves = s_SEAM_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Verify.last asked", .colset = "ASKED", .owner = 0, .bag = &s_at_Supervisor_Verify_last_asked,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 19U, .leaf_kind = s_ASKED_kinds, .leaf_name = s_ASKED_leaves,
-        .line_count = 2U, .line_leaves = s_ASKED_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.offset", .colset = "VECTOR", .owner = 0, .bag = &s_at_Supervisor_Correct_offset,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 3U, .leaf_kind = s_VECTOR_kinds, .leaf_name = s_VECTOR_leaves,
-        .line_count = 1U, .line_leaves = s_VECTOR_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.order", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Correct_order,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
-        .line_count = 3U, .line_leaves = s_ORDER_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.done", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Correct_done,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.seam", .colset = "RIVETING", .owner = 0, .bag = &s_at_Supervisor_Correct_seam,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 10U, .leaf_kind = s_RIVETING_kinds, .leaf_name = s_RIVETING_leaves,
-        .line_count = 3U, .line_leaves = s_RIVETING_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.Move both.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Correct_Move_both_moving_1,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.Move both.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Correct_Move_both_there_1,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.Move both.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Correct_Move_both_moving_2,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.Move both.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Correct_Move_both_there_2,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.shift", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Install_shift,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
-        .line_count = 3U, .line_leaves = s_ORDER_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.ready", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_ready,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.riveted", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_riveted,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.return", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Install_return,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
-        .line_count = 3U, .line_leaves = s_ORDER_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.work", .colset = "WORK", .owner = 0, .bag = &s_at_Supervisor_Install_work,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 11U, .leaf_kind = s_WORK_kinds, .leaf_name = s_WORK_leaves,
-        .line_count = 4U, .line_leaves = s_WORK_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Shift.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Shift_moving_1,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Shift.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Shift_there_1,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Shift.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Shift_moving_2,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Shift.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Shift_there_2,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.advance", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_advance,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
-        .line_count = 3U, .line_leaves = s_ORDER_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.contact", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_contact,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.fastened", .colset = "REPLY", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_fastened,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
-        .line_count = 1U, .line_leaves = s_REPLY_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.retract", .colset = "ORDER", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_retract,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 13U, .leaf_kind = s_ORDER_kinds, .leaf_name = s_ORDER_leaves,
-        .line_count = 3U, .line_leaves = s_ORDER_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Advance.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Advance_moving_1,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Advance.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Advance_there_1,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Advance.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Advance_moving_2,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Advance.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Advance_there_2,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.pressing", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Fasten_pressing,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.drilling", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Fasten_drilling,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.inserting", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Fasten_inserting,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.releasing", .colset = "REPLY", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Fasten_releasing,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
-        .line_count = 1U, .line_leaves = s_REPLY_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Retract.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Retract_moving_1,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Retract.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Retract_there_1,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Retract.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Retract_moving_2,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Retract.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Rivet_Retract_there_2,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Return.moving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Return_moving_1,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Return.there 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Return_there_1,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Return.moving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Return_moving_2,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Return.there 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Install_Return_there_2,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Home.leaving 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Home_leaving_1,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Home.home 1", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Home_home_1,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Home.leaving 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Home_leaving_2,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Supervisor.Home.home 2", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_Home_home_2,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Robot1.Waiting", .colset = "UNIT", .owner = 1, .bag = &s_at_Robot1_Waiting,
-        .is_bounded = true, .bound = 1U,
-        .initial = Robot1_Waiting_init,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Robot1.Commanded", .colset = "COMMAND", .owner = 1, .bag = &s_at_Robot1_Commanded,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_COMMAND_kinds, .leaf_name = s_COMMAND_leaves,
-        .line_count = 1U, .line_leaves = s_COMMAND_lines,
-    },
-    {
-        .name = "Cell.Robot1.Done", .colset = "REPLY", .owner = 1, .bag = &s_at_Robot1_Done,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
-        .line_count = 1U, .line_leaves = s_REPLY_lines,
-    },
-    {
-        .name = "Cell.Robot2.Waiting", .colset = "UNIT", .owner = 2, .bag = &s_at_Robot2_Waiting,
-        .is_bounded = true, .bound = 1U,
-        .initial = Robot2_Waiting_init,
-        .leaf_count = 1U, .leaf_kind = s_UNIT_kinds, .leaf_name = s_UNIT_leaves,
-        .line_count = 1U, .line_leaves = s_UNIT_lines,
-    },
-    {
-        .name = "Cell.Robot2.Commanded", .colset = "COMMAND", .owner = 2, .bag = &s_at_Robot2_Commanded,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_COMMAND_kinds, .leaf_name = s_COMMAND_leaves,
-        .line_count = 1U, .line_leaves = s_COMMAND_lines,
-    },
-    {
-        .name = "Cell.Robot2.Done", .colset = "REPLY", .owner = 2, .bag = &s_at_Robot2_Done,
-        .is_bounded = true, .bound = 1U,
-        .leaf_count = 1U, .leaf_kind = s_REPLY_kinds, .leaf_name = s_REPLY_leaves,
-        .line_count = 1U, .line_leaves = s_REPLY_lines,
-    },
+    { .name = "Cell.dadosrobo1", .colset = "POSE", .owner = -1, .bag = &s_at_dadosrobo1,
+        .is_bounded = true, .bound = 1U },
+    { .name = "Cell.flag1_interno", .colset = "COMMAND", .owner = -1, .bag = &s_at_flag1_interno,
+        .is_bounded = true, .bound = 1U },
+    { .name = "Cell.flag1_externo", .colset = "REPLY", .owner = -1, .bag = &s_at_flag1_externo,
+        .is_bounded = true, .bound = 1U },
+    { .name = "Cell.referencia1", .colset = "POSE", .owner = -1, .bag = &s_at_referencia1,
+        .is_bounded = true, .bound = 1U },
+    { .name = "Cell.medida1", .colset = "POSE", .owner = -1, .bag = &s_at_medida1,
+        .is_bounded = true, .bound = 1U },
+    { .name = "Cell.dadosrobo2", .colset = "POSE", .owner = -1, .bag = &s_at_dadosrobo2,
+        .is_bounded = true, .bound = 1U },
+    { .name = "Cell.flag2_interno", .colset = "COMMAND", .owner = -1, .bag = &s_at_flag2_interno,
+        .is_bounded = true, .bound = 1U },
+    { .name = "Cell.flag2_externo", .colset = "REPLY", .owner = -1, .bag = &s_at_flag2_externo,
+        .is_bounded = true, .bound = 1U },
+    { .name = "Cell.referencia2", .colset = "POSE", .owner = 2, .bag = &s_at_referencia2,
+        .is_bounded = true, .bound = 0U },
+    { .name = "Cell.medida2", .colset = "POSE", .owner = 2, .bag = &s_at_medida2,
+        .is_bounded = true, .bound = 0U },
+    { .name = "Cell.Supervisor.coordenadas", .colset = "PLAN", .owner = 0,
+        .bag = &s_at_Supervisor_coordenadas, .is_bounded = true, .bound = 1U,
+        .initial = Supervisor_coordenadas_init },
+    { .name = "Cell.Supervisor.planned", .colset = "SEAM", .owner = 0,
+        .bag = &s_at_Supervisor_planned, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.approached", .colset = "SEAM", .owner = 0,
+        .bag = &s_at_Supervisor_approached, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.verified", .colset = "VERIFIED", .owner = 0,
+        .bag = &s_at_Supervisor_verified, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.corrected", .colset = "RIVETING", .owner = 0,
+        .bag = &s_at_Supervisor_corrected, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.ended", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_ended,
+        .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Finished", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Finished, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.result", .colset = "REPLY", .owner = 0,
+        .bag = &s_at_Supervisor_result, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Failed", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Failed, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Approach.order", .colset = "ORDER", .owner = 0,
+        .bag = &s_at_Supervisor_Approach_order, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Approach.done", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Approach_done, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Approach.seam", .colset = "SEAM", .owner = 0,
+        .bag = &s_at_Supervisor_Approach_seam, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Approach.Move both.moving 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Approach_Move_both_moving_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Approach.Move both.there 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Approach_Move_both_there_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Approach.Move both.moving 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Approach_Move_both_moving_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Approach.Move both.there 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Approach_Move_both_there_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Verify.first asked", .colset = "SEAM", .owner = 0,
+        .bag = &s_at_Supervisor_Verify_first_asked, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Verify.last asked", .colset = "ASKED", .owner = 0,
+        .bag = &s_at_Supervisor_Verify_last_asked, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Correct.offset", .colset = "VECTOR", .owner = 0,
+        .bag = &s_at_Supervisor_Correct_offset, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Correct.order", .colset = "ORDER", .owner = 0,
+        .bag = &s_at_Supervisor_Correct_order, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Correct.done", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Correct_done, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Correct.seam", .colset = "RIVETING", .owner = 0,
+        .bag = &s_at_Supervisor_Correct_seam, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Correct.Move both.moving 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Correct_Move_both_moving_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Correct.Move both.there 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Correct_Move_both_there_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Correct.Move both.moving 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Correct_Move_both_moving_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Correct.Move both.there 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Correct_Move_both_there_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.shift", .colset = "ORDER", .owner = 0,
+        .bag = &s_at_Supervisor_Install_shift, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.ready", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_ready, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.riveted", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_riveted, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.return", .colset = "ORDER", .owner = 0,
+        .bag = &s_at_Supervisor_Install_return, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.work", .colset = "WORK", .owner = 0,
+        .bag = &s_at_Supervisor_Install_work, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Shift.moving 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Shift_moving_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Shift.there 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Shift_there_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Shift.moving 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Shift_moving_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Shift.there 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Shift_there_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.advance", .colset = "ORDER", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_advance, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.contact", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_contact, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.fastened", .colset = "REPLY", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_fastened, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.retract", .colset = "ORDER", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_retract, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Advance.moving 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Advance_moving_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Advance.there 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Advance_there_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Advance.moving 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Advance_moving_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Advance.there 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Advance_there_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Fasten.pressing", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Fasten_pressing, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Fasten.drilling", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Fasten_drilling, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Fasten.inserting", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Fasten_inserting, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Fasten.releasing", .colset = "REPLY", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Fasten_releasing, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Retract.moving 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Retract_moving_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Retract.there 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Retract_there_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Retract.moving 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Retract_moving_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Rivet.Retract.there 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Rivet_Retract_there_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Return.moving 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Return_moving_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Return.there 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Return_there_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Return.moving 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Return_moving_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Install.Return.there 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Install_Return_there_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Home.leaving 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Home_leaving_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Home.home 1", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Home_home_1, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Home.leaving 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Home_leaving_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.Home.home 2", .colset = "UNIT", .owner = 0,
+        .bag = &s_at_Supervisor_Home_home_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Robot1.Waiting", .colset = "UNIT", .owner = 1, .bag = &s_at_Robot1_Waiting,
+        .is_bounded = true, .bound = 1U, .initial = Robot1_Waiting_init },
+    { .name = "Cell.Robot1.Commanded", .colset = "COMMAND", .owner = 1,
+        .bag = &s_at_Robot1_Commanded, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Robot1.Done", .colset = "REPLY", .owner = 1, .bag = &s_at_Robot1_Done,
+        .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Robot2.Waiting", .colset = "UNIT", .owner = 2, .bag = &s_at_Robot2_Waiting,
+        .is_bounded = true, .bound = 1U, .initial = Robot2_Waiting_init },
+    { .name = "Cell.Robot2.Commanded", .colset = "COMMAND", .owner = 2,
+        .bag = &s_at_Robot2_Commanded, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Robot2.Done", .colset = "REPLY", .owner = 2, .bag = &s_at_Robot2_Done,
+        .is_bounded = true, .bound = 1U },
 };
 
-static const uint32_t s_bag_places[] = { 0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 9U, 10U, 11U, 12U, 13U, 14U, 15U, 16U, 17U, 18U, 19U, 20U, 21U, 22U, 23U, 24U, 25U, 26U, 27U, 28U, 29U, 30U, 31U, 32U, 33U, 34U, 35U, 36U, 37U, 38U, 39U, 40U, 41U, 42U, 43U, 44U, 45U, 46U, 47U, 48U, 49U, 50U, 51U, 52U, 53U, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U, 63U, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U, 73U, 74U };
+static const uint32_t s_bag_places[] = { 0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 9U, 10U, 11U, 12U, 13U,
+    14U, 15U, 16U, 17U, 18U, 19U, 20U, 21U, 22U, 23U, 24U, 25U, 26U, 27U, 28U, 29U, 30U, 31U, 32U,
+    33U, 34U, 35U, 36U, 37U, 38U, 39U, 40U, 41U, 42U, 43U, 44U, 45U, 46U, 47U, 48U, 49U, 50U, 51U,
+    52U, 53U, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U, 63U, 64U, 65U, 66U, 67U, 68U, 69U, 70U,
+    71U, 72U, 73U, 74U };
 
-/* For each transition those that may be enabled in another way when it has occurred. */
-static const uint32_t s_affected_by_Supervisor_Load_Load[] = { 0U, 1U };
-static const uint32_t s_affected_by_Supervisor_Approach_Send[] = { 1U, 2U, 3U };
-static const uint32_t s_affected_by_Supervisor_Approach_Arrived[] = { 2U, 7U };
-static const uint32_t s_affected_by_Supervisor_Approach_Move_both_Command[] = { 3U, 5U, 6U, 53U, 55U, 56U, 63U, 65U, 66U };
-static const uint32_t s_affected_by_Supervisor_Approach_Move_both_Both[] = { 2U, 4U };
-static const uint32_t s_affected_by_Supervisor_Approach_Move_both_Reply_1[] = { 4U, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U };
-static const uint32_t s_affected_by_Supervisor_Approach_Move_both_Reply_2[] = { 4U, 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U };
-static const uint32_t s_affected_by_Supervisor_Verify_Ask_first[] = { 7U, 8U, 10U, 53U, 58U };
-static const uint32_t s_affected_by_Supervisor_Verify_Ask_last[] = { 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U, 53U, 58U };
-static const uint32_t s_affected_by_Supervisor_Verify_Measured[] = { 5U, 8U, 9U, 10U, 11U, 12U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U };
-static const uint32_t s_affected_by_Supervisor_Verify_First_lost[] = { 5U, 8U, 9U, 10U, 11U, 18U, 20U, 21U, 23U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 49U, 50U, 51U };
-static const uint32_t s_affected_by_Supervisor_Verify_Last_lost[] = { 5U, 8U, 9U, 10U, 11U, 18U, 20U, 21U, 23U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 49U, 50U, 51U };
-static const uint32_t s_affected_by_Supervisor_Correct_Compare[] = { 12U, 13U, 14U, 15U };
-static const uint32_t s_affected_by_Supervisor_Correct_Move_over[] = { 13U, 15U, 16U };
-static const uint32_t s_affected_by_Supervisor_Correct_Moved[] = { 13U, 14U, 15U, 22U };
-static const uint32_t s_affected_by_Supervisor_Correct_As_planned[] = { 13U, 14U, 15U, 22U };
-static const uint32_t s_affected_by_Supervisor_Correct_Move_both_Command[] = { 16U, 18U, 19U, 53U, 55U, 56U, 63U, 65U, 66U };
-static const uint32_t s_affected_by_Supervisor_Correct_Move_both_Both[] = { 14U, 17U };
-static const uint32_t s_affected_by_Supervisor_Correct_Move_both_Reply_1[] = { 5U, 8U, 9U, 10U, 11U, 17U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U };
-static const uint32_t s_affected_by_Supervisor_Correct_Move_both_Reply_2[] = { 6U, 17U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U };
-static const uint32_t s_affected_by_Supervisor_Install_Go_back[] = { 20U, 21U, 23U, 45U };
-static const uint32_t s_affected_by_Supervisor_Install_Next_rivet[] = { 20U, 21U, 23U, 24U, 50U };
-static const uint32_t s_affected_by_Supervisor_Install_Start[] = { 20U, 21U, 22U, 23U, 28U };
-static const uint32_t s_affected_by_Supervisor_Install_Give_up[] = { 20U, 21U, 23U, 49U };
-static const uint32_t s_affected_by_Supervisor_Install_Shift_Command[] = { 24U, 26U, 27U, 53U, 55U, 56U, 63U, 65U, 66U };
-static const uint32_t s_affected_by_Supervisor_Install_Shift_Both[] = { 25U, 28U };
-static const uint32_t s_affected_by_Supervisor_Install_Shift_Reply_1[] = { 5U, 8U, 9U, 10U, 11U, 18U, 25U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U };
-static const uint32_t s_affected_by_Supervisor_Install_Shift_Reply_2[] = { 6U, 19U, 25U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Go_in[] = { 28U, 30U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Go_out[] = { 20U, 21U, 23U, 29U, 41U, 50U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Advance_Command[] = { 30U, 32U, 33U, 53U, 55U, 56U, 63U, 65U, 66U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Advance_Both[] = { 31U, 34U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Advance_Reply_1[] = { 5U, 8U, 9U, 10U, 11U, 18U, 26U, 31U, 32U, 36U, 37U, 40U, 43U, 47U, 51U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Advance_Reply_2[] = { 6U, 19U, 27U, 31U, 33U, 35U, 38U, 39U, 44U, 48U, 52U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Fasten_Press[] = { 34U, 35U, 39U, 63U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Fasten_Drill[] = { 6U, 19U, 27U, 33U, 35U, 36U, 38U, 39U, 40U, 44U, 48U, 52U, 53U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Fasten_Insert[] = { 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U, 53U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Fasten_Release[] = { 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 38U, 40U, 43U, 47U, 51U, 63U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Fasten_Finish[] = { 6U, 19U, 27U, 29U, 33U, 35U, 38U, 39U, 44U, 48U, 52U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Fasten_Press_failed[] = { 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U, 63U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Fasten_Drill_failed[] = { 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 38U, 40U, 43U, 47U, 51U, 63U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Retract_Command[] = { 41U, 43U, 44U, 53U, 55U, 56U, 63U, 65U, 66U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Retract_Both[] = { 20U, 21U, 23U, 42U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Retract_Reply_1[] = { 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 42U, 43U, 47U, 51U };
-static const uint32_t s_affected_by_Supervisor_Install_Rivet_Retract_Reply_2[] = { 6U, 19U, 27U, 33U, 35U, 38U, 39U, 42U, 44U, 48U, 52U };
-static const uint32_t s_affected_by_Supervisor_Install_Return_Command[] = { 45U, 47U, 48U, 53U, 55U, 56U, 63U, 65U, 66U };
-static const uint32_t s_affected_by_Supervisor_Install_Return_Both[] = { 46U, 49U };
-static const uint32_t s_affected_by_Supervisor_Install_Return_Reply_1[] = { 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 46U, 47U, 51U };
-static const uint32_t s_affected_by_Supervisor_Install_Return_Reply_2[] = { 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 46U, 48U, 52U };
-static const uint32_t s_affected_by_Supervisor_Home_Send_home[] = { 49U, 51U, 52U, 53U, 63U };
-static const uint32_t s_affected_by_Supervisor_Home_Both[] = { 20U, 21U, 23U, 50U };
-static const uint32_t s_affected_by_Supervisor_Home_Reply_1[] = { 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 50U, 51U };
-static const uint32_t s_affected_by_Supervisor_Home_Reply_2[] = { 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 50U, 52U };
-static const uint32_t s_affected_by_Robot1_Accept[] = { 53U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U };
-static const uint32_t s_affected_by_Robot1_Report[] = { 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U, 53U, 54U };
-static const uint32_t s_affected_by_Robot1_MoveJoint[] = { 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U };
-static const uint32_t s_affected_by_Robot1_MoveLinear[] = { 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U };
-static const uint32_t s_affected_by_Robot1_MoveHome[] = { 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U };
-static const uint32_t s_affected_by_Robot1_Measure[] = { 8U, 9U, 10U, 11U, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U };
-static const uint32_t s_affected_by_Robot1_Drill[] = { 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U };
-static const uint32_t s_affected_by_Robot1_Insert[] = { 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U };
-static const uint32_t s_affected_by_Robot1_Press[] = { 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U };
-static const uint32_t s_affected_by_Robot1_Release[] = { 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U };
-static const uint32_t s_affected_by_Robot2_Accept[] = { 63U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U };
-static const uint32_t s_affected_by_Robot2_Report[] = { 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U, 63U, 64U };
-static const uint32_t s_affected_by_Robot2_MoveJoint[] = { 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U };
-static const uint32_t s_affected_by_Robot2_MoveLinear[] = { 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U };
-static const uint32_t s_affected_by_Robot2_MoveHome[] = { 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U };
-static const uint32_t s_affected_by_Robot2_Measure[] = { 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U };
-static const uint32_t s_affected_by_Robot2_Drill[] = { 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U };
-static const uint32_t s_affected_by_Robot2_Insert[] = { 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U };
-static const uint32_t s_affected_by_Robot2_Press[] = { 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U };
-static const uint32_t s_affected_by_Robot2_Release[] = { 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U };
-
-/* For each transition the places that its occurrence may change. */
-static const uint32_t s_touched_by_Supervisor_Load_Load[] = { 10U, 11U };
-static const uint32_t s_touched_by_Supervisor_Approach_Send[] = { 11U, 19U, 21U };
-static const uint32_t s_touched_by_Supervisor_Approach_Arrived[] = { 12U, 20U, 21U };
-static const uint32_t s_touched_by_Supervisor_Approach_Move_both_Command[] = { 0U, 1U, 5U, 6U, 19U, 22U, 24U };
-static const uint32_t s_touched_by_Supervisor_Approach_Move_both_Both[] = { 20U, 23U, 25U };
-static const uint32_t s_touched_by_Supervisor_Approach_Move_both_Reply_1[] = { 2U, 22U, 23U };
-static const uint32_t s_touched_by_Supervisor_Approach_Move_both_Reply_2[] = { 7U, 24U, 25U };
-static const uint32_t s_touched_by_Supervisor_Verify_Ask_first[] = { 1U, 3U, 12U, 26U };
-static const uint32_t s_touched_by_Supervisor_Verify_Ask_last[] = { 1U, 2U, 3U, 4U, 26U, 27U };
-static const uint32_t s_touched_by_Supervisor_Verify_Measured[] = { 2U, 4U, 13U, 27U };
-static const uint32_t s_touched_by_Supervisor_Verify_First_lost[] = { 2U, 4U, 15U, 17U, 26U };
-static const uint32_t s_touched_by_Supervisor_Verify_Last_lost[] = { 2U, 4U, 15U, 17U, 27U };
-static const uint32_t s_touched_by_Supervisor_Correct_Compare[] = { 13U, 28U, 31U };
-static const uint32_t s_touched_by_Supervisor_Correct_Move_over[] = { 28U, 29U };
-static const uint32_t s_touched_by_Supervisor_Correct_Moved[] = { 14U, 30U, 31U };
-static const uint32_t s_touched_by_Supervisor_Correct_As_planned[] = { 14U, 28U, 31U };
-static const uint32_t s_touched_by_Supervisor_Correct_Move_both_Command[] = { 0U, 1U, 5U, 6U, 29U, 32U, 34U };
-static const uint32_t s_touched_by_Supervisor_Correct_Move_both_Both[] = { 30U, 33U, 35U };
-static const uint32_t s_touched_by_Supervisor_Correct_Move_both_Reply_1[] = { 2U, 32U, 33U };
-static const uint32_t s_touched_by_Supervisor_Correct_Move_both_Reply_2[] = { 7U, 34U, 35U };
-static const uint32_t s_touched_by_Supervisor_Install_Go_back[] = { 38U, 39U, 40U };
-static const uint32_t s_touched_by_Supervisor_Install_Next_rivet[] = { 17U, 36U, 38U, 40U };
-static const uint32_t s_touched_by_Supervisor_Install_Start[] = { 14U, 37U, 40U };
-static const uint32_t s_touched_by_Supervisor_Install_Give_up[] = { 15U, 38U, 40U };
-static const uint32_t s_touched_by_Supervisor_Install_Shift_Command[] = { 0U, 1U, 5U, 6U, 36U, 41U, 43U };
-static const uint32_t s_touched_by_Supervisor_Install_Shift_Both[] = { 37U, 42U, 44U };
-static const uint32_t s_touched_by_Supervisor_Install_Shift_Reply_1[] = { 2U, 41U, 42U };
-static const uint32_t s_touched_by_Supervisor_Install_Shift_Reply_2[] = { 7U, 43U, 44U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Go_in[] = { 37U, 45U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Go_out[] = { 17U, 47U, 48U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Advance_Command[] = { 0U, 1U, 5U, 6U, 45U, 49U, 51U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Advance_Both[] = { 46U, 50U, 52U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Advance_Reply_1[] = { 2U, 49U, 50U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Advance_Reply_2[] = { 7U, 51U, 52U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Fasten_Press[] = { 6U, 46U, 53U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Fasten_Drill[] = { 1U, 7U, 53U, 54U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Fasten_Insert[] = { 1U, 2U, 54U, 55U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Fasten_Release[] = { 2U, 6U, 55U, 56U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Fasten_Finish[] = { 7U, 47U, 56U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Fasten_Press_failed[] = { 6U, 7U, 53U, 56U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Fasten_Drill_failed[] = { 2U, 6U, 54U, 56U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Retract_Command[] = { 0U, 1U, 5U, 6U, 48U, 57U, 59U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Retract_Both[] = { 38U, 58U, 60U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Retract_Reply_1[] = { 2U, 57U, 58U };
-static const uint32_t s_touched_by_Supervisor_Install_Rivet_Retract_Reply_2[] = { 7U, 59U, 60U };
-static const uint32_t s_touched_by_Supervisor_Install_Return_Command[] = { 0U, 1U, 5U, 6U, 39U, 61U, 63U };
-static const uint32_t s_touched_by_Supervisor_Install_Return_Both[] = { 15U, 62U, 64U };
-static const uint32_t s_touched_by_Supervisor_Install_Return_Reply_1[] = { 2U, 61U, 62U };
-static const uint32_t s_touched_by_Supervisor_Install_Return_Reply_2[] = { 7U, 63U, 64U };
-static const uint32_t s_touched_by_Supervisor_Home_Send_home[] = { 1U, 6U, 15U, 65U, 67U };
-static const uint32_t s_touched_by_Supervisor_Home_Both[] = { 16U, 17U, 18U, 66U, 68U };
-static const uint32_t s_touched_by_Supervisor_Home_Reply_1[] = { 2U, 65U, 66U };
-static const uint32_t s_touched_by_Supervisor_Home_Reply_2[] = { 7U, 67U, 68U };
-static const uint32_t s_touched_by_Robot1_Accept[] = { 1U, 69U, 70U };
-static const uint32_t s_touched_by_Robot1_Report[] = { 2U, 69U, 71U };
-static const uint32_t s_touched_by_Robot1_MoveJoint[] = { 0U, 70U, 71U };
-static const uint32_t s_touched_by_Robot1_MoveLinear[] = { 0U, 70U, 71U };
-static const uint32_t s_touched_by_Robot1_MoveHome[] = { 70U, 71U };
-static const uint32_t s_touched_by_Robot1_Measure[] = { 3U, 4U, 70U, 71U };
-static const uint32_t s_touched_by_Robot1_Drill[] = { 70U, 71U };
-static const uint32_t s_touched_by_Robot1_Insert[] = { 70U, 71U };
-static const uint32_t s_touched_by_Robot1_Press[] = { 70U, 71U };
-static const uint32_t s_touched_by_Robot1_Release[] = { 70U, 71U };
-static const uint32_t s_touched_by_Robot2_Accept[] = { 6U, 72U, 73U };
-static const uint32_t s_touched_by_Robot2_Report[] = { 7U, 72U, 74U };
-static const uint32_t s_touched_by_Robot2_MoveJoint[] = { 5U, 73U, 74U };
-static const uint32_t s_touched_by_Robot2_MoveLinear[] = { 5U, 73U, 74U };
-static const uint32_t s_touched_by_Robot2_MoveHome[] = { 73U, 74U };
-static const uint32_t s_touched_by_Robot2_Measure[] = { 8U, 9U, 73U, 74U };
-static const uint32_t s_touched_by_Robot2_Drill[] = { 73U, 74U };
-static const uint32_t s_touched_by_Robot2_Insert[] = { 73U, 74U };
-static const uint32_t s_touched_by_Robot2_Press[] = { 73U, 74U };
-static const uint32_t s_touched_by_Robot2_Release[] = { 73U, 74U };
-
-/* And those that decide about it. */
-static const uint32_t s_read_by_Supervisor_Load_Load[] = { 10U };
-static const uint32_t s_read_by_Supervisor_Approach_Send[] = { 11U };
-static const uint32_t s_read_by_Supervisor_Approach_Arrived[] = { 20U, 21U };
-static const uint32_t s_read_by_Supervisor_Approach_Move_both_Command[] = { 19U };
-static const uint32_t s_read_by_Supervisor_Approach_Move_both_Both[] = { 23U, 25U };
-static const uint32_t s_read_by_Supervisor_Approach_Move_both_Reply_1[] = { 2U, 22U };
-static const uint32_t s_read_by_Supervisor_Approach_Move_both_Reply_2[] = { 7U, 24U };
-static const uint32_t s_read_by_Supervisor_Verify_Ask_first[] = { 12U };
-static const uint32_t s_read_by_Supervisor_Verify_Ask_last[] = { 2U, 4U, 26U };
-static const uint32_t s_read_by_Supervisor_Verify_Measured[] = { 2U, 4U, 27U };
-static const uint32_t s_read_by_Supervisor_Verify_First_lost[] = { 2U, 4U, 26U };
-static const uint32_t s_read_by_Supervisor_Verify_Last_lost[] = { 2U, 4U, 27U };
-static const uint32_t s_read_by_Supervisor_Correct_Compare[] = { 13U };
-static const uint32_t s_read_by_Supervisor_Correct_Move_over[] = { 28U, 31U };
-static const uint32_t s_read_by_Supervisor_Correct_Moved[] = { 30U, 31U };
-static const uint32_t s_read_by_Supervisor_Correct_As_planned[] = { 28U, 31U };
-static const uint32_t s_read_by_Supervisor_Correct_Move_both_Command[] = { 29U };
-static const uint32_t s_read_by_Supervisor_Correct_Move_both_Both[] = { 33U, 35U };
-static const uint32_t s_read_by_Supervisor_Correct_Move_both_Reply_1[] = { 2U, 32U };
-static const uint32_t s_read_by_Supervisor_Correct_Move_both_Reply_2[] = { 7U, 34U };
-static const uint32_t s_read_by_Supervisor_Install_Go_back[] = { 17U, 38U, 40U };
-static const uint32_t s_read_by_Supervisor_Install_Next_rivet[] = { 17U, 38U, 40U };
-static const uint32_t s_read_by_Supervisor_Install_Start[] = { 14U };
-static const uint32_t s_read_by_Supervisor_Install_Give_up[] = { 17U, 38U, 40U };
-static const uint32_t s_read_by_Supervisor_Install_Shift_Command[] = { 36U };
-static const uint32_t s_read_by_Supervisor_Install_Shift_Both[] = { 42U, 44U };
-static const uint32_t s_read_by_Supervisor_Install_Shift_Reply_1[] = { 2U, 41U };
-static const uint32_t s_read_by_Supervisor_Install_Shift_Reply_2[] = { 7U, 43U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Go_in[] = { 37U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Go_out[] = { 47U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Command[] = { 45U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Both[] = { 50U, 52U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Reply_1[] = { 2U, 49U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Advance_Reply_2[] = { 7U, 51U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Press[] = { 46U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Drill[] = { 7U, 53U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Insert[] = { 2U, 54U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Release[] = { 2U, 55U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Finish[] = { 7U, 56U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Press_failed[] = { 7U, 53U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Fasten_Drill_failed[] = { 2U, 54U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Command[] = { 48U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Both[] = { 58U, 60U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Reply_1[] = { 2U, 57U };
-static const uint32_t s_read_by_Supervisor_Install_Rivet_Retract_Reply_2[] = { 7U, 59U };
-static const uint32_t s_read_by_Supervisor_Install_Return_Command[] = { 39U };
-static const uint32_t s_read_by_Supervisor_Install_Return_Both[] = { 62U, 64U };
-static const uint32_t s_read_by_Supervisor_Install_Return_Reply_1[] = { 2U, 61U };
-static const uint32_t s_read_by_Supervisor_Install_Return_Reply_2[] = { 7U, 63U };
-static const uint32_t s_read_by_Supervisor_Home_Send_home[] = { 15U };
-static const uint32_t s_read_by_Supervisor_Home_Both[] = { 17U, 66U, 68U };
-static const uint32_t s_read_by_Supervisor_Home_Reply_1[] = { 2U, 65U };
-static const uint32_t s_read_by_Supervisor_Home_Reply_2[] = { 7U, 67U };
-static const uint32_t s_read_by_Robot1_Accept[] = { 1U, 69U };
-static const uint32_t s_read_by_Robot1_Report[] = { 71U };
-static const uint32_t s_read_by_Robot1_MoveJoint[] = { 0U, 70U };
-static const uint32_t s_read_by_Robot1_MoveLinear[] = { 0U, 70U };
-static const uint32_t s_read_by_Robot1_MoveHome[] = { 70U };
-static const uint32_t s_read_by_Robot1_Measure[] = { 3U, 70U };
-static const uint32_t s_read_by_Robot1_Drill[] = { 70U };
-static const uint32_t s_read_by_Robot1_Insert[] = { 70U };
-static const uint32_t s_read_by_Robot1_Press[] = { 70U };
-static const uint32_t s_read_by_Robot1_Release[] = { 70U };
-static const uint32_t s_read_by_Robot2_Accept[] = { 6U, 72U };
-static const uint32_t s_read_by_Robot2_Report[] = { 74U };
-static const uint32_t s_read_by_Robot2_MoveJoint[] = { 5U, 73U };
-static const uint32_t s_read_by_Robot2_MoveLinear[] = { 5U, 73U };
-static const uint32_t s_read_by_Robot2_MoveHome[] = { 73U };
-static const uint32_t s_read_by_Robot2_Measure[] = { 8U, 73U };
-static const uint32_t s_read_by_Robot2_Drill[] = { 73U };
-static const uint32_t s_read_by_Robot2_Insert[] = { 73U };
-static const uint32_t s_read_by_Robot2_Press[] = { 73U };
-static const uint32_t s_read_by_Robot2_Release[] = { 73U };
-
+/* For each transition: those that may be enabled in another way when it has occurred, the places that it may change, and the
+ * places that decide about it. */
 static const pn_transition_t s_transitions[] = {
-    {
-        .name = "Cell.Supervisor.Load.Load", .id = "ID1412310271", .owner = 0, .priority = 1000,
-        .origin = "page `Load`, transition `Load` (ID1412310271)",
-        .enumerate = Supervisor_Load_Load_enumerate, .fire = Supervisor_Load_Load_fire, .binding = &s_binding_Supervisor_Load_Load,
-        .affected_count = sizeof s_affected_by_Supervisor_Load_Load / sizeof s_affected_by_Supervisor_Load_Load[0],
-        .affected = s_affected_by_Supervisor_Load_Load,
-        .touched_count = sizeof s_touched_by_Supervisor_Load_Load / sizeof s_touched_by_Supervisor_Load_Load[0],
-        .touched = s_touched_by_Supervisor_Load_Load,
-        .read_count = sizeof s_read_by_Supervisor_Load_Load / sizeof s_read_by_Supervisor_Load_Load[0],
-        .read = s_read_by_Supervisor_Load_Load,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.Send", .id = "ID1412310300", .owner = 0, .priority = 1000,
-        .origin = "page `Approach`, transition `Send` (ID1412310300)",
-        .enumerate = Supervisor_Approach_Send_enumerate, .fire = Supervisor_Approach_Send_fire, .binding = &s_binding_Supervisor_Approach_Send,
-        .affected_count = sizeof s_affected_by_Supervisor_Approach_Send / sizeof s_affected_by_Supervisor_Approach_Send[0],
-        .affected = s_affected_by_Supervisor_Approach_Send,
-        .touched_count = sizeof s_touched_by_Supervisor_Approach_Send / sizeof s_touched_by_Supervisor_Approach_Send[0],
-        .touched = s_touched_by_Supervisor_Approach_Send,
-        .read_count = sizeof s_read_by_Supervisor_Approach_Send / sizeof s_read_by_Supervisor_Approach_Send[0],
-        .read = s_read_by_Supervisor_Approach_Send,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.Arrived", .id = "ID1412310311", .owner = 0, .priority = 1000,
-        .origin = "page `Approach`, transition `Arrived` (ID1412310311)",
-        .enumerate = Supervisor_Approach_Arrived_enumerate, .fire = Supervisor_Approach_Arrived_fire, .binding = &s_binding_Supervisor_Approach_Arrived,
-        .affected_count = sizeof s_affected_by_Supervisor_Approach_Arrived / sizeof s_affected_by_Supervisor_Approach_Arrived[0],
-        .affected = s_affected_by_Supervisor_Approach_Arrived,
-        .touched_count = sizeof s_touched_by_Supervisor_Approach_Arrived / sizeof s_touched_by_Supervisor_Approach_Arrived[0],
-        .touched = s_touched_by_Supervisor_Approach_Arrived,
-        .read_count = sizeof s_read_by_Supervisor_Approach_Arrived / sizeof s_read_by_Supervisor_Approach_Arrived[0],
-        .read = s_read_by_Supervisor_Approach_Arrived,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.Move both.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = Supervisor_Approach_Move_both_Command_enumerate, .fire = Supervisor_Approach_Move_both_Command_fire, .binding = &s_binding_Supervisor_Approach_Move_both_Command,
-        .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Command / sizeof s_affected_by_Supervisor_Approach_Move_both_Command[0],
-        .affected = s_affected_by_Supervisor_Approach_Move_both_Command,
-        .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Command / sizeof s_touched_by_Supervisor_Approach_Move_both_Command[0],
-        .touched = s_touched_by_Supervisor_Approach_Move_both_Command,
-        .read_count = sizeof s_read_by_Supervisor_Approach_Move_both_Command / sizeof s_read_by_Supervisor_Approach_Move_both_Command[0],
-        .read = s_read_by_Supervisor_Approach_Move_both_Command,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.Move both.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = Supervisor_Approach_Move_both_Both_enumerate, .fire = Supervisor_Approach_Move_both_Both_fire, .binding = &s_binding_Supervisor_Approach_Move_both_Both,
-        .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Both / sizeof s_affected_by_Supervisor_Approach_Move_both_Both[0],
-        .affected = s_affected_by_Supervisor_Approach_Move_both_Both,
-        .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Both / sizeof s_touched_by_Supervisor_Approach_Move_both_Both[0],
-        .touched = s_touched_by_Supervisor_Approach_Move_both_Both,
-        .read_count = sizeof s_read_by_Supervisor_Approach_Move_both_Both / sizeof s_read_by_Supervisor_Approach_Move_both_Both[0],
-        .read = s_read_by_Supervisor_Approach_Move_both_Both,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.Move both.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = Supervisor_Approach_Move_both_Reply_1_enumerate, .fire = Supervisor_Approach_Move_both_Reply_1_fire, .binding = &s_binding_Supervisor_Approach_Move_both_Reply_1,
-        .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_1 / sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_1[0],
-        .affected = s_affected_by_Supervisor_Approach_Move_both_Reply_1,
-        .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_1 / sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_1[0],
-        .touched = s_touched_by_Supervisor_Approach_Move_both_Reply_1,
-        .read_count = sizeof s_read_by_Supervisor_Approach_Move_both_Reply_1 / sizeof s_read_by_Supervisor_Approach_Move_both_Reply_1[0],
-        .read = s_read_by_Supervisor_Approach_Move_both_Reply_1,
-    },
-    {
-        .name = "Cell.Supervisor.Approach.Move both.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = Supervisor_Approach_Move_both_Reply_2_enumerate, .fire = Supervisor_Approach_Move_both_Reply_2_fire, .binding = &s_binding_Supervisor_Approach_Move_both_Reply_2,
-        .affected_count = sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_2 / sizeof s_affected_by_Supervisor_Approach_Move_both_Reply_2[0],
-        .affected = s_affected_by_Supervisor_Approach_Move_both_Reply_2,
-        .touched_count = sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_2 / sizeof s_touched_by_Supervisor_Approach_Move_both_Reply_2[0],
-        .touched = s_touched_by_Supervisor_Approach_Move_both_Reply_2,
-        .read_count = sizeof s_read_by_Supervisor_Approach_Move_both_Reply_2 / sizeof s_read_by_Supervisor_Approach_Move_both_Reply_2[0],
-        .read = s_read_by_Supervisor_Approach_Move_both_Reply_2,
-    },
-    {
-        .name = "Cell.Supervisor.Verify.Ask first", .id = "ID1412310377", .owner = 0, .priority = 1000,
-        .origin = "page `Verify`, transition `Ask first` (ID1412310377)",
-        .enumerate = Supervisor_Verify_Ask_first_enumerate, .fire = Supervisor_Verify_Ask_first_fire, .binding = &s_binding_Supervisor_Verify_Ask_first,
-        .affected_count = sizeof s_affected_by_Supervisor_Verify_Ask_first / sizeof s_affected_by_Supervisor_Verify_Ask_first[0],
-        .affected = s_affected_by_Supervisor_Verify_Ask_first,
-        .touched_count = sizeof s_touched_by_Supervisor_Verify_Ask_first / sizeof s_touched_by_Supervisor_Verify_Ask_first[0],
-        .touched = s_touched_by_Supervisor_Verify_Ask_first,
-        .read_count = sizeof s_read_by_Supervisor_Verify_Ask_first / sizeof s_read_by_Supervisor_Verify_Ask_first[0],
-        .read = s_read_by_Supervisor_Verify_Ask_first,
-    },
-    {
-        .name = "Cell.Supervisor.Verify.Ask last", .id = "ID1412310385", .owner = 0, .priority = 1000,
-        .origin = "page `Verify`, transition `Ask last` (ID1412310385)",
-        .enumerate = Supervisor_Verify_Ask_last_enumerate, .fire = Supervisor_Verify_Ask_last_fire, .binding = &s_binding_Supervisor_Verify_Ask_last,
-        .affected_count = sizeof s_affected_by_Supervisor_Verify_Ask_last / sizeof s_affected_by_Supervisor_Verify_Ask_last[0],
-        .affected = s_affected_by_Supervisor_Verify_Ask_last,
-        .touched_count = sizeof s_touched_by_Supervisor_Verify_Ask_last / sizeof s_touched_by_Supervisor_Verify_Ask_last[0],
-        .touched = s_touched_by_Supervisor_Verify_Ask_last,
-        .read_count = sizeof s_read_by_Supervisor_Verify_Ask_last / sizeof s_read_by_Supervisor_Verify_Ask_last[0],
-        .read = s_read_by_Supervisor_Verify_Ask_last,
-    },
-    {
-        .name = "Cell.Supervisor.Verify.Measured", .id = "ID1412310393", .owner = 0, .priority = 1000,
-        .origin = "page `Verify`, transition `Measured` (ID1412310393)",
-        .enumerate = Supervisor_Verify_Measured_enumerate, .fire = Supervisor_Verify_Measured_fire, .binding = &s_binding_Supervisor_Verify_Measured,
-        .affected_count = sizeof s_affected_by_Supervisor_Verify_Measured / sizeof s_affected_by_Supervisor_Verify_Measured[0],
-        .affected = s_affected_by_Supervisor_Verify_Measured,
-        .touched_count = sizeof s_touched_by_Supervisor_Verify_Measured / sizeof s_touched_by_Supervisor_Verify_Measured[0],
-        .touched = s_touched_by_Supervisor_Verify_Measured,
-        .read_count = sizeof s_read_by_Supervisor_Verify_Measured / sizeof s_read_by_Supervisor_Verify_Measured[0],
-        .read = s_read_by_Supervisor_Verify_Measured,
-    },
-    {
-        .name = "Cell.Supervisor.Verify.First lost", .id = "ID1412320018", .owner = 0, .priority = 1000,
-        .origin = "page `Verify`, transition `First lost` (ID1412320018)",
-        .enumerate = Supervisor_Verify_First_lost_enumerate, .fire = Supervisor_Verify_First_lost_fire, .binding = &s_binding_Supervisor_Verify_First_lost,
-        .affected_count = sizeof s_affected_by_Supervisor_Verify_First_lost / sizeof s_affected_by_Supervisor_Verify_First_lost[0],
-        .affected = s_affected_by_Supervisor_Verify_First_lost,
-        .touched_count = sizeof s_touched_by_Supervisor_Verify_First_lost / sizeof s_touched_by_Supervisor_Verify_First_lost[0],
-        .touched = s_touched_by_Supervisor_Verify_First_lost,
-        .read_count = sizeof s_read_by_Supervisor_Verify_First_lost / sizeof s_read_by_Supervisor_Verify_First_lost[0],
-        .read = s_read_by_Supervisor_Verify_First_lost,
-    },
-    {
-        .name = "Cell.Supervisor.Verify.Last lost", .id = "ID1412320023", .owner = 0, .priority = 1000,
-        .origin = "page `Verify`, transition `Last lost` (ID1412320023)",
-        .enumerate = Supervisor_Verify_Last_lost_enumerate, .fire = Supervisor_Verify_Last_lost_fire, .binding = &s_binding_Supervisor_Verify_Last_lost,
-        .affected_count = sizeof s_affected_by_Supervisor_Verify_Last_lost / sizeof s_affected_by_Supervisor_Verify_Last_lost[0],
-        .affected = s_affected_by_Supervisor_Verify_Last_lost,
-        .touched_count = sizeof s_touched_by_Supervisor_Verify_Last_lost / sizeof s_touched_by_Supervisor_Verify_Last_lost[0],
-        .touched = s_touched_by_Supervisor_Verify_Last_lost,
-        .read_count = sizeof s_read_by_Supervisor_Verify_Last_lost / sizeof s_read_by_Supervisor_Verify_Last_lost[0],
-        .read = s_read_by_Supervisor_Verify_Last_lost,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.Compare", .id = "ID1412310453", .owner = 0, .priority = 1000,
-        .origin = "page `Correct`, transition `Compare` (ID1412310453)",
-        .enumerate = Supervisor_Correct_Compare_enumerate, .fire = Supervisor_Correct_Compare_fire, .binding = &s_binding_Supervisor_Correct_Compare,
-        .affected_count = sizeof s_affected_by_Supervisor_Correct_Compare / sizeof s_affected_by_Supervisor_Correct_Compare[0],
-        .affected = s_affected_by_Supervisor_Correct_Compare,
-        .touched_count = sizeof s_touched_by_Supervisor_Correct_Compare / sizeof s_touched_by_Supervisor_Correct_Compare[0],
-        .touched = s_touched_by_Supervisor_Correct_Compare,
-        .read_count = sizeof s_read_by_Supervisor_Correct_Compare / sizeof s_read_by_Supervisor_Correct_Compare[0],
-        .read = s_read_by_Supervisor_Correct_Compare,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.Move over", .id = "ID1412310461", .owner = 0, .priority = 1000,
-        .origin = "page `Correct`, transition `Move over` (ID1412310461)",
-        .enumerate = Supervisor_Correct_Move_over_enumerate, .fire = Supervisor_Correct_Move_over_fire, .binding = &s_binding_Supervisor_Correct_Move_over,
-        .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_over / sizeof s_affected_by_Supervisor_Correct_Move_over[0],
-        .affected = s_affected_by_Supervisor_Correct_Move_over,
-        .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_over / sizeof s_touched_by_Supervisor_Correct_Move_over[0],
-        .touched = s_touched_by_Supervisor_Correct_Move_over,
-        .read_count = sizeof s_read_by_Supervisor_Correct_Move_over / sizeof s_read_by_Supervisor_Correct_Move_over[0],
-        .read = s_read_by_Supervisor_Correct_Move_over,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.Moved", .id = "ID1412310478", .owner = 0, .priority = 1000,
-        .origin = "page `Correct`, transition `Moved` (ID1412310478)",
-        .enumerate = Supervisor_Correct_Moved_enumerate, .fire = Supervisor_Correct_Moved_fire, .binding = &s_binding_Supervisor_Correct_Moved,
-        .affected_count = sizeof s_affected_by_Supervisor_Correct_Moved / sizeof s_affected_by_Supervisor_Correct_Moved[0],
-        .affected = s_affected_by_Supervisor_Correct_Moved,
-        .touched_count = sizeof s_touched_by_Supervisor_Correct_Moved / sizeof s_touched_by_Supervisor_Correct_Moved[0],
-        .touched = s_touched_by_Supervisor_Correct_Moved,
-        .read_count = sizeof s_read_by_Supervisor_Correct_Moved / sizeof s_read_by_Supervisor_Correct_Moved[0],
-        .read = s_read_by_Supervisor_Correct_Moved,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.As planned", .id = "ID1412310526", .owner = 0, .priority = 1000,
-        .origin = "page `Correct`, transition `As planned` (ID1412310526)",
-        .enumerate = Supervisor_Correct_As_planned_enumerate, .fire = Supervisor_Correct_As_planned_fire, .binding = &s_binding_Supervisor_Correct_As_planned,
-        .affected_count = sizeof s_affected_by_Supervisor_Correct_As_planned / sizeof s_affected_by_Supervisor_Correct_As_planned[0],
-        .affected = s_affected_by_Supervisor_Correct_As_planned,
-        .touched_count = sizeof s_touched_by_Supervisor_Correct_As_planned / sizeof s_touched_by_Supervisor_Correct_As_planned[0],
-        .touched = s_touched_by_Supervisor_Correct_As_planned,
-        .read_count = sizeof s_read_by_Supervisor_Correct_As_planned / sizeof s_read_by_Supervisor_Correct_As_planned[0],
-        .read = s_read_by_Supervisor_Correct_As_planned,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.Move both.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = Supervisor_Correct_Move_both_Command_enumerate, .fire = Supervisor_Correct_Move_both_Command_fire, .binding = &s_binding_Supervisor_Correct_Move_both_Command,
-        .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Command / sizeof s_affected_by_Supervisor_Correct_Move_both_Command[0],
-        .affected = s_affected_by_Supervisor_Correct_Move_both_Command,
-        .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Command / sizeof s_touched_by_Supervisor_Correct_Move_both_Command[0],
-        .touched = s_touched_by_Supervisor_Correct_Move_both_Command,
-        .read_count = sizeof s_read_by_Supervisor_Correct_Move_both_Command / sizeof s_read_by_Supervisor_Correct_Move_both_Command[0],
-        .read = s_read_by_Supervisor_Correct_Move_both_Command,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.Move both.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = Supervisor_Correct_Move_both_Both_enumerate, .fire = Supervisor_Correct_Move_both_Both_fire, .binding = &s_binding_Supervisor_Correct_Move_both_Both,
-        .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Both / sizeof s_affected_by_Supervisor_Correct_Move_both_Both[0],
-        .affected = s_affected_by_Supervisor_Correct_Move_both_Both,
-        .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Both / sizeof s_touched_by_Supervisor_Correct_Move_both_Both[0],
-        .touched = s_touched_by_Supervisor_Correct_Move_both_Both,
-        .read_count = sizeof s_read_by_Supervisor_Correct_Move_both_Both / sizeof s_read_by_Supervisor_Correct_Move_both_Both[0],
-        .read = s_read_by_Supervisor_Correct_Move_both_Both,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.Move both.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = Supervisor_Correct_Move_both_Reply_1_enumerate, .fire = Supervisor_Correct_Move_both_Reply_1_fire, .binding = &s_binding_Supervisor_Correct_Move_both_Reply_1,
-        .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_1 / sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_1[0],
-        .affected = s_affected_by_Supervisor_Correct_Move_both_Reply_1,
-        .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_1 / sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_1[0],
-        .touched = s_touched_by_Supervisor_Correct_Move_both_Reply_1,
-        .read_count = sizeof s_read_by_Supervisor_Correct_Move_both_Reply_1 / sizeof s_read_by_Supervisor_Correct_Move_both_Reply_1[0],
-        .read = s_read_by_Supervisor_Correct_Move_both_Reply_1,
-    },
-    {
-        .name = "Cell.Supervisor.Correct.Move both.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = Supervisor_Correct_Move_both_Reply_2_enumerate, .fire = Supervisor_Correct_Move_both_Reply_2_fire, .binding = &s_binding_Supervisor_Correct_Move_both_Reply_2,
-        .affected_count = sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_2 / sizeof s_affected_by_Supervisor_Correct_Move_both_Reply_2[0],
-        .affected = s_affected_by_Supervisor_Correct_Move_both_Reply_2,
-        .touched_count = sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_2 / sizeof s_touched_by_Supervisor_Correct_Move_both_Reply_2[0],
-        .touched = s_touched_by_Supervisor_Correct_Move_both_Reply_2,
-        .read_count = sizeof s_read_by_Supervisor_Correct_Move_both_Reply_2 / sizeof s_read_by_Supervisor_Correct_Move_both_Reply_2[0],
-        .read = s_read_by_Supervisor_Correct_Move_both_Reply_2,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Go back", .id = "ID1412310594", .owner = 0, .priority = 1000,
-        .origin = "page `Install`, transition `Go back` (ID1412310594)",
-        .enumerate = Supervisor_Install_Go_back_enumerate, .fire = Supervisor_Install_Go_back_fire, .binding = &s_binding_Supervisor_Install_Go_back,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Go_back / sizeof s_affected_by_Supervisor_Install_Go_back[0],
-        .affected = s_affected_by_Supervisor_Install_Go_back,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Go_back / sizeof s_touched_by_Supervisor_Install_Go_back[0],
-        .touched = s_touched_by_Supervisor_Install_Go_back,
-        .read_count = sizeof s_read_by_Supervisor_Install_Go_back / sizeof s_read_by_Supervisor_Install_Go_back[0],
-        .read = s_read_by_Supervisor_Install_Go_back,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Next rivet", .id = "ID1412310624", .owner = 0, .priority = 1000,
-        .origin = "page `Install`, transition `Next rivet` (ID1412310624)",
-        .enumerate = Supervisor_Install_Next_rivet_enumerate, .fire = Supervisor_Install_Next_rivet_fire, .binding = &s_binding_Supervisor_Install_Next_rivet,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Next_rivet / sizeof s_affected_by_Supervisor_Install_Next_rivet[0],
-        .affected = s_affected_by_Supervisor_Install_Next_rivet,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Next_rivet / sizeof s_touched_by_Supervisor_Install_Next_rivet[0],
-        .touched = s_touched_by_Supervisor_Install_Next_rivet,
-        .read_count = sizeof s_read_by_Supervisor_Install_Next_rivet / sizeof s_read_by_Supervisor_Install_Next_rivet[0],
-        .read = s_read_by_Supervisor_Install_Next_rivet,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Start", .id = "ID1412310632", .owner = 0, .priority = 1000,
-        .origin = "page `Install`, transition `Start` (ID1412310632)",
-        .enumerate = Supervisor_Install_Start_enumerate, .fire = Supervisor_Install_Start_fire, .binding = &s_binding_Supervisor_Install_Start,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Start / sizeof s_affected_by_Supervisor_Install_Start[0],
-        .affected = s_affected_by_Supervisor_Install_Start,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Start / sizeof s_touched_by_Supervisor_Install_Start[0],
-        .touched = s_touched_by_Supervisor_Install_Start,
-        .read_count = sizeof s_read_by_Supervisor_Install_Start / sizeof s_read_by_Supervisor_Install_Start[0],
-        .read = s_read_by_Supervisor_Install_Start,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Give up", .id = "ID1412320067", .owner = 0, .priority = 1000,
-        .origin = "page `Install`, transition `Give up` (ID1412320067)",
-        .enumerate = Supervisor_Install_Give_up_enumerate, .fire = Supervisor_Install_Give_up_fire, .binding = &s_binding_Supervisor_Install_Give_up,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Give_up / sizeof s_affected_by_Supervisor_Install_Give_up[0],
-        .affected = s_affected_by_Supervisor_Install_Give_up,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Give_up / sizeof s_touched_by_Supervisor_Install_Give_up[0],
-        .touched = s_touched_by_Supervisor_Install_Give_up,
-        .read_count = sizeof s_read_by_Supervisor_Install_Give_up / sizeof s_read_by_Supervisor_Install_Give_up[0],
-        .read = s_read_by_Supervisor_Install_Give_up,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Shift.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = Supervisor_Install_Shift_Command_enumerate, .fire = Supervisor_Install_Shift_Command_fire, .binding = &s_binding_Supervisor_Install_Shift_Command,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Command / sizeof s_affected_by_Supervisor_Install_Shift_Command[0],
-        .affected = s_affected_by_Supervisor_Install_Shift_Command,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Command / sizeof s_touched_by_Supervisor_Install_Shift_Command[0],
-        .touched = s_touched_by_Supervisor_Install_Shift_Command,
-        .read_count = sizeof s_read_by_Supervisor_Install_Shift_Command / sizeof s_read_by_Supervisor_Install_Shift_Command[0],
-        .read = s_read_by_Supervisor_Install_Shift_Command,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Shift.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = Supervisor_Install_Shift_Both_enumerate, .fire = Supervisor_Install_Shift_Both_fire, .binding = &s_binding_Supervisor_Install_Shift_Both,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Both / sizeof s_affected_by_Supervisor_Install_Shift_Both[0],
-        .affected = s_affected_by_Supervisor_Install_Shift_Both,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Both / sizeof s_touched_by_Supervisor_Install_Shift_Both[0],
-        .touched = s_touched_by_Supervisor_Install_Shift_Both,
-        .read_count = sizeof s_read_by_Supervisor_Install_Shift_Both / sizeof s_read_by_Supervisor_Install_Shift_Both[0],
-        .read = s_read_by_Supervisor_Install_Shift_Both,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Shift.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = Supervisor_Install_Shift_Reply_1_enumerate, .fire = Supervisor_Install_Shift_Reply_1_fire, .binding = &s_binding_Supervisor_Install_Shift_Reply_1,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Reply_1 / sizeof s_affected_by_Supervisor_Install_Shift_Reply_1[0],
-        .affected = s_affected_by_Supervisor_Install_Shift_Reply_1,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Reply_1 / sizeof s_touched_by_Supervisor_Install_Shift_Reply_1[0],
-        .touched = s_touched_by_Supervisor_Install_Shift_Reply_1,
-        .read_count = sizeof s_read_by_Supervisor_Install_Shift_Reply_1 / sizeof s_read_by_Supervisor_Install_Shift_Reply_1[0],
-        .read = s_read_by_Supervisor_Install_Shift_Reply_1,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Shift.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = Supervisor_Install_Shift_Reply_2_enumerate, .fire = Supervisor_Install_Shift_Reply_2_fire, .binding = &s_binding_Supervisor_Install_Shift_Reply_2,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Shift_Reply_2 / sizeof s_affected_by_Supervisor_Install_Shift_Reply_2[0],
-        .affected = s_affected_by_Supervisor_Install_Shift_Reply_2,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Shift_Reply_2 / sizeof s_touched_by_Supervisor_Install_Shift_Reply_2[0],
-        .touched = s_touched_by_Supervisor_Install_Shift_Reply_2,
-        .read_count = sizeof s_read_by_Supervisor_Install_Shift_Reply_2 / sizeof s_read_by_Supervisor_Install_Shift_Reply_2[0],
-        .read = s_read_by_Supervisor_Install_Shift_Reply_2,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Go in", .id = "ID1412310716", .owner = 0, .priority = 1000,
-        .origin = "page `Rivet`, transition `Go in` (ID1412310716)",
-        .enumerate = Supervisor_Install_Rivet_Go_in_enumerate, .fire = Supervisor_Install_Rivet_Go_in_fire, .binding = &s_binding_Supervisor_Install_Rivet_Go_in,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Go_in / sizeof s_affected_by_Supervisor_Install_Rivet_Go_in[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Go_in,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Go_in / sizeof s_touched_by_Supervisor_Install_Rivet_Go_in[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Go_in,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Go_in / sizeof s_read_by_Supervisor_Install_Rivet_Go_in[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Go_in,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Go out", .id = "ID1412310742", .owner = 0, .priority = 1000,
-        .origin = "page `Rivet`, transition `Go out` (ID1412310742)",
-        .enumerate = Supervisor_Install_Rivet_Go_out_enumerate, .fire = Supervisor_Install_Rivet_Go_out_fire, .binding = &s_binding_Supervisor_Install_Rivet_Go_out,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Go_out / sizeof s_affected_by_Supervisor_Install_Rivet_Go_out[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Go_out,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Go_out / sizeof s_touched_by_Supervisor_Install_Rivet_Go_out[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Go_out,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Go_out / sizeof s_read_by_Supervisor_Install_Rivet_Go_out[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Go_out,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Advance.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = Supervisor_Install_Rivet_Advance_Command_enumerate, .fire = Supervisor_Install_Rivet_Advance_Command_fire, .binding = &s_binding_Supervisor_Install_Rivet_Advance_Command,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Command / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Command[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Command,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Command / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Command[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Advance_Command,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Advance_Command / sizeof s_read_by_Supervisor_Install_Rivet_Advance_Command[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Advance_Command,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Advance.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = Supervisor_Install_Rivet_Advance_Both_enumerate, .fire = Supervisor_Install_Rivet_Advance_Both_fire, .binding = &s_binding_Supervisor_Install_Rivet_Advance_Both,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Both / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Both[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Both,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Both / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Both[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Advance_Both,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Advance_Both / sizeof s_read_by_Supervisor_Install_Rivet_Advance_Both[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Advance_Both,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = Supervisor_Install_Rivet_Advance_Reply_1_enumerate, .fire = Supervisor_Install_Rivet_Advance_Reply_1_fire, .binding = &s_binding_Supervisor_Install_Rivet_Advance_Reply_1,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_1 / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_1[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Reply_1,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_1 / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_1[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Advance_Reply_1,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Advance_Reply_1 / sizeof s_read_by_Supervisor_Install_Rivet_Advance_Reply_1[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Advance_Reply_1,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = Supervisor_Install_Rivet_Advance_Reply_2_enumerate, .fire = Supervisor_Install_Rivet_Advance_Reply_2_fire, .binding = &s_binding_Supervisor_Install_Rivet_Advance_Reply_2,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_2 / sizeof s_affected_by_Supervisor_Install_Rivet_Advance_Reply_2[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Advance_Reply_2,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_2 / sizeof s_touched_by_Supervisor_Install_Rivet_Advance_Reply_2[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Advance_Reply_2,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Advance_Reply_2 / sizeof s_read_by_Supervisor_Install_Rivet_Advance_Reply_2[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Advance_Reply_2,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.Press", .id = "ID1412310842", .owner = 0, .priority = 1000,
-        .origin = "page `Fasten`, transition `Press` (ID1412310842)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Press_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Press_fire, .binding = &s_binding_Supervisor_Install_Rivet_Fasten_Press,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Press / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Press[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Press,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Press / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Press[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Press,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Press / sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Press[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Fasten_Press,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill", .id = "ID1412310850", .owner = 0, .priority = 1000,
-        .origin = "page `Fasten`, transition `Drill` (ID1412310850)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Drill_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Drill_fire, .binding = &s_binding_Supervisor_Install_Rivet_Fasten_Drill,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Drill / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Drill[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Drill,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Drill / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Drill[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Drill,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Drill / sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Drill[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Fasten_Drill,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.Insert", .id = "ID1412310858", .owner = 0, .priority = 1000,
-        .origin = "page `Fasten`, transition `Insert` (ID1412310858)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Insert_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Insert_fire, .binding = &s_binding_Supervisor_Install_Rivet_Fasten_Insert,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Insert / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Insert[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Insert,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Insert / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Insert[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Insert,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Insert / sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Insert[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Fasten_Insert,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.Release", .id = "ID1412310866", .owner = 0, .priority = 1000,
-        .origin = "page `Fasten`, transition `Release` (ID1412310866)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Release_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Release_fire, .binding = &s_binding_Supervisor_Install_Rivet_Fasten_Release,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Release / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Release[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Release,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Release / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Release[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Release,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Release / sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Release[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Fasten_Release,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.Finish", .id = "ID1412310874", .owner = 0, .priority = 1000,
-        .origin = "page `Fasten`, transition `Finish` (ID1412310874)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Finish_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Finish_fire, .binding = &s_binding_Supervisor_Install_Rivet_Fasten_Finish,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Finish / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Finish[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Finish,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Finish / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Finish[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Finish,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Finish / sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Finish[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Fasten_Finish,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.Press failed", .id = "ID1412320087", .owner = 0, .priority = 1000,
-        .origin = "page `Fasten`, transition `Press failed` (ID1412320087)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Press_failed_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Press_failed_fire, .binding = &s_binding_Supervisor_Install_Rivet_Fasten_Press_failed,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Press_failed / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Press_failed[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Press_failed,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Press_failed / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Press_failed[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Press_failed,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Press_failed / sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Press_failed[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Fasten_Press_failed,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill failed", .id = "ID1412320092", .owner = 0, .priority = 1000,
-        .origin = "page `Fasten`, transition `Drill failed` (ID1412320092)",
-        .enumerate = Supervisor_Install_Rivet_Fasten_Drill_failed_enumerate, .fire = Supervisor_Install_Rivet_Fasten_Drill_failed_fire, .binding = &s_binding_Supervisor_Install_Rivet_Fasten_Drill_failed,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Drill_failed / sizeof s_affected_by_Supervisor_Install_Rivet_Fasten_Drill_failed[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Fasten_Drill_failed,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Drill_failed / sizeof s_touched_by_Supervisor_Install_Rivet_Fasten_Drill_failed[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Fasten_Drill_failed,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Drill_failed / sizeof s_read_by_Supervisor_Install_Rivet_Fasten_Drill_failed[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Fasten_Drill_failed,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Retract.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = Supervisor_Install_Rivet_Retract_Command_enumerate, .fire = Supervisor_Install_Rivet_Retract_Command_fire, .binding = &s_binding_Supervisor_Install_Rivet_Retract_Command,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Command / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Command[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Command,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Command / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Command[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Retract_Command,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Retract_Command / sizeof s_read_by_Supervisor_Install_Rivet_Retract_Command[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Retract_Command,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Retract.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = Supervisor_Install_Rivet_Retract_Both_enumerate, .fire = Supervisor_Install_Rivet_Retract_Both_fire, .binding = &s_binding_Supervisor_Install_Rivet_Retract_Both,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Both / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Both[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Both,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Both / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Both[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Retract_Both,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Retract_Both / sizeof s_read_by_Supervisor_Install_Rivet_Retract_Both[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Retract_Both,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = Supervisor_Install_Rivet_Retract_Reply_1_enumerate, .fire = Supervisor_Install_Rivet_Retract_Reply_1_fire, .binding = &s_binding_Supervisor_Install_Rivet_Retract_Reply_1,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_1 / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_1[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Reply_1,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_1 / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_1[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Retract_Reply_1,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Retract_Reply_1 / sizeof s_read_by_Supervisor_Install_Rivet_Retract_Reply_1[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Retract_Reply_1,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = Supervisor_Install_Rivet_Retract_Reply_2_enumerate, .fire = Supervisor_Install_Rivet_Retract_Reply_2_fire, .binding = &s_binding_Supervisor_Install_Rivet_Retract_Reply_2,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_2 / sizeof s_affected_by_Supervisor_Install_Rivet_Retract_Reply_2[0],
-        .affected = s_affected_by_Supervisor_Install_Rivet_Retract_Reply_2,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_2 / sizeof s_touched_by_Supervisor_Install_Rivet_Retract_Reply_2[0],
-        .touched = s_touched_by_Supervisor_Install_Rivet_Retract_Reply_2,
-        .read_count = sizeof s_read_by_Supervisor_Install_Rivet_Retract_Reply_2 / sizeof s_read_by_Supervisor_Install_Rivet_Retract_Reply_2[0],
-        .read = s_read_by_Supervisor_Install_Rivet_Retract_Reply_2,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Return.Command", .id = "ID1412310941", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)",
-        .enumerate = Supervisor_Install_Return_Command_enumerate, .fire = Supervisor_Install_Return_Command_fire, .binding = &s_binding_Supervisor_Install_Return_Command,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Command / sizeof s_affected_by_Supervisor_Install_Return_Command[0],
-        .affected = s_affected_by_Supervisor_Install_Return_Command,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Command / sizeof s_touched_by_Supervisor_Install_Return_Command[0],
-        .touched = s_touched_by_Supervisor_Install_Return_Command,
-        .read_count = sizeof s_read_by_Supervisor_Install_Return_Command / sizeof s_read_by_Supervisor_Install_Return_Command[0],
-        .read = s_read_by_Supervisor_Install_Return_Command,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Return.Both", .id = "ID1412310948", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)",
-        .enumerate = Supervisor_Install_Return_Both_enumerate, .fire = Supervisor_Install_Return_Both_fire, .binding = &s_binding_Supervisor_Install_Return_Both,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Both / sizeof s_affected_by_Supervisor_Install_Return_Both[0],
-        .affected = s_affected_by_Supervisor_Install_Return_Both,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Both / sizeof s_touched_by_Supervisor_Install_Return_Both[0],
-        .touched = s_touched_by_Supervisor_Install_Return_Both,
-        .read_count = sizeof s_read_by_Supervisor_Install_Return_Both / sizeof s_read_by_Supervisor_Install_Return_Both[0],
-        .read = s_read_by_Supervisor_Install_Return_Both,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Return.Reply 1", .id = "ID1412310962", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)",
-        .enumerate = Supervisor_Install_Return_Reply_1_enumerate, .fire = Supervisor_Install_Return_Reply_1_fire, .binding = &s_binding_Supervisor_Install_Return_Reply_1,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Reply_1 / sizeof s_affected_by_Supervisor_Install_Return_Reply_1[0],
-        .affected = s_affected_by_Supervisor_Install_Return_Reply_1,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Reply_1 / sizeof s_touched_by_Supervisor_Install_Return_Reply_1[0],
-        .touched = s_touched_by_Supervisor_Install_Return_Reply_1,
-        .read_count = sizeof s_read_by_Supervisor_Install_Return_Reply_1 / sizeof s_read_by_Supervisor_Install_Return_Reply_1[0],
-        .read = s_read_by_Supervisor_Install_Return_Reply_1,
-    },
-    {
-        .name = "Cell.Supervisor.Install.Return.Reply 2", .id = "ID1412310999", .owner = 0, .priority = 1000,
-        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)",
-        .enumerate = Supervisor_Install_Return_Reply_2_enumerate, .fire = Supervisor_Install_Return_Reply_2_fire, .binding = &s_binding_Supervisor_Install_Return_Reply_2,
-        .affected_count = sizeof s_affected_by_Supervisor_Install_Return_Reply_2 / sizeof s_affected_by_Supervisor_Install_Return_Reply_2[0],
-        .affected = s_affected_by_Supervisor_Install_Return_Reply_2,
-        .touched_count = sizeof s_touched_by_Supervisor_Install_Return_Reply_2 / sizeof s_touched_by_Supervisor_Install_Return_Reply_2[0],
-        .touched = s_touched_by_Supervisor_Install_Return_Reply_2,
-        .read_count = sizeof s_read_by_Supervisor_Install_Return_Reply_2 / sizeof s_read_by_Supervisor_Install_Return_Reply_2[0],
-        .read = s_read_by_Supervisor_Install_Return_Reply_2,
-    },
-    {
-        .name = "Cell.Supervisor.Home.Send home", .id = "ID1412311039", .owner = 0, .priority = 1000,
-        .origin = "page `Home`, transition `Send home` (ID1412311039)",
-        .enumerate = Supervisor_Home_Send_home_enumerate, .fire = Supervisor_Home_Send_home_fire, .binding = &s_binding_Supervisor_Home_Send_home,
-        .affected_count = sizeof s_affected_by_Supervisor_Home_Send_home / sizeof s_affected_by_Supervisor_Home_Send_home[0],
-        .affected = s_affected_by_Supervisor_Home_Send_home,
-        .touched_count = sizeof s_touched_by_Supervisor_Home_Send_home / sizeof s_touched_by_Supervisor_Home_Send_home[0],
-        .touched = s_touched_by_Supervisor_Home_Send_home,
-        .read_count = sizeof s_read_by_Supervisor_Home_Send_home / sizeof s_read_by_Supervisor_Home_Send_home[0],
-        .read = s_read_by_Supervisor_Home_Send_home,
-    },
-    {
-        .name = "Cell.Supervisor.Home.Both", .id = "ID1412311046", .owner = 0, .priority = 1000,
-        .origin = "page `Home`, transition `Both` (ID1412311046)",
-        .enumerate = Supervisor_Home_Both_enumerate, .fire = Supervisor_Home_Both_fire, .binding = &s_binding_Supervisor_Home_Both,
-        .affected_count = sizeof s_affected_by_Supervisor_Home_Both / sizeof s_affected_by_Supervisor_Home_Both[0],
-        .affected = s_affected_by_Supervisor_Home_Both,
-        .touched_count = sizeof s_touched_by_Supervisor_Home_Both / sizeof s_touched_by_Supervisor_Home_Both[0],
-        .touched = s_touched_by_Supervisor_Home_Both,
-        .read_count = sizeof s_read_by_Supervisor_Home_Both / sizeof s_read_by_Supervisor_Home_Both[0],
-        .read = s_read_by_Supervisor_Home_Both,
-    },
-    {
-        .name = "Cell.Supervisor.Home.Reply 1", .id = "ID1412311060", .owner = 0, .priority = 1000,
-        .origin = "page `Home`, transition `Reply 1` (ID1412311060)",
-        .enumerate = Supervisor_Home_Reply_1_enumerate, .fire = Supervisor_Home_Reply_1_fire, .binding = &s_binding_Supervisor_Home_Reply_1,
-        .affected_count = sizeof s_affected_by_Supervisor_Home_Reply_1 / sizeof s_affected_by_Supervisor_Home_Reply_1[0],
-        .affected = s_affected_by_Supervisor_Home_Reply_1,
-        .touched_count = sizeof s_touched_by_Supervisor_Home_Reply_1 / sizeof s_touched_by_Supervisor_Home_Reply_1[0],
-        .touched = s_touched_by_Supervisor_Home_Reply_1,
-        .read_count = sizeof s_read_by_Supervisor_Home_Reply_1 / sizeof s_read_by_Supervisor_Home_Reply_1[0],
-        .read = s_read_by_Supervisor_Home_Reply_1,
-    },
-    {
-        .name = "Cell.Supervisor.Home.Reply 2", .id = "ID1412311091", .owner = 0, .priority = 1000,
-        .origin = "page `Home`, transition `Reply 2` (ID1412311091)",
-        .enumerate = Supervisor_Home_Reply_2_enumerate, .fire = Supervisor_Home_Reply_2_fire, .binding = &s_binding_Supervisor_Home_Reply_2,
-        .affected_count = sizeof s_affected_by_Supervisor_Home_Reply_2 / sizeof s_affected_by_Supervisor_Home_Reply_2[0],
-        .affected = s_affected_by_Supervisor_Home_Reply_2,
-        .touched_count = sizeof s_touched_by_Supervisor_Home_Reply_2 / sizeof s_touched_by_Supervisor_Home_Reply_2[0],
-        .touched = s_touched_by_Supervisor_Home_Reply_2,
-        .read_count = sizeof s_read_by_Supervisor_Home_Reply_2 / sizeof s_read_by_Supervisor_Home_Reply_2[0],
-        .read = s_read_by_Supervisor_Home_Reply_2,
-    },
-    {
-        .name = "Cell.Robot1.Accept", .id = "ID1412311125", .owner = 1, .priority = 1000,
-        .origin = "page `Robot`, transition `Accept` (ID1412311125)",
-        .enumerate = Robot1_Accept_enumerate, .fire = Robot1_Accept_fire, .binding = &s_binding_Robot1_Accept,
-        .affected_count = sizeof s_affected_by_Robot1_Accept / sizeof s_affected_by_Robot1_Accept[0],
-        .affected = s_affected_by_Robot1_Accept,
-        .touched_count = sizeof s_touched_by_Robot1_Accept / sizeof s_touched_by_Robot1_Accept[0],
-        .touched = s_touched_by_Robot1_Accept,
-        .read_count = sizeof s_read_by_Robot1_Accept / sizeof s_read_by_Robot1_Accept[0],
-        .read = s_read_by_Robot1_Accept,
-    },
-    {
-        .name = "Cell.Robot1.Report", .id = "ID1412311145", .owner = 1, .priority = 1000,
-        .origin = "page `Robot`, transition `Report` (ID1412311145)",
-        .enumerate = Robot1_Report_enumerate, .fire = Robot1_Report_fire, .binding = &s_binding_Robot1_Report,
-        .affected_count = sizeof s_affected_by_Robot1_Report / sizeof s_affected_by_Robot1_Report[0],
-        .affected = s_affected_by_Robot1_Report,
-        .touched_count = sizeof s_touched_by_Robot1_Report / sizeof s_touched_by_Robot1_Report[0],
-        .touched = s_touched_by_Robot1_Report,
-        .read_count = sizeof s_read_by_Robot1_Report / sizeof s_read_by_Robot1_Report[0],
-        .read = s_read_by_Robot1_Report,
-    },
-    {
-        .name = "Cell.Robot1.MoveJoint", .id = "ID1412311160", .owner = 1, .priority = 1000,
-        .origin = "page `Robot`, transition `MoveJoint` (ID1412311160)",
-        .enumerate = Robot1_MoveJoint_enumerate, .fire = Robot1_MoveJoint_fire, .binding = &s_binding_Robot1_MoveJoint,
-        .affected_count = sizeof s_affected_by_Robot1_MoveJoint / sizeof s_affected_by_Robot1_MoveJoint[0],
-        .affected = s_affected_by_Robot1_MoveJoint,
-        .touched_count = sizeof s_touched_by_Robot1_MoveJoint / sizeof s_touched_by_Robot1_MoveJoint[0],
-        .touched = s_touched_by_Robot1_MoveJoint,
-        .read_count = sizeof s_read_by_Robot1_MoveJoint / sizeof s_read_by_Robot1_MoveJoint[0],
-        .read = s_read_by_Robot1_MoveJoint,
-    },
-    {
-        .name = "Cell.Robot1.MoveLinear", .id = "ID1412311169", .owner = 1, .priority = 1000,
-        .origin = "page `Robot`, transition `MoveLinear` (ID1412311169)",
-        .enumerate = Robot1_MoveLinear_enumerate, .fire = Robot1_MoveLinear_fire, .binding = &s_binding_Robot1_MoveLinear,
-        .affected_count = sizeof s_affected_by_Robot1_MoveLinear / sizeof s_affected_by_Robot1_MoveLinear[0],
-        .affected = s_affected_by_Robot1_MoveLinear,
-        .touched_count = sizeof s_touched_by_Robot1_MoveLinear / sizeof s_touched_by_Robot1_MoveLinear[0],
-        .touched = s_touched_by_Robot1_MoveLinear,
-        .read_count = sizeof s_read_by_Robot1_MoveLinear / sizeof s_read_by_Robot1_MoveLinear[0],
-        .read = s_read_by_Robot1_MoveLinear,
-    },
-    {
-        .name = "Cell.Robot1.MoveHome", .id = "ID1412311178", .owner = 1, .priority = 1000,
-        .origin = "page `Robot`, transition `MoveHome` (ID1412311178)",
-        .enumerate = Robot1_MoveHome_enumerate, .fire = Robot1_MoveHome_fire, .binding = &s_binding_Robot1_MoveHome,
-        .affected_count = sizeof s_affected_by_Robot1_MoveHome / sizeof s_affected_by_Robot1_MoveHome[0],
-        .affected = s_affected_by_Robot1_MoveHome,
-        .touched_count = sizeof s_touched_by_Robot1_MoveHome / sizeof s_touched_by_Robot1_MoveHome[0],
-        .touched = s_touched_by_Robot1_MoveHome,
-        .read_count = sizeof s_read_by_Robot1_MoveHome / sizeof s_read_by_Robot1_MoveHome[0],
-        .read = s_read_by_Robot1_MoveHome,
-    },
-    {
-        .name = "Cell.Robot1.Measure", .id = "ID1412311187", .owner = 1, .priority = 1000,
-        .origin = "page `Robot`, transition `Measure` (ID1412311187)",
-        .enumerate = Robot1_Measure_enumerate, .fire = Robot1_Measure_fire, .binding = &s_binding_Robot1_Measure,
-        .affected_count = sizeof s_affected_by_Robot1_Measure / sizeof s_affected_by_Robot1_Measure[0],
-        .affected = s_affected_by_Robot1_Measure,
-        .touched_count = sizeof s_touched_by_Robot1_Measure / sizeof s_touched_by_Robot1_Measure[0],
-        .touched = s_touched_by_Robot1_Measure,
-        .read_count = sizeof s_read_by_Robot1_Measure / sizeof s_read_by_Robot1_Measure[0],
-        .read = s_read_by_Robot1_Measure,
-    },
-    {
-        .name = "Cell.Robot1.Drill", .id = "ID1412311196", .owner = 1, .priority = 1000,
-        .origin = "page `Robot`, transition `Drill` (ID1412311196)",
-        .enumerate = Robot1_Drill_enumerate, .fire = Robot1_Drill_fire, .binding = &s_binding_Robot1_Drill,
-        .affected_count = sizeof s_affected_by_Robot1_Drill / sizeof s_affected_by_Robot1_Drill[0],
-        .affected = s_affected_by_Robot1_Drill,
-        .touched_count = sizeof s_touched_by_Robot1_Drill / sizeof s_touched_by_Robot1_Drill[0],
-        .touched = s_touched_by_Robot1_Drill,
-        .read_count = sizeof s_read_by_Robot1_Drill / sizeof s_read_by_Robot1_Drill[0],
-        .read = s_read_by_Robot1_Drill,
-    },
-    {
-        .name = "Cell.Robot1.Insert", .id = "ID1412311205", .owner = 1, .priority = 1000,
-        .origin = "page `Robot`, transition `Insert` (ID1412311205)",
-        .enumerate = Robot1_Insert_enumerate, .fire = Robot1_Insert_fire, .binding = &s_binding_Robot1_Insert,
-        .affected_count = sizeof s_affected_by_Robot1_Insert / sizeof s_affected_by_Robot1_Insert[0],
-        .affected = s_affected_by_Robot1_Insert,
-        .touched_count = sizeof s_touched_by_Robot1_Insert / sizeof s_touched_by_Robot1_Insert[0],
-        .touched = s_touched_by_Robot1_Insert,
-        .read_count = sizeof s_read_by_Robot1_Insert / sizeof s_read_by_Robot1_Insert[0],
-        .read = s_read_by_Robot1_Insert,
-    },
-    {
-        .name = "Cell.Robot1.Press", .id = "ID1412311214", .owner = 1, .priority = 1000,
-        .origin = "page `Robot`, transition `Press` (ID1412311214)",
-        .enumerate = Robot1_Press_enumerate, .fire = Robot1_Press_fire, .binding = &s_binding_Robot1_Press,
-        .affected_count = sizeof s_affected_by_Robot1_Press / sizeof s_affected_by_Robot1_Press[0],
-        .affected = s_affected_by_Robot1_Press,
-        .touched_count = sizeof s_touched_by_Robot1_Press / sizeof s_touched_by_Robot1_Press[0],
-        .touched = s_touched_by_Robot1_Press,
-        .read_count = sizeof s_read_by_Robot1_Press / sizeof s_read_by_Robot1_Press[0],
-        .read = s_read_by_Robot1_Press,
-    },
-    {
-        .name = "Cell.Robot1.Release", .id = "ID1412311223", .owner = 1, .priority = 1000,
-        .origin = "page `Robot`, transition `Release` (ID1412311223)",
-        .enumerate = Robot1_Release_enumerate, .fire = Robot1_Release_fire, .binding = &s_binding_Robot1_Release,
-        .affected_count = sizeof s_affected_by_Robot1_Release / sizeof s_affected_by_Robot1_Release[0],
-        .affected = s_affected_by_Robot1_Release,
-        .touched_count = sizeof s_touched_by_Robot1_Release / sizeof s_touched_by_Robot1_Release[0],
-        .touched = s_touched_by_Robot1_Release,
-        .read_count = sizeof s_read_by_Robot1_Release / sizeof s_read_by_Robot1_Release[0],
-        .read = s_read_by_Robot1_Release,
-    },
-    {
-        .name = "Cell.Robot2.Accept", .id = "ID1412311125", .owner = 2, .priority = 1000,
-        .origin = "page `Robot`, transition `Accept` (ID1412311125)",
-        .enumerate = Robot2_Accept_enumerate, .fire = Robot2_Accept_fire, .binding = &s_binding_Robot2_Accept,
-        .affected_count = sizeof s_affected_by_Robot2_Accept / sizeof s_affected_by_Robot2_Accept[0],
-        .affected = s_affected_by_Robot2_Accept,
-        .touched_count = sizeof s_touched_by_Robot2_Accept / sizeof s_touched_by_Robot2_Accept[0],
-        .touched = s_touched_by_Robot2_Accept,
-        .read_count = sizeof s_read_by_Robot2_Accept / sizeof s_read_by_Robot2_Accept[0],
-        .read = s_read_by_Robot2_Accept,
-    },
-    {
-        .name = "Cell.Robot2.Report", .id = "ID1412311145", .owner = 2, .priority = 1000,
-        .origin = "page `Robot`, transition `Report` (ID1412311145)",
-        .enumerate = Robot2_Report_enumerate, .fire = Robot2_Report_fire, .binding = &s_binding_Robot2_Report,
-        .affected_count = sizeof s_affected_by_Robot2_Report / sizeof s_affected_by_Robot2_Report[0],
-        .affected = s_affected_by_Robot2_Report,
-        .touched_count = sizeof s_touched_by_Robot2_Report / sizeof s_touched_by_Robot2_Report[0],
-        .touched = s_touched_by_Robot2_Report,
-        .read_count = sizeof s_read_by_Robot2_Report / sizeof s_read_by_Robot2_Report[0],
-        .read = s_read_by_Robot2_Report,
-    },
-    {
-        .name = "Cell.Robot2.MoveJoint", .id = "ID1412311160", .owner = 2, .priority = 1000,
-        .origin = "page `Robot`, transition `MoveJoint` (ID1412311160)",
-        .enumerate = Robot2_MoveJoint_enumerate, .fire = Robot2_MoveJoint_fire, .binding = &s_binding_Robot2_MoveJoint,
-        .affected_count = sizeof s_affected_by_Robot2_MoveJoint / sizeof s_affected_by_Robot2_MoveJoint[0],
-        .affected = s_affected_by_Robot2_MoveJoint,
-        .touched_count = sizeof s_touched_by_Robot2_MoveJoint / sizeof s_touched_by_Robot2_MoveJoint[0],
-        .touched = s_touched_by_Robot2_MoveJoint,
-        .read_count = sizeof s_read_by_Robot2_MoveJoint / sizeof s_read_by_Robot2_MoveJoint[0],
-        .read = s_read_by_Robot2_MoveJoint,
-    },
-    {
-        .name = "Cell.Robot2.MoveLinear", .id = "ID1412311169", .owner = 2, .priority = 1000,
-        .origin = "page `Robot`, transition `MoveLinear` (ID1412311169)",
-        .enumerate = Robot2_MoveLinear_enumerate, .fire = Robot2_MoveLinear_fire, .binding = &s_binding_Robot2_MoveLinear,
-        .affected_count = sizeof s_affected_by_Robot2_MoveLinear / sizeof s_affected_by_Robot2_MoveLinear[0],
-        .affected = s_affected_by_Robot2_MoveLinear,
-        .touched_count = sizeof s_touched_by_Robot2_MoveLinear / sizeof s_touched_by_Robot2_MoveLinear[0],
-        .touched = s_touched_by_Robot2_MoveLinear,
-        .read_count = sizeof s_read_by_Robot2_MoveLinear / sizeof s_read_by_Robot2_MoveLinear[0],
-        .read = s_read_by_Robot2_MoveLinear,
-    },
-    {
-        .name = "Cell.Robot2.MoveHome", .id = "ID1412311178", .owner = 2, .priority = 1000,
-        .origin = "page `Robot`, transition `MoveHome` (ID1412311178)",
-        .enumerate = Robot2_MoveHome_enumerate, .fire = Robot2_MoveHome_fire, .binding = &s_binding_Robot2_MoveHome,
-        .affected_count = sizeof s_affected_by_Robot2_MoveHome / sizeof s_affected_by_Robot2_MoveHome[0],
-        .affected = s_affected_by_Robot2_MoveHome,
-        .touched_count = sizeof s_touched_by_Robot2_MoveHome / sizeof s_touched_by_Robot2_MoveHome[0],
-        .touched = s_touched_by_Robot2_MoveHome,
-        .read_count = sizeof s_read_by_Robot2_MoveHome / sizeof s_read_by_Robot2_MoveHome[0],
-        .read = s_read_by_Robot2_MoveHome,
-    },
-    {
-        .name = "Cell.Robot2.Measure", .id = "ID1412311187", .owner = 2, .priority = 1000,
-        .origin = "page `Robot`, transition `Measure` (ID1412311187)",
-        .enumerate = Robot2_Measure_enumerate, .fire = Robot2_Measure_fire, .binding = &s_binding_Robot2_Measure,
-        .affected_count = sizeof s_affected_by_Robot2_Measure / sizeof s_affected_by_Robot2_Measure[0],
-        .affected = s_affected_by_Robot2_Measure,
-        .touched_count = sizeof s_touched_by_Robot2_Measure / sizeof s_touched_by_Robot2_Measure[0],
-        .touched = s_touched_by_Robot2_Measure,
-        .read_count = sizeof s_read_by_Robot2_Measure / sizeof s_read_by_Robot2_Measure[0],
-        .read = s_read_by_Robot2_Measure,
-    },
-    {
-        .name = "Cell.Robot2.Drill", .id = "ID1412311196", .owner = 2, .priority = 1000,
-        .origin = "page `Robot`, transition `Drill` (ID1412311196)",
-        .enumerate = Robot2_Drill_enumerate, .fire = Robot2_Drill_fire, .binding = &s_binding_Robot2_Drill,
-        .affected_count = sizeof s_affected_by_Robot2_Drill / sizeof s_affected_by_Robot2_Drill[0],
-        .affected = s_affected_by_Robot2_Drill,
-        .touched_count = sizeof s_touched_by_Robot2_Drill / sizeof s_touched_by_Robot2_Drill[0],
-        .touched = s_touched_by_Robot2_Drill,
-        .read_count = sizeof s_read_by_Robot2_Drill / sizeof s_read_by_Robot2_Drill[0],
-        .read = s_read_by_Robot2_Drill,
-    },
-    {
-        .name = "Cell.Robot2.Insert", .id = "ID1412311205", .owner = 2, .priority = 1000,
-        .origin = "page `Robot`, transition `Insert` (ID1412311205)",
-        .enumerate = Robot2_Insert_enumerate, .fire = Robot2_Insert_fire, .binding = &s_binding_Robot2_Insert,
-        .affected_count = sizeof s_affected_by_Robot2_Insert / sizeof s_affected_by_Robot2_Insert[0],
-        .affected = s_affected_by_Robot2_Insert,
-        .touched_count = sizeof s_touched_by_Robot2_Insert / sizeof s_touched_by_Robot2_Insert[0],
-        .touched = s_touched_by_Robot2_Insert,
-        .read_count = sizeof s_read_by_Robot2_Insert / sizeof s_read_by_Robot2_Insert[0],
-        .read = s_read_by_Robot2_Insert,
-    },
-    {
-        .name = "Cell.Robot2.Press", .id = "ID1412311214", .owner = 2, .priority = 1000,
-        .origin = "page `Robot`, transition `Press` (ID1412311214)",
-        .enumerate = Robot2_Press_enumerate, .fire = Robot2_Press_fire, .binding = &s_binding_Robot2_Press,
-        .affected_count = sizeof s_affected_by_Robot2_Press / sizeof s_affected_by_Robot2_Press[0],
-        .affected = s_affected_by_Robot2_Press,
-        .touched_count = sizeof s_touched_by_Robot2_Press / sizeof s_touched_by_Robot2_Press[0],
-        .touched = s_touched_by_Robot2_Press,
-        .read_count = sizeof s_read_by_Robot2_Press / sizeof s_read_by_Robot2_Press[0],
-        .read = s_read_by_Robot2_Press,
-    },
-    {
-        .name = "Cell.Robot2.Release", .id = "ID1412311223", .owner = 2, .priority = 1000,
-        .origin = "page `Robot`, transition `Release` (ID1412311223)",
-        .enumerate = Robot2_Release_enumerate, .fire = Robot2_Release_fire, .binding = &s_binding_Robot2_Release,
-        .affected_count = sizeof s_affected_by_Robot2_Release / sizeof s_affected_by_Robot2_Release[0],
-        .affected = s_affected_by_Robot2_Release,
-        .touched_count = sizeof s_touched_by_Robot2_Release / sizeof s_touched_by_Robot2_Release[0],
-        .touched = s_touched_by_Robot2_Release,
-        .read_count = sizeof s_read_by_Robot2_Release / sizeof s_read_by_Robot2_Release[0],
-        .read = s_read_by_Robot2_Release,
-    },
+    { /* 0 */ .name = "Cell.Supervisor.Load.Load", .id = "ID1412310271",
+        .origin = "page `Load`, transition `Load` (ID1412310271)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Load_Load), PN_INDICES(affected, 0U, 1U), PN_INDICES(touched, 10U, 11U),
+        PN_INDICES(read, 10U) },
+    { /* 1 */ .name = "Cell.Supervisor.Approach.Send", .id = "ID1412310300",
+        .origin = "page `Approach`, transition `Send` (ID1412310300)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Approach_Send), PN_INDICES(affected, 1U, 2U, 3U),
+        PN_INDICES(touched, 11U, 19U, 21U), PN_INDICES(read, 11U) },
+    { /* 2 */ .name = "Cell.Supervisor.Approach.Arrived", .id = "ID1412310311",
+        .origin = "page `Approach`, transition `Arrived` (ID1412310311)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Approach_Arrived), PN_INDICES(affected, 2U, 7U),
+        PN_INDICES(touched, 12U, 20U, 21U), PN_INDICES(read, 20U, 21U) },
+    { /* 3 */ .name = "Cell.Supervisor.Approach.Move both.Command", .id = "ID1412310941",
+        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Command), .places = &s_in_Supervisor_Approach_Move_both,
+        PN_INDICES(affected, 3U, 5U, 6U, 53U, 55U, 56U, 63U, 65U, 66U),
+        PN_INDICES(touched, 0U, 1U, 5U, 6U, 19U, 22U, 24U), PN_INDICES(read, 19U) },
+    { /* 4 */ .name = "Cell.Supervisor.Approach.Move both.Both", .id = "ID1412310948",
+        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)", .owner = 0, .priority = 1000,
+        PN_CODE(MoveBoth_Both), .places = &s_in_Supervisor_Approach_Move_both,
+        PN_INDICES(affected, 2U, 4U), PN_INDICES(touched, 20U, 23U, 25U),
+        PN_INDICES(read, 23U, 25U) },
+    { /* 5 */ .name = "Cell.Supervisor.Approach.Move both.Reply 1", .id = "ID1412310962",
+        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_1), .places = &s_in_Supervisor_Approach_Move_both,
+        PN_INDICES(affected, 4U, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U),
+        PN_INDICES(touched, 2U, 22U, 23U), PN_INDICES(read, 2U, 22U) },
+    { /* 6 */ .name = "Cell.Supervisor.Approach.Move both.Reply 2", .id = "ID1412310999",
+        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_2), .places = &s_in_Supervisor_Approach_Move_both,
+        PN_INDICES(affected, 4U, 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U),
+        PN_INDICES(touched, 7U, 24U, 25U), PN_INDICES(read, 7U, 24U) },
+    { /* 7 */ .name = "Cell.Supervisor.Verify.Ask first", .id = "ID1412310377",
+        .origin = "page `Verify`, transition `Ask first` (ID1412310377)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Verify_Ask_first),
+        PN_INDICES(affected, 7U, 8U, 10U, 53U, 58U), PN_INDICES(touched, 1U, 3U, 12U, 26U),
+        PN_INDICES(read, 12U) },
+    { /* 8 */ .name = "Cell.Supervisor.Verify.Ask last", .id = "ID1412310385",
+        .origin = "page `Verify`, transition `Ask last` (ID1412310385)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Verify_Ask_last),
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U, 53U,
+            58U), PN_INDICES(touched, 1U, 2U, 3U, 4U, 26U, 27U), PN_INDICES(read, 2U, 4U, 26U) },
+    { /* 9 */ .name = "Cell.Supervisor.Verify.Measured", .id = "ID1412310393",
+        .origin = "page `Verify`, transition `Measured` (ID1412310393)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Verify_Measured),
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 12U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U,
+            51U), PN_INDICES(touched, 2U, 4U, 13U, 27U), PN_INDICES(read, 2U, 4U, 27U) },
+    { /* 10 */ .name = "Cell.Supervisor.Verify.First lost", .id = "ID1412320018",
+        .origin = "page `Verify`, transition `First lost` (ID1412320018)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Verify_First_lost),
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 20U, 21U, 23U, 26U, 32U, 36U, 37U, 40U, 43U,
+            47U, 49U, 50U, 51U), PN_INDICES(touched, 2U, 4U, 15U, 17U, 26U),
+        PN_INDICES(read, 2U, 4U, 26U) },
+    { /* 11 */ .name = "Cell.Supervisor.Verify.Last lost", .id = "ID1412320023",
+        .origin = "page `Verify`, transition `Last lost` (ID1412320023)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Verify_Last_lost),
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 20U, 21U, 23U, 26U, 32U, 36U, 37U, 40U, 43U,
+            47U, 49U, 50U, 51U), PN_INDICES(touched, 2U, 4U, 15U, 17U, 27U),
+        PN_INDICES(read, 2U, 4U, 27U) },
+    { /* 12 */ .name = "Cell.Supervisor.Correct.Compare", .id = "ID1412310453",
+        .origin = "page `Correct`, transition `Compare` (ID1412310453)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Correct_Compare),
+        PN_INDICES(affected, 12U, 13U, 14U, 15U), PN_INDICES(touched, 13U, 28U, 31U),
+        PN_INDICES(read, 13U) },
+    { /* 13 */ .name = "Cell.Supervisor.Correct.Move over", .id = "ID1412310461",
+        .origin = "page `Correct`, transition `Move over` (ID1412310461)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Correct_Move_over),
+        PN_INDICES(affected, 13U, 15U, 16U), PN_INDICES(touched, 28U, 29U),
+        PN_INDICES(read, 28U, 31U) },
+    { /* 14 */ .name = "Cell.Supervisor.Correct.Moved", .id = "ID1412310478",
+        .origin = "page `Correct`, transition `Moved` (ID1412310478)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Correct_Moved), PN_INDICES(affected, 13U, 14U, 15U, 22U),
+        PN_INDICES(touched, 14U, 30U, 31U), PN_INDICES(read, 30U, 31U) },
+    { /* 15 */ .name = "Cell.Supervisor.Correct.As planned", .id = "ID1412310526",
+        .origin = "page `Correct`, transition `As planned` (ID1412310526)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Correct_As_planned),
+        PN_INDICES(affected, 13U, 14U, 15U, 22U), PN_INDICES(touched, 14U, 28U, 31U),
+        PN_INDICES(read, 28U, 31U) },
+    { /* 16 */ .name = "Cell.Supervisor.Correct.Move both.Command", .id = "ID1412310941",
+        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Command), .places = &s_in_Supervisor_Correct_Move_both,
+        PN_INDICES(affected, 16U, 18U, 19U, 53U, 55U, 56U, 63U, 65U, 66U),
+        PN_INDICES(touched, 0U, 1U, 5U, 6U, 29U, 32U, 34U), PN_INDICES(read, 29U) },
+    { /* 17 */ .name = "Cell.Supervisor.Correct.Move both.Both", .id = "ID1412310948",
+        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)", .owner = 0, .priority = 1000,
+        PN_CODE(MoveBoth_Both), .places = &s_in_Supervisor_Correct_Move_both,
+        PN_INDICES(affected, 14U, 17U), PN_INDICES(touched, 30U, 33U, 35U),
+        PN_INDICES(read, 33U, 35U) },
+    { /* 18 */ .name = "Cell.Supervisor.Correct.Move both.Reply 1", .id = "ID1412310962",
+        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_1), .places = &s_in_Supervisor_Correct_Move_both,
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 17U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U,
+            51U), PN_INDICES(touched, 2U, 32U, 33U), PN_INDICES(read, 2U, 32U) },
+    { /* 19 */ .name = "Cell.Supervisor.Correct.Move both.Reply 2", .id = "ID1412310999",
+        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_2), .places = &s_in_Supervisor_Correct_Move_both,
+        PN_INDICES(affected, 6U, 17U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U),
+        PN_INDICES(touched, 7U, 34U, 35U), PN_INDICES(read, 7U, 34U) },
+    { /* 20 */ .name = "Cell.Supervisor.Install.Go back", .id = "ID1412310594",
+        .origin = "page `Install`, transition `Go back` (ID1412310594)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Install_Go_back),
+        PN_INDICES(affected, 20U, 21U, 23U, 45U), PN_INDICES(touched, 38U, 39U, 40U),
+        PN_INDICES(read, 17U, 38U, 40U) },
+    { /* 21 */ .name = "Cell.Supervisor.Install.Next rivet", .id = "ID1412310624",
+        .origin = "page `Install`, transition `Next rivet` (ID1412310624)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Install_Next_rivet),
+        PN_INDICES(affected, 20U, 21U, 23U, 24U, 50U), PN_INDICES(touched, 17U, 36U, 38U, 40U),
+        PN_INDICES(read, 17U, 38U, 40U) },
+    { /* 22 */ .name = "Cell.Supervisor.Install.Start", .id = "ID1412310632",
+        .origin = "page `Install`, transition `Start` (ID1412310632)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Install_Start), PN_INDICES(affected, 20U, 21U, 22U, 23U, 28U),
+        PN_INDICES(touched, 14U, 37U, 40U), PN_INDICES(read, 14U) },
+    { /* 23 */ .name = "Cell.Supervisor.Install.Give up", .id = "ID1412320067",
+        .origin = "page `Install`, transition `Give up` (ID1412320067)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Install_Give_up),
+        PN_INDICES(affected, 20U, 21U, 23U, 49U), PN_INDICES(touched, 15U, 38U, 40U),
+        PN_INDICES(read, 17U, 38U, 40U) },
+    { /* 24 */ .name = "Cell.Supervisor.Install.Shift.Command", .id = "ID1412310941",
+        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Command), .places = &s_in_Supervisor_Install_Shift,
+        PN_INDICES(affected, 24U, 26U, 27U, 53U, 55U, 56U, 63U, 65U, 66U),
+        PN_INDICES(touched, 0U, 1U, 5U, 6U, 36U, 41U, 43U), PN_INDICES(read, 36U) },
+    { /* 25 */ .name = "Cell.Supervisor.Install.Shift.Both", .id = "ID1412310948",
+        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)", .owner = 0, .priority = 1000,
+        PN_CODE(MoveBoth_Both), .places = &s_in_Supervisor_Install_Shift,
+        PN_INDICES(affected, 25U, 28U), PN_INDICES(touched, 37U, 42U, 44U),
+        PN_INDICES(read, 42U, 44U) },
+    { /* 26 */ .name = "Cell.Supervisor.Install.Shift.Reply 1", .id = "ID1412310962",
+        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_1), .places = &s_in_Supervisor_Install_Shift,
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 25U, 26U, 32U, 36U, 37U, 40U, 43U, 47U,
+            51U), PN_INDICES(touched, 2U, 41U, 42U), PN_INDICES(read, 2U, 41U) },
+    { /* 27 */ .name = "Cell.Supervisor.Install.Shift.Reply 2", .id = "ID1412310999",
+        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_2), .places = &s_in_Supervisor_Install_Shift,
+        PN_INDICES(affected, 6U, 19U, 25U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U),
+        PN_INDICES(touched, 7U, 43U, 44U), PN_INDICES(read, 7U, 43U) },
+    { /* 28 */ .name = "Cell.Supervisor.Install.Rivet.Go in", .id = "ID1412310716",
+        .origin = "page `Rivet`, transition `Go in` (ID1412310716)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Install_Rivet_Go_in), PN_INDICES(affected, 28U, 30U),
+        PN_INDICES(touched, 37U, 45U), PN_INDICES(read, 37U) },
+    { /* 29 */ .name = "Cell.Supervisor.Install.Rivet.Go out", .id = "ID1412310742",
+        .origin = "page `Rivet`, transition `Go out` (ID1412310742)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Install_Rivet_Go_out),
+        PN_INDICES(affected, 20U, 21U, 23U, 29U, 41U, 50U), PN_INDICES(touched, 17U, 47U, 48U),
+        PN_INDICES(read, 47U) },
+    { /* 30 */ .name = "Cell.Supervisor.Install.Rivet.Advance.Command", .id = "ID1412310941",
+        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Command),
+        .places = &s_in_Supervisor_Install_Rivet_Advance,
+        PN_INDICES(affected, 30U, 32U, 33U, 53U, 55U, 56U, 63U, 65U, 66U),
+        PN_INDICES(touched, 0U, 1U, 5U, 6U, 45U, 49U, 51U), PN_INDICES(read, 45U) },
+    { /* 31 */ .name = "Cell.Supervisor.Install.Rivet.Advance.Both", .id = "ID1412310948",
+        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)", .owner = 0, .priority = 1000,
+        PN_CODE(MoveBoth_Both), .places = &s_in_Supervisor_Install_Rivet_Advance,
+        PN_INDICES(affected, 31U, 34U), PN_INDICES(touched, 46U, 50U, 52U),
+        PN_INDICES(read, 50U, 52U) },
+    { /* 32 */ .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 1", .id = "ID1412310962",
+        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_1),
+        .places = &s_in_Supervisor_Install_Rivet_Advance,
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 31U, 32U, 36U, 37U, 40U, 43U, 47U,
+            51U), PN_INDICES(touched, 2U, 49U, 50U), PN_INDICES(read, 2U, 49U) },
+    { /* 33 */ .name = "Cell.Supervisor.Install.Rivet.Advance.Reply 2", .id = "ID1412310999",
+        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_2),
+        .places = &s_in_Supervisor_Install_Rivet_Advance,
+        PN_INDICES(affected, 6U, 19U, 27U, 31U, 33U, 35U, 38U, 39U, 44U, 48U, 52U),
+        PN_INDICES(touched, 7U, 51U, 52U), PN_INDICES(read, 7U, 51U) },
+    { /* 34 */ .name = "Cell.Supervisor.Install.Rivet.Fasten.Press", .id = "ID1412310842",
+        .origin = "page `Fasten`, transition `Press` (ID1412310842)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Install_Rivet_Fasten_Press), PN_INDICES(affected, 34U, 35U, 39U, 63U),
+        PN_INDICES(touched, 6U, 46U, 53U), PN_INDICES(read, 46U) },
+    { /* 35 */ .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill", .id = "ID1412310850",
+        .origin = "page `Fasten`, transition `Drill` (ID1412310850)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Install_Rivet_Fasten_Drill),
+        PN_INDICES(affected, 6U, 19U, 27U, 33U, 35U, 36U, 38U, 39U, 40U, 44U, 48U, 52U, 53U),
+        PN_INDICES(touched, 1U, 7U, 53U, 54U), PN_INDICES(read, 7U, 53U) },
+    { /* 36 */ .name = "Cell.Supervisor.Install.Rivet.Fasten.Insert", .id = "ID1412310858",
+        .origin = "page `Fasten`, transition `Insert` (ID1412310858)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Install_Rivet_Fasten_Insert),
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U,
+            53U), PN_INDICES(touched, 1U, 2U, 54U, 55U), PN_INDICES(read, 2U, 54U) },
+    { /* 37 */ .name = "Cell.Supervisor.Install.Rivet.Fasten.Release", .id = "ID1412310866",
+        .origin = "page `Fasten`, transition `Release` (ID1412310866)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Install_Rivet_Fasten_Release),
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 38U, 40U, 43U, 47U, 51U,
+            63U), PN_INDICES(touched, 2U, 6U, 55U, 56U), PN_INDICES(read, 2U, 55U) },
+    { /* 38 */ .name = "Cell.Supervisor.Install.Rivet.Fasten.Finish", .id = "ID1412310874",
+        .origin = "page `Fasten`, transition `Finish` (ID1412310874)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Install_Rivet_Fasten_Finish),
+        PN_INDICES(affected, 6U, 19U, 27U, 29U, 33U, 35U, 38U, 39U, 44U, 48U, 52U),
+        PN_INDICES(touched, 7U, 47U, 56U), PN_INDICES(read, 7U, 56U) },
+    { /* 39 */ .name = "Cell.Supervisor.Install.Rivet.Fasten.Press failed", .id = "ID1412320087",
+        .origin = "page `Fasten`, transition `Press failed` (ID1412320087)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Install_Rivet_Fasten_Press_failed),
+        PN_INDICES(affected, 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U, 63U),
+        PN_INDICES(touched, 6U, 7U, 53U, 56U), PN_INDICES(read, 7U, 53U) },
+    { /* 40 */ .name = "Cell.Supervisor.Install.Rivet.Fasten.Drill failed", .id = "ID1412320092",
+        .origin = "page `Fasten`, transition `Drill failed` (ID1412320092)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Install_Rivet_Fasten_Drill_failed),
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 38U, 40U, 43U, 47U, 51U,
+            63U), PN_INDICES(touched, 2U, 6U, 54U, 56U), PN_INDICES(read, 2U, 54U) },
+    { /* 41 */ .name = "Cell.Supervisor.Install.Rivet.Retract.Command", .id = "ID1412310941",
+        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Command),
+        .places = &s_in_Supervisor_Install_Rivet_Retract,
+        PN_INDICES(affected, 41U, 43U, 44U, 53U, 55U, 56U, 63U, 65U, 66U),
+        PN_INDICES(touched, 0U, 1U, 5U, 6U, 48U, 57U, 59U), PN_INDICES(read, 48U) },
+    { /* 42 */ .name = "Cell.Supervisor.Install.Rivet.Retract.Both", .id = "ID1412310948",
+        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)", .owner = 0, .priority = 1000,
+        PN_CODE(MoveBoth_Both), .places = &s_in_Supervisor_Install_Rivet_Retract,
+        PN_INDICES(affected, 20U, 21U, 23U, 42U), PN_INDICES(touched, 38U, 58U, 60U),
+        PN_INDICES(read, 58U, 60U) },
+    { /* 43 */ .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 1", .id = "ID1412310962",
+        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_1),
+        .places = &s_in_Supervisor_Install_Rivet_Retract,
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 42U, 43U, 47U,
+            51U), PN_INDICES(touched, 2U, 57U, 58U), PN_INDICES(read, 2U, 57U) },
+    { /* 44 */ .name = "Cell.Supervisor.Install.Rivet.Retract.Reply 2", .id = "ID1412310999",
+        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_2),
+        .places = &s_in_Supervisor_Install_Rivet_Retract,
+        PN_INDICES(affected, 6U, 19U, 27U, 33U, 35U, 38U, 39U, 42U, 44U, 48U, 52U),
+        PN_INDICES(touched, 7U, 59U, 60U), PN_INDICES(read, 7U, 59U) },
+    { /* 45 */ .name = "Cell.Supervisor.Install.Return.Command", .id = "ID1412310941",
+        .origin = "page `MoveBoth`, transition `Command` (ID1412310941)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Command), .places = &s_in_Supervisor_Install_Return,
+        PN_INDICES(affected, 45U, 47U, 48U, 53U, 55U, 56U, 63U, 65U, 66U),
+        PN_INDICES(touched, 0U, 1U, 5U, 6U, 39U, 61U, 63U), PN_INDICES(read, 39U) },
+    { /* 46 */ .name = "Cell.Supervisor.Install.Return.Both", .id = "ID1412310948",
+        .origin = "page `MoveBoth`, transition `Both` (ID1412310948)", .owner = 0, .priority = 1000,
+        PN_CODE(MoveBoth_Both), .places = &s_in_Supervisor_Install_Return,
+        PN_INDICES(affected, 46U, 49U), PN_INDICES(touched, 15U, 62U, 64U),
+        PN_INDICES(read, 62U, 64U) },
+    { /* 47 */ .name = "Cell.Supervisor.Install.Return.Reply 1", .id = "ID1412310962",
+        .origin = "page `MoveBoth`, transition `Reply 1` (ID1412310962)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_1), .places = &s_in_Supervisor_Install_Return,
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 46U, 47U,
+            51U), PN_INDICES(touched, 2U, 61U, 62U), PN_INDICES(read, 2U, 61U) },
+    { /* 48 */ .name = "Cell.Supervisor.Install.Return.Reply 2", .id = "ID1412310999",
+        .origin = "page `MoveBoth`, transition `Reply 2` (ID1412310999)", .owner = 0,
+        .priority = 1000, PN_CODE(MoveBoth_Reply_2), .places = &s_in_Supervisor_Install_Return,
+        PN_INDICES(affected, 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 46U, 48U, 52U),
+        PN_INDICES(touched, 7U, 63U, 64U), PN_INDICES(read, 7U, 63U) },
+    { /* 49 */ .name = "Cell.Supervisor.Home.Send home", .id = "ID1412311039",
+        .origin = "page `Home`, transition `Send home` (ID1412311039)", .owner = 0,
+        .priority = 1000, PN_CODE(Supervisor_Home_Send_home),
+        PN_INDICES(affected, 49U, 51U, 52U, 53U, 63U), PN_INDICES(touched, 1U, 6U, 15U, 65U, 67U),
+        PN_INDICES(read, 15U) },
+    { /* 50 */ .name = "Cell.Supervisor.Home.Both", .id = "ID1412311046",
+        .origin = "page `Home`, transition `Both` (ID1412311046)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Home_Both), PN_INDICES(affected, 20U, 21U, 23U, 50U),
+        PN_INDICES(touched, 16U, 17U, 18U, 66U, 68U), PN_INDICES(read, 17U, 66U, 68U) },
+    { /* 51 */ .name = "Cell.Supervisor.Home.Reply 1", .id = "ID1412311060",
+        .origin = "page `Home`, transition `Reply 1` (ID1412311060)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Home_Reply_1),
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 50U,
+            51U), PN_INDICES(touched, 2U, 65U, 66U), PN_INDICES(read, 2U, 65U) },
+    { /* 52 */ .name = "Cell.Supervisor.Home.Reply 2", .id = "ID1412311091",
+        .origin = "page `Home`, transition `Reply 2` (ID1412311091)", .owner = 0, .priority = 1000,
+        PN_CODE(Supervisor_Home_Reply_2),
+        PN_INDICES(affected, 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 50U, 52U),
+        PN_INDICES(touched, 7U, 67U, 68U), PN_INDICES(read, 7U, 67U) },
+    { /* 53 */ .name = "Cell.Robot1.Accept", .id = "ID1412311125",
+        .origin = "page `Robot`, transition `Accept` (ID1412311125)", .owner = 1, .priority = 1000,
+        PN_CODE(Robot_Accept), .places = &s_in_Robot1,
+        PN_INDICES(affected, 53U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
+        PN_INDICES(touched, 1U, 69U, 70U), PN_INDICES(read, 1U, 69U) },
+    { /* 54 */ .name = "Cell.Robot1.Report", .id = "ID1412311145",
+        .origin = "page `Robot`, transition `Report` (ID1412311145)", .owner = 1, .priority = 1000,
+        PN_CODE(Robot_Report), .places = &s_in_Robot1,
+        PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U, 53U,
+            54U), PN_INDICES(touched, 2U, 69U, 71U), PN_INDICES(read, 71U) },
+    { /* 55 */ .name = "Cell.Robot1.MoveJoint", .id = "ID1412311160",
+        .origin = "page `Robot`, transition `MoveJoint` (ID1412311160)", .owner = 1,
+        .priority = 1000, PN_CODE(Robot_MoveJoint), .places = &s_in_Robot1,
+        PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
+        PN_INDICES(touched, 0U, 70U, 71U), PN_INDICES(read, 0U, 70U) },
+    { /* 56 */ .name = "Cell.Robot1.MoveLinear", .id = "ID1412311169",
+        .origin = "page `Robot`, transition `MoveLinear` (ID1412311169)", .owner = 1,
+        .priority = 1000, PN_CODE(Robot_MoveLinear), .places = &s_in_Robot1,
+        PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
+        PN_INDICES(touched, 0U, 70U, 71U), PN_INDICES(read, 0U, 70U) },
+    { /* 57 */ .name = "Cell.Robot1.MoveHome", .id = "ID1412311178",
+        .origin = "page `Robot`, transition `MoveHome` (ID1412311178)", .owner = 1,
+        .priority = 1000, PN_CODE(Robot_MoveHome), .places = &s_in_Robot1,
+        PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
+        PN_INDICES(touched, 70U, 71U), PN_INDICES(read, 70U) },
+    { /* 58 */ .name = "Cell.Robot1.Measure", .id = "ID1412311187",
+        .origin = "page `Robot`, transition `Measure` (ID1412311187)", .owner = 1, .priority = 1000,
+        PN_CODE(Robot_Measure), .places = &s_in_Robot1,
+        PN_INDICES(affected, 8U, 9U, 10U, 11U, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
+        PN_INDICES(touched, 3U, 4U, 70U, 71U), PN_INDICES(read, 3U, 70U) },
+    { /* 59 */ .name = "Cell.Robot1.Drill", .id = "ID1412311196",
+        .origin = "page `Robot`, transition `Drill` (ID1412311196)", .owner = 1, .priority = 1000,
+        PN_CODE(Robot_Drill), .places = &s_in_Robot1,
+        PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
+        PN_INDICES(touched, 70U, 71U), PN_INDICES(read, 70U) },
+    { /* 60 */ .name = "Cell.Robot1.Insert", .id = "ID1412311205",
+        .origin = "page `Robot`, transition `Insert` (ID1412311205)", .owner = 1, .priority = 1000,
+        PN_CODE(Robot_Insert), .places = &s_in_Robot1,
+        PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
+        PN_INDICES(touched, 70U, 71U), PN_INDICES(read, 70U) },
+    { /* 61 */ .name = "Cell.Robot1.Press", .id = "ID1412311214",
+        .origin = "page `Robot`, transition `Press` (ID1412311214)", .owner = 1, .priority = 1000,
+        PN_CODE(Robot_Press), .places = &s_in_Robot1,
+        PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
+        PN_INDICES(touched, 70U, 71U), PN_INDICES(read, 70U) },
+    { /* 62 */ .name = "Cell.Robot1.Release", .id = "ID1412311223",
+        .origin = "page `Robot`, transition `Release` (ID1412311223)", .owner = 1, .priority = 1000,
+        PN_CODE(Robot_Release), .places = &s_in_Robot1,
+        PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
+        PN_INDICES(touched, 70U, 71U), PN_INDICES(read, 70U) },
+    { /* 63 */ .name = "Cell.Robot2.Accept", .id = "ID1412311125",
+        .origin = "page `Robot`, transition `Accept` (ID1412311125)", .owner = 2, .priority = 1000,
+        PN_CODE(Robot_Accept), .places = &s_in_Robot2,
+        PN_INDICES(affected, 63U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
+        PN_INDICES(touched, 6U, 72U, 73U), PN_INDICES(read, 6U, 72U) },
+    { /* 64 */ .name = "Cell.Robot2.Report", .id = "ID1412311145",
+        .origin = "page `Robot`, transition `Report` (ID1412311145)", .owner = 2, .priority = 1000,
+        PN_CODE(Robot_Report), .places = &s_in_Robot2,
+        PN_INDICES(affected, 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U, 63U, 64U),
+        PN_INDICES(touched, 7U, 72U, 74U), PN_INDICES(read, 74U) },
+    { /* 65 */ .name = "Cell.Robot2.MoveJoint", .id = "ID1412311160",
+        .origin = "page `Robot`, transition `MoveJoint` (ID1412311160)", .owner = 2,
+        .priority = 1000, PN_CODE(Robot_MoveJoint), .places = &s_in_Robot2,
+        PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
+        PN_INDICES(touched, 5U, 73U, 74U), PN_INDICES(read, 5U, 73U) },
+    { /* 66 */ .name = "Cell.Robot2.MoveLinear", .id = "ID1412311169",
+        .origin = "page `Robot`, transition `MoveLinear` (ID1412311169)", .owner = 2,
+        .priority = 1000, PN_CODE(Robot_MoveLinear), .places = &s_in_Robot2,
+        PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
+        PN_INDICES(touched, 5U, 73U, 74U), PN_INDICES(read, 5U, 73U) },
+    { /* 67 */ .name = "Cell.Robot2.MoveHome", .id = "ID1412311178",
+        .origin = "page `Robot`, transition `MoveHome` (ID1412311178)", .owner = 2,
+        .priority = 1000, PN_CODE(Robot_MoveHome), .places = &s_in_Robot2,
+        PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
+        PN_INDICES(touched, 73U, 74U), PN_INDICES(read, 73U) },
+    { /* 68 */ .name = "Cell.Robot2.Measure", .id = "ID1412311187",
+        .origin = "page `Robot`, transition `Measure` (ID1412311187)", .owner = 2, .priority = 1000,
+        PN_CODE(Robot_Measure), .places = &s_in_Robot2,
+        PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
+        PN_INDICES(touched, 8U, 9U, 73U, 74U), PN_INDICES(read, 8U, 73U) },
+    { /* 69 */ .name = "Cell.Robot2.Drill", .id = "ID1412311196",
+        .origin = "page `Robot`, transition `Drill` (ID1412311196)", .owner = 2, .priority = 1000,
+        PN_CODE(Robot_Drill), .places = &s_in_Robot2,
+        PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
+        PN_INDICES(touched, 73U, 74U), PN_INDICES(read, 73U) },
+    { /* 70 */ .name = "Cell.Robot2.Insert", .id = "ID1412311205",
+        .origin = "page `Robot`, transition `Insert` (ID1412311205)", .owner = 2, .priority = 1000,
+        PN_CODE(Robot_Insert), .places = &s_in_Robot2,
+        PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
+        PN_INDICES(touched, 73U, 74U), PN_INDICES(read, 73U) },
+    { /* 71 */ .name = "Cell.Robot2.Press", .id = "ID1412311214",
+        .origin = "page `Robot`, transition `Press` (ID1412311214)", .owner = 2, .priority = 1000,
+        PN_CODE(Robot_Press), .places = &s_in_Robot2,
+        PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
+        PN_INDICES(touched, 73U, 74U), PN_INDICES(read, 73U) },
+    { /* 72 */ .name = "Cell.Robot2.Release", .id = "ID1412311223",
+        .origin = "page `Robot`, transition `Release` (ID1412311223)", .owner = 2, .priority = 1000,
+        PN_CODE(Robot_Release), .places = &s_in_Robot2,
+        PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
+        PN_INDICES(touched, 73U, 74U), PN_INDICES(read, 73U) },
 };
 
-static const uint32_t s_order[] = {
-    0U, /* Cell.Supervisor.Load.Load */
-    1U, /* Cell.Supervisor.Approach.Send */
-    2U, /* Cell.Supervisor.Approach.Arrived */
-    3U, /* Cell.Supervisor.Approach.Move both.Command */
-    4U, /* Cell.Supervisor.Approach.Move both.Both */
-    5U, /* Cell.Supervisor.Approach.Move both.Reply 1 */
-    6U, /* Cell.Supervisor.Approach.Move both.Reply 2 */
-    7U, /* Cell.Supervisor.Verify.Ask first */
-    8U, /* Cell.Supervisor.Verify.Ask last */
-    9U, /* Cell.Supervisor.Verify.Measured */
-    10U, /* Cell.Supervisor.Verify.First lost */
-    11U, /* Cell.Supervisor.Verify.Last lost */
-    12U, /* Cell.Supervisor.Correct.Compare */
-    13U, /* Cell.Supervisor.Correct.Move over */
-    14U, /* Cell.Supervisor.Correct.Moved */
-    15U, /* Cell.Supervisor.Correct.As planned */
-    16U, /* Cell.Supervisor.Correct.Move both.Command */
-    17U, /* Cell.Supervisor.Correct.Move both.Both */
-    18U, /* Cell.Supervisor.Correct.Move both.Reply 1 */
-    19U, /* Cell.Supervisor.Correct.Move both.Reply 2 */
-    20U, /* Cell.Supervisor.Install.Go back */
-    21U, /* Cell.Supervisor.Install.Next rivet */
-    22U, /* Cell.Supervisor.Install.Start */
-    23U, /* Cell.Supervisor.Install.Give up */
-    24U, /* Cell.Supervisor.Install.Shift.Command */
-    25U, /* Cell.Supervisor.Install.Shift.Both */
-    26U, /* Cell.Supervisor.Install.Shift.Reply 1 */
-    27U, /* Cell.Supervisor.Install.Shift.Reply 2 */
-    28U, /* Cell.Supervisor.Install.Rivet.Go in */
-    29U, /* Cell.Supervisor.Install.Rivet.Go out */
-    30U, /* Cell.Supervisor.Install.Rivet.Advance.Command */
-    31U, /* Cell.Supervisor.Install.Rivet.Advance.Both */
-    32U, /* Cell.Supervisor.Install.Rivet.Advance.Reply 1 */
-    33U, /* Cell.Supervisor.Install.Rivet.Advance.Reply 2 */
-    34U, /* Cell.Supervisor.Install.Rivet.Fasten.Press */
-    35U, /* Cell.Supervisor.Install.Rivet.Fasten.Drill */
-    36U, /* Cell.Supervisor.Install.Rivet.Fasten.Insert */
-    37U, /* Cell.Supervisor.Install.Rivet.Fasten.Release */
-    38U, /* Cell.Supervisor.Install.Rivet.Fasten.Finish */
-    39U, /* Cell.Supervisor.Install.Rivet.Fasten.Press failed */
-    40U, /* Cell.Supervisor.Install.Rivet.Fasten.Drill failed */
-    41U, /* Cell.Supervisor.Install.Rivet.Retract.Command */
-    42U, /* Cell.Supervisor.Install.Rivet.Retract.Both */
-    43U, /* Cell.Supervisor.Install.Rivet.Retract.Reply 1 */
-    44U, /* Cell.Supervisor.Install.Rivet.Retract.Reply 2 */
-    45U, /* Cell.Supervisor.Install.Return.Command */
-    46U, /* Cell.Supervisor.Install.Return.Both */
-    47U, /* Cell.Supervisor.Install.Return.Reply 1 */
-    48U, /* Cell.Supervisor.Install.Return.Reply 2 */
-    49U, /* Cell.Supervisor.Home.Send home */
-    50U, /* Cell.Supervisor.Home.Both */
-    51U, /* Cell.Supervisor.Home.Reply 1 */
-    52U, /* Cell.Supervisor.Home.Reply 2 */
-    53U, /* Cell.Robot1.Accept */
-    54U, /* Cell.Robot1.Report */
-    55U, /* Cell.Robot1.MoveJoint */
-    56U, /* Cell.Robot1.MoveLinear */
-    57U, /* Cell.Robot1.MoveHome */
-    58U, /* Cell.Robot1.Measure */
-    59U, /* Cell.Robot1.Drill */
-    60U, /* Cell.Robot1.Insert */
-    61U, /* Cell.Robot1.Press */
-    62U, /* Cell.Robot1.Release */
-    63U, /* Cell.Robot2.Accept */
-    64U, /* Cell.Robot2.Report */
-    65U, /* Cell.Robot2.MoveJoint */
-    66U, /* Cell.Robot2.MoveLinear */
-    67U, /* Cell.Robot2.MoveHome */
-    68U, /* Cell.Robot2.Measure */
-    69U, /* Cell.Robot2.Drill */
-    70U, /* Cell.Robot2.Insert */
-    71U, /* Cell.Robot2.Press */
-    72U, /* Cell.Robot2.Release */
-};
+static const uint32_t s_order[] = { 0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 9U, 10U, 11U, 12U, 13U, 14U,
+    15U, 16U, 17U, 18U, 19U, 20U, 21U, 22U, 23U, 24U, 25U, 26U, 27U, 28U, 29U, 30U, 31U, 32U, 33U,
+    34U, 35U, 36U, 37U, 38U, 39U, 40U, 41U, 42U, 43U, 44U, 45U, 46U, 47U, 48U, 49U, 50U, 51U, 52U,
+    53U, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U, 63U, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U,
+    72U };
 
-/* For hosts that are compiled in one piece with the net: index and name of each transition, and whether each choice of tokens
- * gives a binding, so that counting them costs nothing. */
+/* For hosts that are compiled in one piece with the net: index of each transition, name of its code, and whether each choice of
+ * tokens gives a binding, so that counting them costs nothing. */
 #define NET_TRANSITIONS(EACH) \
-    EACH(0U, Supervisor_Load_Load, true) \
-    EACH(1U, Supervisor_Approach_Send, true) \
-    EACH(2U, Supervisor_Approach_Arrived, false) \
-    EACH(3U, Supervisor_Approach_Move_both_Command, true) \
-    EACH(4U, Supervisor_Approach_Move_both_Both, false) \
-    EACH(5U, Supervisor_Approach_Move_both_Reply_1, false) \
-    EACH(6U, Supervisor_Approach_Move_both_Reply_2, false) \
-    EACH(7U, Supervisor_Verify_Ask_first, true) \
-    EACH(8U, Supervisor_Verify_Ask_last, false) \
-    EACH(9U, Supervisor_Verify_Measured, false) \
-    EACH(10U, Supervisor_Verify_First_lost, false) \
-    EACH(11U, Supervisor_Verify_Last_lost, false) \
-    EACH(12U, Supervisor_Correct_Compare, true) \
-    EACH(13U, Supervisor_Correct_Move_over, false) \
-    EACH(14U, Supervisor_Correct_Moved, false) \
-    EACH(15U, Supervisor_Correct_As_planned, false) \
-    EACH(16U, Supervisor_Correct_Move_both_Command, true) \
-    EACH(17U, Supervisor_Correct_Move_both_Both, false) \
-    EACH(18U, Supervisor_Correct_Move_both_Reply_1, false) \
-    EACH(19U, Supervisor_Correct_Move_both_Reply_2, false) \
-    EACH(20U, Supervisor_Install_Go_back, false) \
-    EACH(21U, Supervisor_Install_Next_rivet, false) \
-    EACH(22U, Supervisor_Install_Start, true) \
-    EACH(23U, Supervisor_Install_Give_up, false) \
-    EACH(24U, Supervisor_Install_Shift_Command, true) \
-    EACH(25U, Supervisor_Install_Shift_Both, false) \
-    EACH(26U, Supervisor_Install_Shift_Reply_1, false) \
-    EACH(27U, Supervisor_Install_Shift_Reply_2, false) \
+    EACH(0U, Supervisor_Load_Load, true) EACH(1U, Supervisor_Approach_Send, true) \
+    EACH(2U, Supervisor_Approach_Arrived, false) EACH(3U, MoveBoth_Command, true) \
+    EACH(4U, MoveBoth_Both, false) EACH(5U, MoveBoth_Reply_1, false) \
+    EACH(6U, MoveBoth_Reply_2, false) EACH(7U, Supervisor_Verify_Ask_first, true) \
+    EACH(8U, Supervisor_Verify_Ask_last, false) EACH(9U, Supervisor_Verify_Measured, false) \
+    EACH(10U, Supervisor_Verify_First_lost, false) EACH(11U, Supervisor_Verify_Last_lost, false) \
+    EACH(12U, Supervisor_Correct_Compare, true) EACH(13U, Supervisor_Correct_Move_over, false) \
+    EACH(14U, Supervisor_Correct_Moved, false) EACH(15U, Supervisor_Correct_As_planned, false) \
+    EACH(16U, MoveBoth_Command, true) EACH(17U, MoveBoth_Both, false) \
+    EACH(18U, MoveBoth_Reply_1, false) EACH(19U, MoveBoth_Reply_2, false) \
+    EACH(20U, Supervisor_Install_Go_back, false) EACH(21U, Supervisor_Install_Next_rivet, false) \
+    EACH(22U, Supervisor_Install_Start, true) EACH(23U, Supervisor_Install_Give_up, false) \
+    EACH(24U, MoveBoth_Command, true) EACH(25U, MoveBoth_Both, false) \
+    EACH(26U, MoveBoth_Reply_1, false) EACH(27U, MoveBoth_Reply_2, false) \
     EACH(28U, Supervisor_Install_Rivet_Go_in, false) \
-    EACH(29U, Supervisor_Install_Rivet_Go_out, true) \
-    EACH(30U, Supervisor_Install_Rivet_Advance_Command, true) \
-    EACH(31U, Supervisor_Install_Rivet_Advance_Both, false) \
-    EACH(32U, Supervisor_Install_Rivet_Advance_Reply_1, false) \
-    EACH(33U, Supervisor_Install_Rivet_Advance_Reply_2, false) \
-    EACH(34U, Supervisor_Install_Rivet_Fasten_Press, false) \
+    EACH(29U, Supervisor_Install_Rivet_Go_out, true) EACH(30U, MoveBoth_Command, true) \
+    EACH(31U, MoveBoth_Both, false) EACH(32U, MoveBoth_Reply_1, false) \
+    EACH(33U, MoveBoth_Reply_2, false) EACH(34U, Supervisor_Install_Rivet_Fasten_Press, false) \
     EACH(35U, Supervisor_Install_Rivet_Fasten_Drill, false) \
     EACH(36U, Supervisor_Install_Rivet_Fasten_Insert, false) \
     EACH(37U, Supervisor_Install_Rivet_Fasten_Release, false) \
     EACH(38U, Supervisor_Install_Rivet_Fasten_Finish, true) \
     EACH(39U, Supervisor_Install_Rivet_Fasten_Press_failed, false) \
-    EACH(40U, Supervisor_Install_Rivet_Fasten_Drill_failed, false) \
-    EACH(41U, Supervisor_Install_Rivet_Retract_Command, true) \
-    EACH(42U, Supervisor_Install_Rivet_Retract_Both, false) \
-    EACH(43U, Supervisor_Install_Rivet_Retract_Reply_1, false) \
-    EACH(44U, Supervisor_Install_Rivet_Retract_Reply_2, false) \
-    EACH(45U, Supervisor_Install_Return_Command, true) \
-    EACH(46U, Supervisor_Install_Return_Both, false) \
-    EACH(47U, Supervisor_Install_Return_Reply_1, false) \
-    EACH(48U, Supervisor_Install_Return_Reply_2, false) \
-    EACH(49U, Supervisor_Home_Send_home, false) \
-    EACH(50U, Supervisor_Home_Both, false) \
-    EACH(51U, Supervisor_Home_Reply_1, false) \
-    EACH(52U, Supervisor_Home_Reply_2, false) \
-    EACH(53U, Robot1_Accept, false) \
-    EACH(54U, Robot1_Report, true) \
-    EACH(55U, Robot1_MoveJoint, false) \
-    EACH(56U, Robot1_MoveLinear, false) \
-    EACH(57U, Robot1_MoveHome, false) \
-    EACH(58U, Robot1_Measure, false) \
-    EACH(59U, Robot1_Drill, false) \
-    EACH(60U, Robot1_Insert, false) \
-    EACH(61U, Robot1_Press, false) \
-    EACH(62U, Robot1_Release, false) \
-    EACH(63U, Robot2_Accept, false) \
-    EACH(64U, Robot2_Report, true) \
-    EACH(65U, Robot2_MoveJoint, false) \
-    EACH(66U, Robot2_MoveLinear, false) \
-    EACH(67U, Robot2_MoveHome, false) \
-    EACH(68U, Robot2_Measure, false) \
-    EACH(69U, Robot2_Drill, false) \
-    EACH(70U, Robot2_Insert, false) \
-    EACH(71U, Robot2_Press, false) \
-    EACH(72U, Robot2_Release, false)
-
-typedef union any_binding {
-    Supervisor_Load_Load_binding_t Supervisor_Load_Load;
-    Supervisor_Approach_Send_binding_t Supervisor_Approach_Send;
-    Supervisor_Approach_Arrived_binding_t Supervisor_Approach_Arrived;
-    Supervisor_Approach_Move_both_Command_binding_t Supervisor_Approach_Move_both_Command;
-    Supervisor_Approach_Move_both_Both_binding_t Supervisor_Approach_Move_both_Both;
-    Supervisor_Approach_Move_both_Reply_1_binding_t Supervisor_Approach_Move_both_Reply_1;
-    Supervisor_Approach_Move_both_Reply_2_binding_t Supervisor_Approach_Move_both_Reply_2;
-    Supervisor_Verify_Ask_first_binding_t Supervisor_Verify_Ask_first;
-    Supervisor_Verify_Ask_last_binding_t Supervisor_Verify_Ask_last;
-    Supervisor_Verify_Measured_binding_t Supervisor_Verify_Measured;
-    Supervisor_Verify_First_lost_binding_t Supervisor_Verify_First_lost;
-    Supervisor_Verify_Last_lost_binding_t Supervisor_Verify_Last_lost;
-    Supervisor_Correct_Compare_binding_t Supervisor_Correct_Compare;
-    Supervisor_Correct_Move_over_binding_t Supervisor_Correct_Move_over;
-    Supervisor_Correct_Moved_binding_t Supervisor_Correct_Moved;
-    Supervisor_Correct_As_planned_binding_t Supervisor_Correct_As_planned;
-    Supervisor_Correct_Move_both_Command_binding_t Supervisor_Correct_Move_both_Command;
-    Supervisor_Correct_Move_both_Both_binding_t Supervisor_Correct_Move_both_Both;
-    Supervisor_Correct_Move_both_Reply_1_binding_t Supervisor_Correct_Move_both_Reply_1;
-    Supervisor_Correct_Move_both_Reply_2_binding_t Supervisor_Correct_Move_both_Reply_2;
-    Supervisor_Install_Go_back_binding_t Supervisor_Install_Go_back;
-    Supervisor_Install_Next_rivet_binding_t Supervisor_Install_Next_rivet;
-    Supervisor_Install_Start_binding_t Supervisor_Install_Start;
-    Supervisor_Install_Give_up_binding_t Supervisor_Install_Give_up;
-    Supervisor_Install_Shift_Command_binding_t Supervisor_Install_Shift_Command;
-    Supervisor_Install_Shift_Both_binding_t Supervisor_Install_Shift_Both;
-    Supervisor_Install_Shift_Reply_1_binding_t Supervisor_Install_Shift_Reply_1;
-    Supervisor_Install_Shift_Reply_2_binding_t Supervisor_Install_Shift_Reply_2;
-    Supervisor_Install_Rivet_Go_in_binding_t Supervisor_Install_Rivet_Go_in;
-    Supervisor_Install_Rivet_Go_out_binding_t Supervisor_Install_Rivet_Go_out;
-    Supervisor_Install_Rivet_Advance_Command_binding_t Supervisor_Install_Rivet_Advance_Command;
-    Supervisor_Install_Rivet_Advance_Both_binding_t Supervisor_Install_Rivet_Advance_Both;
-    Supervisor_Install_Rivet_Advance_Reply_1_binding_t Supervisor_Install_Rivet_Advance_Reply_1;
-    Supervisor_Install_Rivet_Advance_Reply_2_binding_t Supervisor_Install_Rivet_Advance_Reply_2;
-    Supervisor_Install_Rivet_Fasten_Press_binding_t Supervisor_Install_Rivet_Fasten_Press;
-    Supervisor_Install_Rivet_Fasten_Drill_binding_t Supervisor_Install_Rivet_Fasten_Drill;
-    Supervisor_Install_Rivet_Fasten_Insert_binding_t Supervisor_Install_Rivet_Fasten_Insert;
-    Supervisor_Install_Rivet_Fasten_Release_binding_t Supervisor_Install_Rivet_Fasten_Release;
-    Supervisor_Install_Rivet_Fasten_Finish_binding_t Supervisor_Install_Rivet_Fasten_Finish;
-    Supervisor_Install_Rivet_Fasten_Press_failed_binding_t Supervisor_Install_Rivet_Fasten_Press_failed;
-    Supervisor_Install_Rivet_Fasten_Drill_failed_binding_t Supervisor_Install_Rivet_Fasten_Drill_failed;
-    Supervisor_Install_Rivet_Retract_Command_binding_t Supervisor_Install_Rivet_Retract_Command;
-    Supervisor_Install_Rivet_Retract_Both_binding_t Supervisor_Install_Rivet_Retract_Both;
-    Supervisor_Install_Rivet_Retract_Reply_1_binding_t Supervisor_Install_Rivet_Retract_Reply_1;
-    Supervisor_Install_Rivet_Retract_Reply_2_binding_t Supervisor_Install_Rivet_Retract_Reply_2;
-    Supervisor_Install_Return_Command_binding_t Supervisor_Install_Return_Command;
-    Supervisor_Install_Return_Both_binding_t Supervisor_Install_Return_Both;
-    Supervisor_Install_Return_Reply_1_binding_t Supervisor_Install_Return_Reply_1;
-    Supervisor_Install_Return_Reply_2_binding_t Supervisor_Install_Return_Reply_2;
-    Supervisor_Home_Send_home_binding_t Supervisor_Home_Send_home;
-    Supervisor_Home_Both_binding_t Supervisor_Home_Both;
-    Supervisor_Home_Reply_1_binding_t Supervisor_Home_Reply_1;
-    Supervisor_Home_Reply_2_binding_t Supervisor_Home_Reply_2;
-    Robot1_Accept_binding_t Robot1_Accept;
-    Robot1_Report_binding_t Robot1_Report;
-    Robot1_MoveJoint_binding_t Robot1_MoveJoint;
-    Robot1_MoveLinear_binding_t Robot1_MoveLinear;
-    Robot1_MoveHome_binding_t Robot1_MoveHome;
-    Robot1_Measure_binding_t Robot1_Measure;
-    Robot1_Drill_binding_t Robot1_Drill;
-    Robot1_Insert_binding_t Robot1_Insert;
-    Robot1_Press_binding_t Robot1_Press;
-    Robot1_Release_binding_t Robot1_Release;
-    Robot2_Accept_binding_t Robot2_Accept;
-    Robot2_Report_binding_t Robot2_Report;
-    Robot2_MoveJoint_binding_t Robot2_MoveJoint;
-    Robot2_MoveLinear_binding_t Robot2_MoveLinear;
-    Robot2_MoveHome_binding_t Robot2_MoveHome;
-    Robot2_Measure_binding_t Robot2_Measure;
-    Robot2_Drill_binding_t Robot2_Drill;
-    Robot2_Insert_binding_t Robot2_Insert;
-    Robot2_Press_binding_t Robot2_Press;
-    Robot2_Release_binding_t Robot2_Release;
-} any_binding_t;
+    EACH(40U, Supervisor_Install_Rivet_Fasten_Drill_failed, false) EACH(41U, MoveBoth_Command, true) \
+    EACH(42U, MoveBoth_Both, false) EACH(43U, MoveBoth_Reply_1, false) \
+    EACH(44U, MoveBoth_Reply_2, false) EACH(45U, MoveBoth_Command, true) \
+    EACH(46U, MoveBoth_Both, false) EACH(47U, MoveBoth_Reply_1, false) \
+    EACH(48U, MoveBoth_Reply_2, false) EACH(49U, Supervisor_Home_Send_home, false) \
+    EACH(50U, Supervisor_Home_Both, false) EACH(51U, Supervisor_Home_Reply_1, false) \
+    EACH(52U, Supervisor_Home_Reply_2, false) EACH(53U, Robot_Accept, false) \
+    EACH(54U, Robot_Report, true) EACH(55U, Robot_MoveJoint, false) \
+    EACH(56U, Robot_MoveLinear, false) EACH(57U, Robot_MoveHome, false) \
+    EACH(58U, Robot_Measure, false) EACH(59U, Robot_Drill, false) EACH(60U, Robot_Insert, false) \
+    EACH(61U, Robot_Press, false) EACH(62U, Robot_Release, false) EACH(63U, Robot_Accept, false) \
+    EACH(64U, Robot_Report, true) EACH(65U, Robot_MoveJoint, false) \
+    EACH(66U, Robot_MoveLinear, false) EACH(67U, Robot_MoveHome, false) \
+    EACH(68U, Robot_Measure, false) EACH(69U, Robot_Drill, false) EACH(70U, Robot_Insert, false) \
+    EACH(71U, Robot_Press, false) EACH(72U, Robot_Release, false)
 
 static const pn_owner_t s_owners[] = {
     { "supervisor" },
@@ -8421,7 +4343,6 @@ const pn_net_t pn_net = {
     .timed = false,
     .real_time = false,
     .marking_size = sizeof(net_marking_t),
-    .binding_size = sizeof(any_binding_t),
     .place_count = 75U,
     .place = s_places,
     .transition_count = 73U,

@@ -86,385 +86,222 @@ struct tuple_VECTOR_VECTOR_VECTOR {
     VECTOR_t c3;
 };
 
+/* --- what holds the tokens of a place: a slot for one, an array for several ------------------- */
+
+typedef struct POSE_slot {
+    POSE_t value;
+    bool full;
+} POSE_slot_t;
+
+typedef struct COMMAND_slot {
+    int64_t value;
+    bool full;
+} COMMAND_slot_t;
+
+typedef struct REPLY_slot {
+    int64_t value;
+    bool full;
+} REPLY_slot_t;
+
+typedef struct PLAN_slot {
+    PLAN_t value;
+    bool full;
+} PLAN_slot_t;
+
+typedef struct SEAM_slot {
+    SEAM_t value;
+    bool full;
+} SEAM_slot_t;
+
+typedef struct VERIFIED_slot {
+    VERIFIED_t value;
+    bool full;
+} VERIFIED_slot_t;
+
+typedef struct RIVETING_slot {
+    RIVETING_t value;
+    bool full;
+} RIVETING_slot_t;
+
+typedef struct UNIT_slot {
+    pn_unit_t value;
+    bool full;
+} UNIT_slot_t;
+
+typedef struct ORDER_slot {
+    PLAN_t value;
+    bool full;
+} ORDER_slot_t;
+
+typedef struct ASKED_slot {
+    ASKED_t value;
+    bool full;
+} ASKED_slot_t;
+
+typedef struct VECTOR_slot {
+    VECTOR_t value;
+    bool full;
+} VECTOR_slot_t;
+
+typedef struct WORK_slot {
+    WORK_t value;
+    bool full;
+} WORK_slot_t;
+
 /* --- the marking ------------------------------------------------------------------------------- */
 
 typedef struct net_marking {
     pn_time_t now;
     /* Cell.dadosrobo1: page `Cell`, place `dadosrobo1` (ID1412310013) */
-    struct {
-        POSE_t value;
-        bool full;
-    } dadosrobo1;
+    POSE_slot_t dadosrobo1;
     /* Cell.flag1_interno: page `Cell`, place `flag1_interno` (ID1412310016) */
-    struct {
-        int64_t value;
-        bool full;
-    } flag1_interno;
+    COMMAND_slot_t flag1_interno;
     /* Cell.flag1_externo: page `Cell`, place `flag1_externo` (ID1412310019) */
-    struct {
-        int64_t value;
-        bool full;
-    } flag1_externo;
+    REPLY_slot_t flag1_externo;
     /* Cell.referencia1: page `Cell`, place `referencia1` (ID1412310022) */
-    struct {
-        POSE_t value;
-        bool full;
-    } referencia1;
+    POSE_slot_t referencia1;
     /* Cell.medida1: page `Cell`, place `medida1` (ID1412310025) */
-    struct {
-        POSE_t value;
-        bool full;
-    } medida1;
+    POSE_slot_t medida1;
     /* Cell.dadosrobo2: page `Cell`, place `dadosrobo2` (ID1412310028) */
-    struct {
-        POSE_t value;
-        bool full;
-    } dadosrobo2;
+    POSE_slot_t dadosrobo2;
     /* Cell.flag2_interno: page `Cell`, place `flag2_interno` (ID1412310031) */
-    struct {
-        int64_t value;
-        bool full;
-    } flag2_interno;
+    COMMAND_slot_t flag2_interno;
     /* Cell.flag2_externo: page `Cell`, place `flag2_externo` (ID1412310034) */
-    struct {
-        int64_t value;
-        bool full;
-    } flag2_externo;
+    REPLY_slot_t flag2_externo;
     /* Cell.referencia2: page `Cell`, place `referencia2` (ID1412330001) */
-    struct {
-        POSE_t value;
-        bool full;
-    } referencia2;
+    POSE_slot_t referencia2;
     /* Cell.medida2: page `Cell`, place `medida2` (ID1412330004) */
-    struct {
-        POSE_t value;
-        bool full;
-    } medida2;
+    POSE_slot_t medida2;
     /* Cell.Supervisor.coordenadas: page `Supervisor`, place `coordenadas` (ID1412310094) */
-    struct {
-        PLAN_t value;
-        bool full;
-    } Supervisor_coordenadas;
+    PLAN_slot_t Supervisor_coordenadas;
     /* Cell.Supervisor.planned: page `Supervisor`, place `planned` (ID1412310097) */
-    struct {
-        SEAM_t value;
-        bool full;
-    } Supervisor_planned;
+    SEAM_slot_t Supervisor_planned;
     /* Cell.Supervisor.approached: page `Supervisor`, place `approached` (ID1412310100) */
-    struct {
-        SEAM_t value;
-        bool full;
-    } Supervisor_approached;
+    SEAM_slot_t Supervisor_approached;
     /* Cell.Supervisor.verified: page `Supervisor`, place `verified` (ID1412310103) */
-    struct {
-        VERIFIED_t value;
-        bool full;
-    } Supervisor_verified;
+    VERIFIED_slot_t Supervisor_verified;
     /* Cell.Supervisor.corrected: page `Supervisor`, place `corrected` (ID1412310106) */
-    struct {
-        RIVETING_t value;
-        bool full;
-    } Supervisor_corrected;
+    RIVETING_slot_t Supervisor_corrected;
     /* Cell.Supervisor.ended: page `Supervisor`, place `ended` (ID1412310109) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_ended;
+    UNIT_slot_t Supervisor_ended;
     /* Cell.Supervisor.Finished: page `Supervisor`, place `Finished` (ID1412310112) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Finished;
+    UNIT_slot_t Supervisor_Finished;
     /* Cell.Supervisor.result: page `Supervisor`, place `result` (ID1412320001) */
-    struct {
-        int64_t value;
-        bool full;
-    } Supervisor_result;
+    REPLY_slot_t Supervisor_result;
     /* Cell.Supervisor.Failed: page `Supervisor`, place `Failed` (ID1412320004) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Failed;
+    UNIT_slot_t Supervisor_Failed;
     /* Cell.Supervisor.Approach.order: page `Approach`, place `order` (ID1412310290) */
-    struct {
-        PLAN_t value;
-        bool full;
-    } Supervisor_Approach_order;
+    ORDER_slot_t Supervisor_Approach_order;
     /* Cell.Supervisor.Approach.done: page `Approach`, place `done` (ID1412310293) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Approach_done;
+    UNIT_slot_t Supervisor_Approach_done;
     /* Cell.Supervisor.Approach.seam: page `Approach`, place `seam` (ID1412310352) */
-    struct {
-        SEAM_t value;
-        bool full;
-    } Supervisor_Approach_seam;
+    SEAM_slot_t Supervisor_Approach_seam;
     /* Cell.Supervisor.Approach.Move both.moving 1: page `MoveBoth`, place `moving 1` (ID1412310959) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Approach_Move_both_moving_1;
+    UNIT_slot_t Supervisor_Approach_Move_both_moving_1;
     /* Cell.Supervisor.Approach.Move both.there 1: page `MoveBoth`, place `there 1` (ID1412310967) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Approach_Move_both_there_1;
+    UNIT_slot_t Supervisor_Approach_Move_both_there_1;
     /* Cell.Supervisor.Approach.Move both.moving 2: page `MoveBoth`, place `moving 2` (ID1412310996) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Approach_Move_both_moving_2;
+    UNIT_slot_t Supervisor_Approach_Move_both_moving_2;
     /* Cell.Supervisor.Approach.Move both.there 2: page `MoveBoth`, place `there 2` (ID1412311004) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Approach_Move_both_there_2;
+    UNIT_slot_t Supervisor_Approach_Move_both_there_2;
     /* Cell.Supervisor.Verify.first asked: page `Verify`, place `first asked` (ID1412310382) */
-    struct {
-        SEAM_t value;
-        bool full;
-    } Supervisor_Verify_first_asked;
+    SEAM_slot_t Supervisor_Verify_first_asked;
     /* Cell.Supervisor.Verify.last asked: page `Verify`, place `last asked` (ID1412310390) */
-    struct {
-        ASKED_t value;
-        bool full;
-    } Supervisor_Verify_last_asked;
+    ASKED_slot_t Supervisor_Verify_last_asked;
     /* Cell.Supervisor.Correct.offset: page `Correct`, place `offset` (ID1412310458) */
-    struct {
-        VECTOR_t value;
-        bool full;
-    } Supervisor_Correct_offset;
+    VECTOR_slot_t Supervisor_Correct_offset;
     /* Cell.Supervisor.Correct.order: page `Correct`, place `order` (ID1412310466) */
-    struct {
-        PLAN_t value;
-        bool full;
-    } Supervisor_Correct_order;
+    ORDER_slot_t Supervisor_Correct_order;
     /* Cell.Supervisor.Correct.done: page `Correct`, place `done` (ID1412310475) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Correct_done;
+    UNIT_slot_t Supervisor_Correct_done;
     /* Cell.Supervisor.Correct.seam: page `Correct`, place `seam` (ID1412310523) */
-    struct {
-        RIVETING_t value;
-        bool full;
-    } Supervisor_Correct_seam;
+    RIVETING_slot_t Supervisor_Correct_seam;
     /* Cell.Supervisor.Correct.Move both.moving 1: page `MoveBoth`, place `moving 1` (ID1412310959) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Correct_Move_both_moving_1;
+    UNIT_slot_t Supervisor_Correct_Move_both_moving_1;
     /* Cell.Supervisor.Correct.Move both.there 1: page `MoveBoth`, place `there 1` (ID1412310967) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Correct_Move_both_there_1;
+    UNIT_slot_t Supervisor_Correct_Move_both_there_1;
     /* Cell.Supervisor.Correct.Move both.moving 2: page `MoveBoth`, place `moving 2` (ID1412310996) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Correct_Move_both_moving_2;
+    UNIT_slot_t Supervisor_Correct_Move_both_moving_2;
     /* Cell.Supervisor.Correct.Move both.there 2: page `MoveBoth`, place `there 2` (ID1412311004) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Correct_Move_both_there_2;
+    UNIT_slot_t Supervisor_Correct_Move_both_there_2;
     /* Cell.Supervisor.Install.shift: page `Install`, place `shift` (ID1412310585) */
-    struct {
-        PLAN_t value;
-        bool full;
-    } Supervisor_Install_shift;
+    ORDER_slot_t Supervisor_Install_shift;
     /* Cell.Supervisor.Install.ready: page `Install`, place `ready` (ID1412310588) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Install_ready;
+    UNIT_slot_t Supervisor_Install_ready;
     /* Cell.Supervisor.Install.riveted: page `Install`, place `riveted` (ID1412310591) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Install_riveted;
+    UNIT_slot_t Supervisor_Install_riveted;
     /* Cell.Supervisor.Install.return: page `Install`, place `return` (ID1412310599) */
-    struct {
-        PLAN_t value;
-        bool full;
-    } Supervisor_Install_return;
+    ORDER_slot_t Supervisor_Install_return;
     /* Cell.Supervisor.Install.work: page `Install`, place `work` (ID1412310629) */
-    struct {
-        WORK_t value;
-        bool full;
-    } Supervisor_Install_work;
+    WORK_slot_t Supervisor_Install_work;
     /* Cell.Supervisor.Install.Shift.moving 1: page `MoveBoth`, place `moving 1` (ID1412310959) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Install_Shift_moving_1;
+    UNIT_slot_t Supervisor_Install_Shift_moving_1;
     /* Cell.Supervisor.Install.Shift.there 1: page `MoveBoth`, place `there 1` (ID1412310967) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Install_Shift_there_1;
+    UNIT_slot_t Supervisor_Install_Shift_there_1;
     /* Cell.Supervisor.Install.Shift.moving 2: page `MoveBoth`, place `moving 2` (ID1412310996) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Install_Shift_moving_2;
+    UNIT_slot_t Supervisor_Install_Shift_moving_2;
     /* Cell.Supervisor.Install.Shift.there 2: page `MoveBoth`, place `there 2` (ID1412311004) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Install_Shift_there_2;
+    UNIT_slot_t Supervisor_Install_Shift_there_2;
     /* Cell.Supervisor.Install.Rivet.advance: page `Rivet`, place `advance` (ID1412310721) */
-    struct {
-        PLAN_t value;
-        bool full;
-    } Supervisor_Install_Rivet_advance;
+    ORDER_slot_t Supervisor_Install_Rivet_advance;
     /* Cell.Supervisor.Install.Rivet.contact: page `Rivet`, place `contact` (ID1412310730) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Install_Rivet_contact;
+    UNIT_slot_t Supervisor_Install_Rivet_contact;
     /* Cell.Supervisor.Install.Rivet.fastened: page `Rivet`, place `fastened` (ID1412310739) */
-    struct {
-        int64_t value;
-        bool full;
-    } Supervisor_Install_Rivet_fastened;
+    REPLY_slot_t Supervisor_Install_Rivet_fastened;
     /* Cell.Supervisor.Install.Rivet.retract: page `Rivet`, place `retract` (ID1412310747) */
-    struct {
-        PLAN_t value;
-        bool full;
-    } Supervisor_Install_Rivet_retract;
+    ORDER_slot_t Supervisor_Install_Rivet_retract;
     /* Cell.Supervisor.Install.Rivet.Advance.moving 1: page `MoveBoth`, place `moving 1` (ID1412310959) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Install_Rivet_Advance_moving_1;
+    UNIT_slot_t Supervisor_Install_Rivet_Advance_moving_1;
     /* Cell.Supervisor.Install.Rivet.Advance.there 1: page `MoveBoth`, place `there 1` (ID1412310967) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Install_Rivet_Advance_there_1;
+    UNIT_slot_t Supervisor_Install_Rivet_Advance_there_1;
     /* Cell.Supervisor.Install.Rivet.Advance.moving 2: page `MoveBoth`, place `moving 2` (ID1412310996) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Install_Rivet_Advance_moving_2;
+    UNIT_slot_t Supervisor_Install_Rivet_Advance_moving_2;
     /* Cell.Supervisor.Install.Rivet.Advance.there 2: page `MoveBoth`, place `there 2` (ID1412311004) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Install_Rivet_Advance_there_2;
+    UNIT_slot_t Supervisor_Install_Rivet_Advance_there_2;
     /* Cell.Supervisor.Install.Rivet.Fasten.pressing: page `Fasten`, place `pressing` (ID1412310847) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Install_Rivet_Fasten_pressing;
+    UNIT_slot_t Supervisor_Install_Rivet_Fasten_pressing;
     /* Cell.Supervisor.Install.Rivet.Fasten.drilling: page `Fasten`, place `drilling` (ID1412310855) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Install_Rivet_Fasten_drilling;
+    UNIT_slot_t Supervisor_Install_Rivet_Fasten_drilling;
     /* Cell.Supervisor.Install.Rivet.Fasten.inserting: page `Fasten`, place `inserting` (ID1412310863) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Install_Rivet_Fasten_inserting;
+    UNIT_slot_t Supervisor_Install_Rivet_Fasten_inserting;
     /* Cell.Supervisor.Install.Rivet.Fasten.releasing: page `Fasten`, place `releasing` (ID1412310871) */
-    struct {
-        int64_t value;
-        bool full;
-    } Supervisor_Install_Rivet_Fasten_releasing;
+    REPLY_slot_t Supervisor_Install_Rivet_Fasten_releasing;
     /* Cell.Supervisor.Install.Rivet.Retract.moving 1: page `MoveBoth`, place `moving 1` (ID1412310959) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Install_Rivet_Retract_moving_1;
+    UNIT_slot_t Supervisor_Install_Rivet_Retract_moving_1;
     /* Cell.Supervisor.Install.Rivet.Retract.there 1: page `MoveBoth`, place `there 1` (ID1412310967) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Install_Rivet_Retract_there_1;
+    UNIT_slot_t Supervisor_Install_Rivet_Retract_there_1;
     /* Cell.Supervisor.Install.Rivet.Retract.moving 2: page `MoveBoth`, place `moving 2` (ID1412310996) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Install_Rivet_Retract_moving_2;
+    UNIT_slot_t Supervisor_Install_Rivet_Retract_moving_2;
     /* Cell.Supervisor.Install.Rivet.Retract.there 2: page `MoveBoth`, place `there 2` (ID1412311004) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Install_Rivet_Retract_there_2;
+    UNIT_slot_t Supervisor_Install_Rivet_Retract_there_2;
     /* Cell.Supervisor.Install.Return.moving 1: page `MoveBoth`, place `moving 1` (ID1412310959) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Install_Return_moving_1;
+    UNIT_slot_t Supervisor_Install_Return_moving_1;
     /* Cell.Supervisor.Install.Return.there 1: page `MoveBoth`, place `there 1` (ID1412310967) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Install_Return_there_1;
+    UNIT_slot_t Supervisor_Install_Return_there_1;
     /* Cell.Supervisor.Install.Return.moving 2: page `MoveBoth`, place `moving 2` (ID1412310996) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Install_Return_moving_2;
+    UNIT_slot_t Supervisor_Install_Return_moving_2;
     /* Cell.Supervisor.Install.Return.there 2: page `MoveBoth`, place `there 2` (ID1412311004) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Install_Return_there_2;
+    UNIT_slot_t Supervisor_Install_Return_there_2;
     /* Cell.Supervisor.Home.leaving 1: page `Home`, place `leaving 1` (ID1412311057) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Home_leaving_1;
+    UNIT_slot_t Supervisor_Home_leaving_1;
     /* Cell.Supervisor.Home.home 1: page `Home`, place `home 1` (ID1412311065) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Home_home_1;
+    UNIT_slot_t Supervisor_Home_home_1;
     /* Cell.Supervisor.Home.leaving 2: page `Home`, place `leaving 2` (ID1412311088) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Home_leaving_2;
+    UNIT_slot_t Supervisor_Home_leaving_2;
     /* Cell.Supervisor.Home.home 2: page `Home`, place `home 2` (ID1412311096) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Supervisor_Home_home_2;
+    UNIT_slot_t Supervisor_Home_home_2;
     /* Cell.Robot1.Waiting: page `Robot`, place `Waiting` (ID1412311130) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Robot1_Waiting;
+    UNIT_slot_t Robot1_Waiting;
     /* Cell.Robot1.Commanded: page `Robot`, place `Commanded` (ID1412311133) */
-    struct {
-        int64_t value;
-        bool full;
-    } Robot1_Commanded;
+    COMMAND_slot_t Robot1_Commanded;
     /* Cell.Robot1.Done: page `Robot`, place `Done` (ID1412311142) */
-    struct {
-        int64_t value;
-        bool full;
-    } Robot1_Done;
+    REPLY_slot_t Robot1_Done;
     /* Cell.Robot2.Waiting: page `Robot`, place `Waiting` (ID1412311130) */
-    struct {
-        pn_unit_t value;
-        bool full;
-    } Robot2_Waiting;
+    UNIT_slot_t Robot2_Waiting;
     /* Cell.Robot2.Commanded: page `Robot`, place `Commanded` (ID1412311133) */
-    struct {
-        int64_t value;
-        bool full;
-    } Robot2_Commanded;
+    COMMAND_slot_t Robot2_Commanded;
     /* Cell.Robot2.Done: page `Robot`, place `Done` (ID1412311142) */
-    struct {
-        int64_t value;
-        bool full;
-    } Robot2_Done;
+    REPLY_slot_t Robot2_Done;
 } net_marking_t;
 
 #endif /* NET_H */

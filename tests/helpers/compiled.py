@@ -42,8 +42,8 @@ WARNINGS = (
 SANITIZERS = ("-g1", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 FAST = ("-O1",)
 RUNTIME = (
-    "arena", "bag", "big", "codec", "file", "library", "list", "marking", "moves", "num", "random", "read", "root",
-    "stack", "string", "text", "trace", "type",
+    "arena", "bag", "big", "codec", "file", "leaves", "library", "list", "marking", "moves", "num", "random", "read",
+    "root", "stack", "string", "text", "trace", "type",
 )  # fmt: skip
 
 

@@ -75,9 +75,10 @@ static bool enumerate(pn_ctx_t *cx, const void *marking, uint32_t self, pn_bindi
     return true;
 }
 
-static bool fire(pn_ctx_t *cx, void *marking, void *binding)
+static bool fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     const row_t *row = &s_row[*(const int64_t *)binding];
+    (void)self;
     for (uint32_t c = 0U; c < PLACES; c++) {
         const uint32_t n = row->resets[c] ? 0U : get(marking, c) - row->pre[c] + row->post[c];
         if (n > MOST) { cx->origin = "P"; pn_raise(cx, PN_ERR_CAPACITY, "full"); return false; }
@@ -99,5 +100,5 @@ static const pn_transition_t s_transition[] = { { .name = "T", .id = "T", .origi
     .touched_count = 1U, .touched = s_touched } };
 static const uint32_t s_order[] = { 0U };
 const pn_net_t pn_net = { .abi = PN_NET_ABI, .name = "table", .source = "table", .digest = "0", .marking_size = sizeof(marking_t),
-    .binding_size = sizeof(int64_t), .place_count = 1U, .place = s_place, .transition_count = 1U, .transition = s_transition,
+    .place_count = 1U, .place = s_place, .transition_count = 1U, .transition = s_transition,
     .order_count = 1U, .order = s_order, .now_at = offsetof(marking_t, now), .packed_size = sizeof(((marking_t *)0)->packed) };

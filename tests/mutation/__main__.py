@@ -24,6 +24,7 @@ from tests.mutation.mutants import (
     Mutant,
     of_c,
     of_declarations,
+    of_instances,
     of_script,
     of_tables,
 )
@@ -60,6 +61,11 @@ def of_cell(judge: Judge) -> dict[str, list[Mutant]]:
             first <= function.first and function.last <= last for first, last in spans
         )
 
+    paths = {name.rsplit(".", 1)[0] for name in names}
+
+    def is_run(path: str) -> bool:
+        return path in paths
+
     scripts = sorted(name for name in judge.files if name.endswith(".tdl"))
     of_scripts = [
         m
@@ -69,6 +75,7 @@ def of_cell(judge: Judge) -> dict[str, list[Mutant]]:
     ]
     return {
         "net.c": list(of_c(judge.files["net.c"], "net.c", is_own)),
+        "instances": list(of_instances(judge.files["net.c"], "net.c", is_run)),
         "declarations": [m for name in scripts for m in of_declarations(judge.files[name], name)],
         "tables": list(of_tables(judge.files["cell_config.c"], "cell_config.c")),
         "scripts": [m for m in of_scripts if m.kind not in COMMANDS],

@@ -43,7 +43,7 @@ class Function:
 Rule = tuple[str, re.Pattern[str], Callable[[re.Match[str]], str]]
 
 _COMMENT = re.compile(r"/\*.*?\*/|//.*$|\"(?:[^\"\\]|\\.)*\"")
-_PLACES = re.compile(r"\b(\w+)_(take|add)\(")
+_PLACES = re.compile(r"(?<=&m->)\w+(?=[,)])|(?<=own->)\w+(?=[,)])|(?<=^    m->)\w+(?=\.\w+ = )")
 
 
 def _other(pairs: dict[str, str]) -> Callable[[re.Match[str]], str]:
@@ -82,14 +82,15 @@ def _negated(m: re.Match[str]) -> str:
 
 C_RULES: tuple[Rule, ...] = (
     ("comparison", re.compile(r"(?<=[\w)\]] )(==|!=|<=|>=|<|>)(?= [\w(~-])"), lambda m: _COMPARED[m[1]]),
-    ("condition negated", re.compile(r"\b(?:if|while) \((?!!)(.*)\) \{$"), _negated),
+    ("condition negated", re.compile(r"\b(?:if|while) \((?!!)(.*)\) \{(?: /\*.*\*/)?$"), _negated),
+    ("condition negated", re.compile(r"\bif \(!([\w.>-]+)\) \{(?: /\*.*\*/)?$"), lambda m: m[0].replace("(!", "(", 1)),
     ("arithmetic", re.compile(r"(?<=[\w)\]] )([+-])(?= [\w(])"), lambda m: _ADDED[m[1]]),
     ("arithmetic", re.compile(r"\bpn_int_(add|sub)\("), _other({"add": "sub", "sub": "add"})),
     ("logic", re.compile(r"(&&|\|\|)"), lambda m: _JOINED[m[1]]),
     ("constant", re.compile(r"(?<![\w.])(\d+)(?=U?[;,)])"), lambda m: str(int(m[1]) + 1)),
     ("constant", re.compile(r"\b(true|false)\b(?=[;,)])"), lambda m: _SWITCHED[m[1]]),
-    ("write skipped", re.compile(r"(?<== )\w+_add\(cx, m, [^;]*?\)(?=;| &&)"), lambda m: "true"),
-    ("token not taken", re.compile(r"(?<== )\w+_take\(m, [^;]*?\)(?=;| &&)"), lambda m: "true"),
+    ("write skipped", re.compile(r"(?<== )\w+_add\(cx, [^;]*?\)(?=;| &&)"), lambda m: "true"),
+    ("token not taken", re.compile(r"(?<== )\w+_take\([^;]*?\)(?=;| &&)"), lambda m: "true"),
     ("call dropped", re.compile(r"^(\s*)(?:\(void\))?[\w.>-]+\([^=]*\);$"), lambda m: f"{m[1]};"),
 )  # fmt: skip
 COMMAND = re.compile(r"^(\s+)(?:move|tool|measure|wait(?! until)) .*$")
@@ -150,14 +151,15 @@ TABLE_RULES: tuple[Rule, ...] = (
 
 DEFENSIVE = re.compile(
     r"error\b|sup_stop|sup_warn|sup_say|snprintf|verbosity|pn_trace|pn_text|pn_json|crowded|max_firings|stop_signal"
-    r"|fired_of|most_fired|!is_taken|!fits|!pn_ok|pn_raise|PN_ERR|->rounds|is_lost|all_ended|refused|owes"
+    r"|fired_of|most_fired|!is_taken|!fits|!pn_ok|pn_raise|pn_begin|pn_has_room|PN_ERR|->rounds|is_lost|all_ended|refused|owes"
     r"|sup_monitor|fired\(|\*count|\*fired|(?:transition|index) = 0U|first_binding_t first|result = -1|/\* I3"
     r"|return -?[12];|s_cell\.(?:sent|received)|scalars_format|->t = |\*fired = "
 )
 """Lines, with the blocks that they begin, that nothing reaches in a cell that works: errors, reports, statistics. What
 they do has tests of its own (`tests/e2e/test_supervisor_host.py`, `test_compiled_core.py`)."""
 _KEPT = re.compile(r"^\s*(?:return (?:true|false);|(?:is_taken|fits) = .*(?:&&|\|\|).*)$")
-"""Answers of a search that nobody asks for, and the `&&` between moves that never fail."""
+"""Answers of a search that nobody asks for, and the `&&` between moves that never fail; so with the `||` between tests
+for tokens that the search has found."""
 
 
 def of_c(text: str, file: str, is_wanted: Callable[[Function], bool]) -> Iterator[Mutant]:
@@ -181,7 +183,9 @@ def of_c(text: str, file: str, is_wanted: Callable[[Function], bool]) -> Iterato
                 block = indent if lines[i].rstrip().endswith("{") else ""
         for i in wanted:
             for mutant in _changed(lines, i, file, C_RULES):
-                is_kept = _KEPT.match(lines[i]) and mutant.kind in ("logic", "constant")
+                is_taking = any("pn_fail_missing" in line for line in lines[i + 1 : i + 4])
+                is_answer = _KEPT.match(lines[i]) and mutant.kind in ("logic", "constant")
+                is_kept = is_answer or (is_taking and mutant.kind == "logic")
                 if not (is_kept and (mutant.kind == "logic" or "return" in lines[i])):
                     yield mutant
         yield from _swapped(lines, wanted, file)
@@ -284,14 +288,29 @@ def _changed(lines: list[str], i: int, file: str, rules: tuple[Rule, ...]) -> It
 
 
 def _swapped(lines: list[str], wanted: list[int], file: str) -> Iterator[Mutant]:
-    """A take or add at another place of the same function; that often does not compile, and is no mutant then."""
-    places = list(dict.fromkeys(m[1] for i in wanted for m in _PLACES.finditer(lines[i])))
-    for i in wanted:
-        match = _PLACES.search(lines[i])
-        for other in places if match else ():
-            if match and other != match[1]:
-                new = lines[i].replace(f"{match[1]}_{match[2]}(", f"{other}_{match[2]}(", 1)
+    """Another place of the same function instead; that often does not compile, and is no mutant then."""
+    found = [(i, m) for i in wanted for m in _PLACES.finditer(lines[i])]
+    places = list(dict.fromkeys(m[0] for _, m in found))
+    for i, match in found:
+        for other in places:
+            if other != match[0]:
+                new = lines[i][: match.start()] + other + lines[i][match.end() :]
                 yield _mutant(lines, i, new, file, "places swapped")
+
+
+def of_instances(text: str, file: str, is_wanted: Callable[[str], bool]) -> Iterator[Mutant]:
+    """Two places exchanged in the tables of page instances, by their paths."""
+    lines = text.split("\n")
+    start = re.compile(r"^static const \w+ s_in_\w+ = \{$")
+    for i, line in enumerate(lines):
+        if not start.match(line) or not is_wanted(lines[i - 1].strip("/* ")):
+            continue
+        end = lines.index("};", i)
+        for k in range(i + 1, end - 1):
+            (a, x), (b, y) = (row.strip(" ,").split(" = ") for row in lines[k : k + 2])
+            new = [*lines[:k], f"    {a} = {y},", f"    {b} = {x},", *lines[k + 2 :]]
+            what = f"{file}:{k + 1}: places of an instance exchanged: `{a}` and `{b}`"
+            yield Mutant(file, k + 1, "places exchanged", what, "\n".join(new))
 
 
 def _mutant(lines: list[str], i: int, new: str, file: str, kind: str) -> Mutant:

@@ -26,6 +26,8 @@ static inline void pn_set_now(const pn_net_t *net, void *marking, pn_time_t now)
     (void)memcpy((unsigned char *)marking + net->now_at, &now, sizeof now);
 }
 
+/* Bytes of the largest binding; 1 where there are no transitions. */
+size_t pn_binding_size(const pn_net_t *net);
 /* Makes the initial marking in any memory, and gives the variables outside the marking their first values. Empties the arena before.
  * False on error. */
 PN_NODISCARD bool pn_marking_init(const pn_net_t *net, pn_ctx_t *cx, void *marking);

@@ -6,38 +6,23 @@ net is a `Block` of the file, so that a compiler message or a reader finds the w
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 
-from pn2code.diagnostics import Origin
-from pn2code.emission import c_packed, c_places, c_sums, c_tables
-from pn2code.emission.c_effects import Effects, is_assignment, is_draw
-from pn2code.emission.c_expressions import (
-    Expressions,
-    Types,
-    c_big_initialiser,
-    c_integer,
-    op_needs_table,
-)
-from pn2code.emission.c_firing import DirectFiring
-from pn2code.emission.c_leaves import Leaves
+from pn2code.emission import c_rows, c_tables
+from pn2code.emission.c_expressions import c_big_initialiser, op_needs_table
 from pn2code.emission.c_lines import wrap
-from pn2code.emission.c_needs import used_locals, uses_context
 from pn2code.emission.c_proofs import proofs
-from pn2code.emission.c_slots import slots
-from pn2code.emission.c_statements import Statements
-from pn2code.emission.c_sums import Sum
-from pn2code.emission.environment import c_comment, c_float, render
-from pn2code.emission.names import Members, Names, Scope, stem
+from pn2code.emission.c_texts import comment_lines, initial, where
+from pn2code.emission.c_transitions import Transitions
+from pn2code.emission.environment import render
+from pn2code.emission.names import stem
 from pn2code.emission.output import Block, OutputFile
 from pn2code.lowering import ir
 from pn2code.lowering.calls import called, ir_nodes
 from pn2code.lowering.ir import NetIR, Rep
-from pn2code.lowering.packing import KEY_BITS, key_bits, packed_bits
+from pn2code.lowering.packing import key_bits, packed_bits
 
 _MARK = "\x01"
-_MOST_INLINED = 150
-"""Transitions of a net for which the compiler is told to put searches where they are called."""
 
 
 def emit(net: NetIR, version: str) -> tuple[OutputFile, ...]:
@@ -45,95 +30,24 @@ def emit(net: NetIR, version: str) -> tuple[OutputFile, ...]:
     return _Emitter(net, version).run()
 
 
-class _Emitter:
-    def __init__(self, net: NetIR, version: str) -> None:
-        self._net = net
-        self._version = version
-        self._names = Names()
-        self._definitions = {d.name: d for d in net.definitions}
-        self._types = Types(self._names, self._definitions)
-        self._descriptors = {d.name: d for d in net.descriptors}
-        self._functions = {f.key: f for f in net.functions}
-        self._leaves = Leaves(self._names, self._descriptors)
-        self._blocks: dict[str, tuple[str, str, Origin]] = {}
-        self._place_names = tuple(self._names.place(p.index, p.name) for p in net.places)
-        for t in net.transitions:
-            self._names.transition(t.index, t.name)
-        for definition in net.definitions:
-            self._names.type(definition.name)
-        self._bags = tuple(self._names.bag(p.index, p.name) for p in net.places)
-        self._tables = tuple(self._names.table(p.table) for p in net.places)
-        self._timed = tuple(p.timed for p in net.places)
-        self._slots = slots(net)
-        self._needs_context = self._context_users()
-        self._effects = Effects(net, self._types.holds_reference)
-        self._orders = c_places.Orders(self._types, self._names, self._descriptors)
-        self._rooms = c_places.rooms(net)
-        self._numbers = c_packed.Numbers(self._types, self._names, self._descriptors)
-        self._packed = self._numbers.of_places(
-            net.places, lambda key: self._effects.is_pure(self._functions[key].body)
-        )
-        self._has_inlined = net.has_successors and len(net.transitions) <= _MOST_INLINED
-        self._has_words = (
-            self._has_inlined
-            and not net.timed
-            and all(p.packed for p in net.places)
-            and 0 < key_bits(net.places) <= KEY_BITS
-        )
-        self._sums_found: dict[int, dict[tuple[int, ir.Ir], Sum]] = {}
-        self._referring = tuple(p.index for p in net.places if self._refers(p.table))
-
-    def _refers(self, table: str) -> bool:
-        """Whether values of a type refer into the arena."""
-        found = (self._descriptors[key].type.rep for key in self._closure({table}))
-        return any(rep in (Rep.STRING, Rep.LIST, Rep.UNION, Rep.BIG) for rep in found)
+class _Emitter(Transitions):
+    def _holder(self, p: ir.Place) -> dict[str, object]:
+        """The C type that holds the tokens of a place."""
+        is_slot = p.index in self._slots
+        return {
+            "name": self._kept[p.index],
+            "type": self._types.name(p.type),
+            "is_slot": is_slot,
+            "timed": p.timed,
+            "capacity": p.capacity,
+            "room": self._room.get(self._kept[p.index], 0),
+            "order": "" if p.timed or is_slot else self._orders.name(p.table),
+        }
 
     def _word_mask(self) -> str:
         """What takes away what follows from the rest of the first word of the packed part."""
         has_more = any(p.packed and p.packed.shares and p.packed.bit < 64 for p in self._net.places)
         return f" & 0x{(1 << key_bits(self._net.places)) - 1:x}U" if has_more else ""
-
-    def _closure(self, roots: set[str]) -> set[str]:
-        return c_tables.Tables(self._types, self._descriptors, {}).needed(roots)
-
-    def _context_users(self) -> frozenset[str]:
-        """The functions that take the context: those that may raise, directly or through what they call."""
-        users = {f.key for f in self._net.functions if f.loops or f.recursive}
-        while True:
-            more = {
-                f.key
-                for f in self._net.functions
-                if f.key not in users and uses_context(f.body, frozenset(users), self._definitions)
-            }
-            if not more:
-                return frozenset(users)
-            users |= more
-
-    # --- pieces --------------------------------------------------------------------------------
-
-    def _printer(
-        self, statements: tuple[ir.Stmt, ...], binding: str = ""
-    ) -> tuple[Statements, Expressions, Scope]:
-        scope = Scope()
-        x = Expressions(self._types, self._net.real_time, scope, binding)
-        x.functions = self._functions
-        x.int_bits = self._net.int_bits
-        x.needs_context = self._needs_context
-        x.place_names = self._place_names
-        x.bags = self._bags
-        x.packed = self._packed
-        x.slots = self._slots
-        x.global_hints = {g.name: g.hint for g in self._net.globals}
-        s = Statements(self._types, x, scope, self._net.real_time)
-        s.used = used_locals(statements)
-        s.bags = self._bags
-        s.timed = self._timed
-        s.slots = self._slots
-        if any(self._packed):
-            s.number_of = self._numbers.if_whole
-        s.token_types = tuple(p.type for p in self._net.places)
-        s.tables_of_places = self._tables
-        return s, x, scope
 
     def _function(self, f: ir.Function) -> dict[str, object]:
         s, x, scope = self._printer(f.body)
@@ -172,8 +86,8 @@ class _Emitter:
         head = wrap(f"static {result} {name}({', '.join(parameters) or 'void'})")
         return {
             "mark": self._block(f.hint, "declaration", f.origin),
-            "title": _where(f.origin),
-            "source": _comment_lines(f.source),
+            "title": where(f.origin),
+            "source": comment_lines(f.source),
             "head": head,
             "prototype": "\n".join(head) + ";",
             "is_recursive": f.recursive,
@@ -189,11 +103,6 @@ class _Emitter:
             "has_context": f.key in self._needs_context,
             "type": self._types.name(f.parameters[0].type),
         }
-
-    def _block(self, element: str, kind: str, origin: Origin) -> str:
-        number = str(len(self._blocks))
-        self._blocks[number] = (element, kind, origin)
-        return number
 
     def _global(self, g: ir.Global) -> dict[str, object]:
         s, x, _ = self._printer(g.setup)
@@ -216,12 +125,12 @@ class _Emitter:
                 constant = c_big_initialiser(value.value)
         return {
             "mark": self._block(g.hint, "declaration", g.origin),
-            "title": _where(g.origin),
-            "source": _comment_lines(g.source),
+            "title": where(g.origin),
+            "source": comment_lines(g.source),
             "type": self._types.name(g.type),
             "name": name,
             "constant": constant,
-            "zero": _initial(self._types.zero(g.type), g.type.rep),
+            "zero": initial(self._types.zero(g.type), g.type.rep),
             "is_root": g.is_reference or self._types.holds_reference(g.type),
             "setup": [] if constant else s.lines,
             "has_locals": any(
@@ -236,126 +145,50 @@ class _Emitter:
     def _place(self, p: ir.Place) -> dict[str, object]:
         s, _, _ = self._printer(p.initial)
         s.body(p.initial)
-        leaves = self._leaves.of(p.table)
-        is_slot = p.index in self._slots
+        member, bag = self._place_names[p.index], self._names.bag(p.index, p.name)
+        early = f"s_early_{member}"
         return {
             "mark": self._block(p.name, "place", p.origin),
             "name": p.name,
-            "member": self._names.place(p.index, p.name),
-            "bag": self._names.bag(p.index, p.name),
+            "member": member,
+            "bag": bag,
             "colset": p.colset,
             "origin": p.origin.describe(),
-            "owner": p.owner,
             "type": self._types.name(p.type),
-            "table": self._names.table(p.table),
-            "timed": p.timed,
-            "early": [
-                f".real = {c_float(float(e))}"
-                if self._net.real_time
-                else f".integer = {c_integer(int(e))}"
-                for e in p.early
-            ],
-            "capacity": p.capacity,
-            "bound": p.bound,
-            "proof": p.proof,
-            # gcc warns of loops that would go through an array of one, though they never do.
-            "room": 0 if p.timed or is_slot else max(self._rooms[p.index], 2 - p.capacity),
-            "is_slot": is_slot,
-            "order": "" if p.timed or p.packed or is_slot else self._orders.name(p.table),
             "packed": p.packed,
-            "shares": p.packed.shares if p.packed else (),
             "is_whole": not p.packed or not self._numbers.members(p.table),
             "number_of": self._numbers.number_of(p.table) if p.packed else "",
-            "finder": self._numbers.finder(p.table) if p.packed else "",
-            "maker": self._numbers.maker(p.table) if p.packed else "",
+            "early": c_rows.early(early, p, self._net.real_time) if p.early else [],
+            "bag_lines": c_rows.bag(
+                bag,
+                p,
+                table=self._names.table(p.table),
+                where=self._where_kept(p, member),
+                real_time=self._net.real_time,
+                early_name=early,
+                numbering=(self._numbers.finder(p.table), self._numbers.maker(p.table))
+                if p.packed
+                else ("", ""),
+            ),
+            "row": c_rows.place(
+                p,
+                bag,
+                f"{member}_init" if p.initial else "",
+                f"s_shares_of_{member}" if p.packed and p.packed.shares else "",
+            ),
+            "shares": p.packed.shares if p.packed else (),
+            "is_slot": p.index in self._slots,
+            "kept": self._kept[p.index],
             "initial": s.lines,
-            "initial_text": _comment_lines(p.initial_text),
-            "leaf_kinds": [kind for _, kind in leaves] if leaves else [],
-            "leaf_names": [name for name, _ in leaves] if leaves else [],
-            "line_leaves": self._leaves.lines(p.table) if leaves else [],
+            "initial_text": comment_lines(p.initial_text),
         }
 
-    def _transition(self, t: ir.Transition) -> dict[str, object]:
-        name = self._names.transition(t.index, t.name)
-        members = Members()
-        variables = tuple(members.name(i, v.name) for i, v in enumerate(t.variables))
-        search, x, _ = self._printer(t.enumerate, "b.")
-        x.variables = variables
-        search.variable_types = tuple(v.type for v in t.variables)
-        search.keeps = uses_context(
-            _without_wanted(t.enumerate), self._needs_context, self._definitions
-        )
-        search.releases = not self._effects.reaches(t.enumerate, is_assignment)
-        search.may_fail = search.keeps or any(
-            isinstance(n, ir.Wanted | ir.UnlessLegal) for n in ir_nodes(t.enumerate)
-        )
-        search.sums = self._sums(t)
-        search.body(t.enumerate)
-        search.finish_search()
-        is_direct = self._is_direct(t)
-        fire = self._firing(t, is_direct, variables)
-        sums = self._sums(t)
-        has_lists = is_direct and any(isinstance(s, ir.TakeAll | ir.PutAll) for s in t.fire)
-        lists = self._firing(t, False, variables) if has_lists else None
-        text = "\n".join(fire.lines)
-        affected = self._effects.affected(t.index)
-        search_draws = self._effects.reaches(t.enumerate, is_draw)
-        fire_draws = self._effects.reaches(t.fire, is_draw)
-        return {
-            "mark": self._block(t.name, "transition", t.origin),
-            "index": t.index,
-            "search_draws": search_draws,
-            "fire_draws": fire_draws,
-            "draws_between": search_draws and fire_draws,
-            "name": t.name,
-            "stem": name,
-            "id": t.id,
-            "title": c_comment(f"transition {t.name}: {t.origin.describe()}, {_where(t.origin)}"),
-            "guard": c_comment(f"guard [{t.guard_text}]") if t.guard_text else "",
-            "origin": t.origin.describe(),
-            "owner": t.owner,
-            "priority": t.priority,
-            "variables": [
-                {
-                    "type": self._types.name(v.type),
-                    "member": m,
-                    "name": v.name,
-                    "table": self._names.table(v.table),
-                    "note": "output of the code segment" if v.is_output else "",
-                }
-                for v, m in zip(t.variables, variables, strict=True)
-            ],
-            "is_plain": c_places.is_plain(t.enumerate),
-            "keeps": search.keeps and search.releases,
-            "search": search.lines,
-            "thresholds": self._thresholds(t, variables),
-            "thresholds_draw": self._effects.reaches(t.thresholds, is_draw),
-            "searches_marking": _mentions("m", "\n".join(search.lines)),
-            "fire": fire.lines,
-            "is_direct": is_direct,
-            "sums": [
-                self._sum_function(s, t, variables)
-                for s in sums.values()
-                if any(f"{s.name}(" in line for line in search.lines + fire.lines)
-            ],
-            "lists": lists.lines if lists else [],
-            "lists_use_binding": lists is not None and _mentions("b", "\n".join(lists.lines)),
-            "uses_binding": _mentions("b", text),
-            "touched": ", ".join(f"{i}U" for i in self._effects.touched(t.index)),
-            "read": ", ".join(f"{i}U" for i in self._effects.read(t.index)),
-            "touched_bags": [
-                self._place_names[i]
-                for i in self._effects.touched(t.index)
-                if not self._net.places[i].packed
-            ],
-            "looks": self._effects.looks((t.enumerate, t.fire)),
-            "looks_outside": self._effects.looks_outside((t.enumerate, t.fire)),
-            "assigns": self._effects.reaches(t.fire, is_assignment),
-            "search_assigns": self._effects.reaches((t.enumerate, t.thresholds), is_assignment),
-            "affected": ""
-            if len(affected) == len(self._net.transitions)
-            else ", ".join(f"{i}U" for i in affected),
-        }
+    def _where_kept(self, p: ir.Place, member: str) -> str:
+        """The macro for the offsets of what holds the tokens of a place; "": it is packed."""
+        if p.packed:
+            return ""
+        kind = "SLOT" if p.index in self._slots else "STAMPS" if p.timed else "TOKENS"
+        return f"PN_BAG_{kind}(net_marking_t, {member})"
 
     def _predicate(self, p: ir.Predicate, number: int) -> dict[str, object]:
         s, _, _ = self._printer(p.body)
@@ -364,78 +197,11 @@ class _Emitter:
             "mark": self._block(p.name, "property", p.origin),
             "function": f"predicate_{number}",
             "name": p.name,
-            "source": _comment_lines(p.text),
+            "source": comment_lines(p.text),
             "text": p.text,
             "origin": f"property `{p.name}`",
             "lines": s.lines,
         }
-
-    def _thresholds(self, t: ir.Transition, variables: tuple[str, ...]) -> list[str]:
-        """The search for the times at which tokens become available, without its preamble."""
-        if not t.thresholds:
-            return []
-        search, x, _ = self._printer(t.thresholds, "b.")
-        x.variables = variables
-        search.variable_types = tuple(v.type for v in t.variables)
-        search.is_void = True
-        search.body(t.thresholds)
-        return search.lines
-
-    def _is_direct(self, t: ir.Transition) -> bool:
-        """Whether it can be printed with the functions of its places; what is taken must be what was found."""
-        takes = tuple(s.value for s in t.fire if isinstance(s, ir.Take))
-        return c_places.is_direct(self._net, t, self._sums(t)) and self._effects.is_pure(takes)
-
-    def _sums(self, t: ir.Transition) -> dict[tuple[int, ir.Ir], Sum]:
-        if t.index not in self._sums_found:
-            stem = self._names.transition(t.index, t.name)
-            self._sums_found[t.index] = c_sums.find(
-                self._net, t, stem, self._descriptors, self._effects
-            )
-        return self._sums_found[t.index]
-
-    def _sum_function(self, s: Sum, t: ir.Transition, variables: tuple[str, ...]) -> list[str]:
-        _, x, _ = self._printer((), "b->")
-        x.variables = variables
-        return c_sums.function(
-            s,
-            f"{self._names.transition(t.index, t.name)}_binding_t",
-            self._bags[s.place],
-            self._names.table(s.table),
-            self._numbers,
-            x.text,
-            lambda i: x.address(ir.Bound(i, t.variables[i].type)),
-        )
-
-    def _firing(self, t: ir.Transition, is_direct: bool, variables: tuple[str, ...]) -> Statements:
-        printer, x, scope = self._printer(t.fire, "b->")
-        x.variables = variables
-        if is_direct:
-            scope.reserve("is_taken", "fits")
-            direct = DirectFiring(
-                self._types,
-                x,
-                scope,
-                self._net.real_time,
-                descriptors=self._descriptors,
-                tables=tuple("" if v.is_output else v.table for v in t.variables),
-                place_tables=tuple(p.table for p in self._net.places),
-            )
-            direct.used, direct.bags, direct.timed = printer.used, printer.bags, printer.timed
-            direct.tables_of_places = printer.tables_of_places
-            direct.token_types = printer.token_types
-            direct.slots = self._slots
-            direct.references = frozenset(g.name for g in self._net.globals if g.is_reference)
-            direct.sums = self._sums(t)
-            direct.otherwise = f"{self._names.transition(t.index, t.name)}_fire_lists(cx, m, b)"
-            direct.variable_types = tuple(v.type for v in t.variables)
-            direct.fire(t.fire, uses_context(t.fire, self._needs_context, self._definitions))
-            return direct
-        printer.variable_types = tuple(v.type for v in t.variables)
-        printer.body(t.fire)
-        return printer
-
-    # --- the whole -----------------------------------------------------------------------------
 
     def _used_functions(self, *, with_predicates: bool) -> list[ir.Function]:
         roots: list[str] = []
@@ -494,7 +260,15 @@ class _Emitter:
         wrappers = _wrappers(functions)
         tables = c_tables.Tables(self._types, self._descriptors, wrappers)
         recursive = tables.to_declare(keys)
-        transitions = [self._transition(t) for t in net.transitions]  # what they call is known then
+        transitions = [self._transition(g) for g in self._shared]  # what they call is known then
+        rows = sorted(
+            (
+                (t.index, self._row(t, g, code), code)
+                for g, code in zip(self._shared, transitions, strict=True)
+                for t in g.instances
+            ),
+            key=lambda row: row[0],
+        )
         further = [f for f in self._used_functions(with_predicates=True) if f not in functions]
         wrappers |= _wrappers(further)
         further_keys = [
@@ -514,18 +288,33 @@ class _Emitter:
             ],
             "recursive_tables": [self._names.table(k) for k in recursive],
             "tables": [tables.print(k) for k in keys],
-            "leaves": self._leaves.tables(net.places),
             "places": [self._place(p) for p in net.places],
+            "holders": list(
+                {self._kept[p.index]: self._holder(p) for p in net.places if not p.packed}.values()
+            ),
             "proofs": list(proofs(net.places)),
             "orders": list(self._orders.functions.values()),
             "packed_words": (packed_bits(net.places) + 63) // 64,
             "packed_size": (packed_bits(net.places) + 31) // 32 * 4,
             "transitions": transitions,
+            "place_tables": [self._place_table(x) for x in self._place_tables],
+            "rows": [row for _, row, _ in rows],
+            "each": c_rows.each(
+                (i, str(code["stem"]), bool(code["is_plain"])) for i, _, code in rows
+            ),
             "has_thresholds": any(t["thresholds"] for t in transitions),
             "has_words": self._has_words,
             "word_mask": self._word_mask(),
             "inlined": "PN_INLINE" if self._has_inlined else "PN_NET_SEARCH static",
-            "bag_places": ", ".join(f"{p.index}U" for p in net.places if not p.packed),
+            "bag_places": c_rows.braces(
+                "static const uint32_t s_bag_places[] = ",
+                [f"{p.index}U" for p in net.places if not p.packed],
+            )
+            if not all(p.packed for p in net.places)
+            else [],
+            "order": c_rows.braces(
+                "static const uint32_t s_order[] = ", [f"{i}U" for i in net.order]
+            ),
             "roots": [
                 (self._names.table(g.table), self._names.value(g.name, g.hint))
                 for g in self._effects.roots()
@@ -579,56 +368,3 @@ class _Emitter:
 def _wrappers(functions: Iterable[ir.Function]) -> dict[str, str]:
     """By key of the function that decides membership of a subset the name of what the subset's table points to."""
     return {f.key: f"is_{stem(f.hint)}" for f in functions if f.key.startswith("member ")}
-
-
-def _without_wanted(statements: tuple[ir.Stmt, ...]) -> tuple[ir.Stmt, ...]:
-    """The statements that may leave something in the arena: the demands clean up after themselves."""
-    out: list[ir.Stmt] = []
-    for s in statements:
-        if isinstance(s, ir.Wanted):
-            out.extend(x for x in s.takes if not isinstance(x, (ir.Take, ir.TakeAll)))
-        elif isinstance(s, ir.ForTokens):
-            out.append(ir.ForTokens(s.place, s.index, _without_wanted(s.body), s.note))
-        elif isinstance(s, ir.ForValues):
-            out.append(ir.ForValues(s.variable, s.table, _without_wanted(s.body), s.note))
-        else:
-            out.append(s)
-    return tuple(out)
-
-
-def _where(origin: Origin) -> str:
-    """File, without its folder, and line."""
-    name = origin.file.replace("\\", "/").rsplit("/", 1)[-1]
-    return c_comment(f"{name}:{origin.line}" if origin.line else name)
-
-
-def _comment_lines(source: str) -> list[str]:
-    """The ML text as comment lines, blank lines left out."""
-    return [
-        c_comment(line) if not line.startswith(" ") else _indented(line)
-        for line in source.expandtabs(4).splitlines()
-        if line.strip()
-    ]
-
-
-def _indented(line: str) -> str:
-    text = line.lstrip()
-    return " " * (len(line) - len(text)) + c_comment(text)
-
-
-def _initial(zero: str, rep: Rep) -> str:
-    """The harmless value as the initialiser of a static variable."""
-    if rep is Rep.STRING:
-        return '{ "", 0U }'
-    if rep is Rep.BIG:
-        return c_big_initialiser(0)
-    return "{ 0 }" if rep in (Rep.STRUCT, Rep.UNION) else zero
-
-
-_APART = re.compile(r'"(?:[^"\\]|\\.)*"|/\*.*?\*/', re.S)
-"""Strings and comments of C."""
-
-
-def _mentions(variable: str, code: str) -> bool:
-    """Whether C code uses a variable: not a member of that name, nor a word in a string or comment."""
-    return re.search(rf"(?<![.>\w]){variable}\b", _APART.sub("", code)) is not None

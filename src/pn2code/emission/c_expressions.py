@@ -170,6 +170,9 @@ class Expressions:
         self._binding = binding
         self.variables: tuple[str, ...] = ()
         self.place_names: tuple[str, ...] = ()
+        self.tokens: tuple[str, ...] = ()
+        self.holders: tuple[str, ...] = ()
+        self.kept: tuple[str, ...] = ()
         self.bags: tuple[str, ...] = ()
         self.slots: frozenset[int] = frozenset()
         self.packed: tuple[PackedPlace | None, ...] = ()
@@ -259,16 +262,16 @@ class Expressions:
             case ir.TokenValue(place=place, index=index) if self.packed and self.packed[place]:
                 return self.token(place, index), _PRIMARY
             case ir.TokenValue(place=place) if place in self.slots:
-                return f"m->{self.place_names[place]}.value", _POSTFIX
+                return f"{self.tokens[place]}value", _POSTFIX
             case ir.TokenValue(place=place, index=index):
-                return f"m->{self.place_names[place]}.token[{self.local(index)}].value", _POSTFIX
+                return f"{self.tokens[place]}token[{self.local(index)}].value", _POSTFIX
             case ir.PlaceTokens(place=place, table=table):
                 text = (
-                    f"explore_tokens(cx, &{self.bags[place]}, &{self._names.table(table)}, marking)"
+                    f"explore_tokens(cx, {self.bags[place]}, &{self._names.table(table)}, marking)"
                 )
                 return text, _POSTFIX
             case ir.PlaceTotal(place=place):
-                return f"(int64_t)pn_bag_total(&{self.bags[place]}, marking)", _UNARY
+                return f"(int64_t)pn_bag_total({self.bags[place]}, marking)", _UNARY
             case ir.Now(type=t):
                 return ("cx->now.real" if t.rep is Rep.REAL else "cx->now.integer"), _POSTFIX
             case ir.FunCall():
@@ -326,6 +329,16 @@ class Expressions:
                 return f"*(const {self._types.name(t)} *)cx->exception", _UNARY
             case ir.HasError(name=name):
                 return f"pn_is_raised(cx, {c_bytes(name)})", _POSTFIX
+
+    def call(self, place: int, verb: str, *operands: str) -> str:
+        """A call of a function of an untimed place that is an array or packed."""
+        if self.packed and self.packed[place]:
+            name, first = self.place_names[place], ["m"]
+        else:
+            name, first = self.kept[place], [self.holders[place]]
+            first += [self.bags[place]] if verb == "add" else []
+        context = ["cx"] if verb.startswith("add") else []
+        return f"{name}_{verb}({', '.join([*context, *first, *operands])})"
 
     def token(self, place: int, index: ir.Local) -> str:
         """The variable that holds the token of a packed place that a loop looks at."""

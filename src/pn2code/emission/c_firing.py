@@ -26,7 +26,7 @@ class _Move:
 
     Args:
         verb: "take" or "add".
-        place: the member of the marking.
+        place: its number.
         value: a pointer to the value, as C.
         count: as C; "": the value is a sum of tokens.
         note: what it is in the net.
@@ -34,18 +34,11 @@ class _Move:
     """
 
     verb: str
-    place: str
+    place: int
     value: str
     count: str
     note: str
     is_packed: bool
-
-    def call(self, verb: str = "") -> str:
-        """The call that does it, or that undoes it."""
-        context = "cx, " if (verb or self.verb) == "add" else ""
-        if not self.count:
-            return f"{self.place}_{verb or self.verb}_sum({context}m, {self.value})"
-        return f"{self.place}_{verb or self.verb}({context}m, {self.value}, {self.count})"
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,8 +47,8 @@ class _SlotMove:
 
     Args:
         is_take: or it is a put.
-        place: the member of the marking.
-        bag: the table of the place.
+        tokens: the place, with what leads to its members.
+        bag: a pointer to its table.
         value: a put: the token as C, "" where values say nothing (`()`).
         differs: a take: whether the token is not there, as C; "": the search has found it.
         count: "" for one; otherwise the C variable that says how many tokens.
@@ -63,7 +56,7 @@ class _SlotMove:
     """
 
     is_take: bool
-    place: str
+    tokens: str
     bag: str
     value: str
     count: str
@@ -135,7 +128,7 @@ class DirectFiring(Statements):
         if done or takes:
             self.note("a place is full: everything is put back")
         for move, is_done in reversed(done):
-            undo = f"(void){move.call('take')};"
+            undo = f"(void){self._call(move, 'take')};"
             if is_done:
                 self.line(f"if ({is_done}) {{")
                 self.line(f"    {undo}")
@@ -143,10 +136,17 @@ class DirectFiring(Statements):
             else:
                 self.line(undo)
         for move in reversed(takes):
-            self.line(f"(void){move.call('add')};")
+            self.line(f"(void){self._call(move, 'add')};")
         self.line("return false;")
         self._depth -= 1
         self.line("}")
+
+    def _call(self, move: _Move, verb: str = "") -> str:
+        """The call that does it, or that undoes it."""
+        done = verb or move.verb
+        if not move.count:
+            return self._x.call(move.place, f"{done}_sum", move.value)
+        return self._x.call(move.place, done, move.value, move.count)
 
     def _look_at_slots(self) -> None:
         """Whether the tokens are there, and whether there is room."""
@@ -154,45 +154,48 @@ class DirectFiring(Statements):
         tests = list(dict.fromkeys(m.differs for m in taken if m.differs))
         if tests:
             self.line(f"if ({' || '.join(tests)}) {{")
-            self.line("    pn_raise(cx, PN_ERR_SUBTRACT, NULL);")
-            self.line("    return false;")
+            self.line("    return pn_fail_missing(cx);")
             self.line("}")
-        emptied = {m.place for m in taken}
+        rooms = []
+        emptied = {m.tokens for m in taken}
         for move in self._slot_moves:
-            if move.is_take or (move.place in emptied and not move.count):
+            if move.is_take or (move.tokens in emptied and not move.count):
                 continue
-            full = f"m->{move.place}.full"
-            if move.count and move.place in emptied:
+            full = f"{move.tokens}full"
+            if move.count and move.tokens in emptied:
                 test = f"{move.count} > 1U"
             elif move.count:
                 test = f"({move.count} > 1U) || (({move.count} == 1U) && {full})"
             else:
                 test = full
-            self.line(f"if ({test}) {{")
-            self.line(f"    return pn_bag_fail_full(cx, &{move.bag});")
+            rooms.append(f"!pn_has_room(cx, {test}, {move.bag})")
+        if rooms:
+            self.line(f"if ({' || '.join(rooms)}) {{")
+            self.line("    return false;")
             self.line("}")
 
     def _change_slots(self) -> None:
         """Takes, then puts; a slot from which a token is taken and into which one is put stays full."""
-        taken = {m.place for m in self._slot_moves if m.is_take}
-        filled = {m.place for m in self._slot_moves if not (m.is_take or m.count)}
+        taken = {m.tokens for m in self._slot_moves if m.is_take}
+        filled = {m.tokens for m in self._slot_moves if not (m.is_take or m.count)}
         for move in (m for m in self._slot_moves if m.is_take):
-            self.note(move.note if move.place not in filled else f"{move.note}: replaced below")
-            if move.place not in filled:
-                self.line(f"m->{move.place}.full = false;")
+            if move.tokens in filled:
+                self.note(f"{move.note}: replaced below")
+            else:
+                self.line_with_note(f"{move.tokens}full = false;", move.note)
         for move in (m for m in self._slot_moves if not m.is_take):
-            self.note(move.note)
-            is_full = move.place in taken and not move.count
-            lines = [] if is_full else [f"m->{move.place}.full = true;"]
+            is_full = move.tokens in taken and not move.count
+            lines = [] if is_full else [f"{move.tokens}full = true;"]
             if move.value:
-                lines.insert(0, f"m->{move.place}.value = {move.value};")
+                lines.insert(0, f"{move.tokens}value = {move.value};")
             if move.count:
-                self.line(f"if ({move.count} > 0U) {{")
-                lines = [f"    {line}" for line in lines]
-            for line in lines:
+                lines = [f"if ({move.count} > 0U) {{", *(f"    {line}" for line in lines), "}"]
+            if not lines:
+                self.note(move.note)
+                continue
+            self.line_with_note(lines[0], move.note)
+            for line in lines[1:]:
                 self.line(line)
-            if move.count:
-                self.line("}")
 
     def _put(self, puts: list[_Move]) -> list[tuple[_Move, str]]:
         """Puts, and says in `fits` whether all had room.
@@ -204,17 +207,17 @@ class DirectFiring(Statements):
             for i, move in enumerate(puts):
                 self.note(move.note)
                 start = "bool fits = " if i == 0 else "fits = "
-                self.line(f"{start}{move.call()}{' && fits' if i else ''};")
+                self.line(f"{start}{self._call(move)}{' && fits' if i else ''};")
             return [(move, "") for move in puts]
         if len(puts) == 1:
             self.note(puts[0].note)
-            self.line(f"const bool fits = {puts[0].call()};")
+            self.line(f"const bool fits = {self._call(puts[0])};")
             return []
         done = []
         for i, move in enumerate(puts):
-            name = self._scope.name(("fits", i), f"fits_{move.place}")
+            name = self._scope.name(("fits", i), f"fits_{self._x.place_names[move.place]}")
             self.note(move.note)
-            self.line(f"const bool {name} = {move.call()};")
+            self.line(f"const bool {name} = {self._call(move)};")
             done.append((move, name))
         self.line(f"const bool fits = {' && '.join(name for _, name in done)};")
         return [(move, name if move.is_packed else "") for move, name in done]
@@ -224,8 +227,7 @@ class DirectFiring(Statements):
         name = self._scope.name(("sum", known.name), "sum")
         self._sums_used[known.name] = name
         verb = "take" if isinstance(s, ir.TakeAll) else "add"
-        place = self._x.place_names[s.place]
-        self._moves_made.append(_Move(verb, place, name, "", s.note or known.note, True))
+        self._moves_made.append(_Move(verb, s.place, name, "", s.note or known.note, True))
 
     def _sum_lines(self) -> list[str]:
         """The sums, and the way to go when one is not known: list by list."""
@@ -245,17 +247,18 @@ class DirectFiring(Statements):
         for i, move in enumerate(takes):
             self.note(move.note)
             start = "bool is_taken = " if i == 0 else "is_taken = is_taken && "
-            self.line(f"{start}{move.call()};")
+            self.line(f"{start}{self._call(move)};")
         self.line("if (!is_taken) {")
-        self.line("    pn_raise(cx, PN_ERR_SUBTRACT, NULL);")
-        self.line("    return false;")
+        self.line("    return pn_fail_missing(cx);")
         self.line("}")
 
     def _slot_move(self, s: ir.Take | ir.Put) -> None:
-        place, bag = self._x.place_names[s.place], self.bags[s.place]
+        place, tokens, bag = (
+            texts[s.place] for texts in (self._x.place_names, self._x.tokens, self.bags)
+        )
         if isinstance(s, ir.Take):
             self._slot_moves.append(
-                _SlotMove(True, place, bag, "", "", s.note, self._is_missing(s))
+                _SlotMove(True, tokens, bag, "", "", s.note, self._is_missing(s))
             )
             return
         key = ("add", id(s))
@@ -275,7 +278,7 @@ class DirectFiring(Statements):
         if must_check:
             self.has_checks = True
             self._check(s, f"&{value}", count or "1U")
-        self._slot_moves.append(_SlotMove(False, place, bag, value, count, s.note))
+        self._slot_moves.append(_SlotMove(False, tokens, bag, value, count, s.note))
 
     def _worked_out(self, s: ir.Take | ir.Put, is_nested: bool, must_check: bool) -> str:
         """The variable that holds the value that is taken or put; a check may change it."""
@@ -322,7 +325,7 @@ class DirectFiring(Statements):
             self.has_checks = True
             self._check(s, value, count)
         self._moves_made.append(
-            _Move(verb, place, value, count, s.note, self._packed(s.place) is not None)
+            _Move(verb, s.place, value, count, s.note, self._packed(s.place) is not None)
         )
 
     def _check(self, s: ir.Take | ir.Put, value: str, count: str) -> None:
@@ -331,7 +334,7 @@ class DirectFiring(Statements):
         if packed and packed.is_pure:
             check = f"{self._x.place_names[s.place]}_check(cx, {value});"
         else:
-            check = f"pn_bag_check(cx, &{self.bags[s.place]}, {value});"
+            check = f"pn_bag_check(cx, {self.bags[s.place]}, {value});"
         if is_count(s.count):
             self.line(check)
         else:

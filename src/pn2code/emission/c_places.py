@@ -138,6 +138,16 @@ def is_plain(statements: Iterable[ir.Stmt]) -> bool:
     )
 
 
+def is_flat(statements: Iterable[ir.Stmt], slots: Container[int]) -> bool:
+    """Whether a search has no loops: of slots there is one token to look at."""
+    return all(
+        s.place in slots and is_flat(s.body, slots)
+        if isinstance(s, ir.ForTokens)
+        else not isinstance(s, ir.ForValues)
+        for s in statements
+    )
+
+
 def is_count(e: ir.Ir) -> bool:
     """A constant number of tokens, at least one."""
     return isinstance(e, ir.Const) and isinstance(e.value, int) and 0 < e.value < 2**31

@@ -7,7 +7,7 @@ from textwrap import wrap
 
 from pn2code.lowering import ir
 
-_WIDTH = 100
+_WIDTH = 118
 
 
 def proofs(places: Sequence[ir.Place]) -> Iterator[dict[str, list[str]]]:

@@ -53,6 +53,7 @@ class Statements:
         self.moves = "moves"
         self.variable_types: tuple[ir.IrType, ...] = ()
         self.keeps = False
+        self.is_flat = False
         self.may_fail = False
         self.releases = True
         self._loops = 0
@@ -67,6 +68,16 @@ class Statements:
         if clean:
             room = WIDTH - 4 * self._depth - 6
             self.line(f"/* {clean if len(clean) <= room else clean[: room - 4] + ' ...'} */")
+
+    def line_with_note(self, text: str, note: str) -> None:
+        """One line with its comment behind it, or before it where that is too long."""
+        clean = c_comment(note)
+        whole = f"{text} /* {clean} */" if clean else text
+        if len(_INDENT * self._depth + whole) <= WIDTH:
+            self.line(whole)
+        else:
+            self.note(note)
+            self.line(text)
 
     def block(self, statements: tuple[Stmt, ...]) -> None:
         """Statements one level deeper."""
@@ -92,11 +103,18 @@ class Statements:
 
     def finish_search(self) -> None:
         """The end of an enumeration that was not stopped."""
-        if self.keeps and self.releases:
+        if self.keeps and self.releases and self.is_flat:
+            self.line("pn_arena_release(cx->arena, mark);")
+        elif self.keeps and self.releases:
             self.line("if (!is_kept) {")
             self.line(_INDENT + "pn_arena_release(cx->arena, mark);")
             self.line("}")
         self.line("return;" if self.is_void else "return true;")
+
+    def end_search(self) -> None:
+        """What stands last in the function; without loops that is the only call of the sink."""
+        if not self.is_flat:
+            self.finish_search()
 
     def _declaration(self, local: ir.Local) -> str:
         return f"{self._types.name(local.type)} {self._x.local(local)}"
@@ -285,9 +303,8 @@ class Statements:
                 target = self._x.text(ir.Bound(variable, self.variable_types[variable]))
                 self.line(f"{target} = {self._x.text(value)};")
             case ir.Unless(condition=condition, note=note):
-                if note:
-                    self.note(note)
-                self.line(f"if ({self._x.text(ir.Op('Bool.not', (condition,), ir.BOOL))}) {{")
+                test = self._x.text(ir.Op("Bool.not", (condition,), ir.BOOL))
+                self.line_with_note(f"if ({test}) {{", note)
                 self._next()
             case ir.UnlessLegal(variable=variable, table=table):
                 pointer = self._x.address(ir.Bound(variable, self.variable_types[variable]))
@@ -304,32 +321,32 @@ class Statements:
                 self.line(f"{_INDENT}pn_clear_error(cx);")
                 self._next()
             case ir.UnlessHeld():
-                if s.note:
-                    self.note(s.note)
                 if s.place in self.slots:
-                    self.line(
-                        f"if ({self._differs(s.place, self._x.inside(s.value, 10), self._x.address(s.value))}) {{"
-                    )
+                    text, pointer = self._x.inside(s.value, 10), self._x.address(s.value)
+                    differs = self._differs(s.place, text, pointer)
+                    self.line_with_note(f"if ({differs}) {{", s.note)
                     self._next()
                     return
+                if s.note:
+                    self.note(s.note)
                 pointer = self._x.address(s.value)
                 if self.timed[s.place]:
                     bag = self.bags[s.place]
-                    held = f"pn_bag_count(&{bag}, m, {pointer}, {self._x.time(s.limit)})"
+                    held = f"pn_bag_count({bag}, m, {pointer}, {self._x.time(s.limit)})"
                 else:
-                    held = f"{self._x.place_names[s.place]}_held(m, {pointer})"
+                    held = self._x.call(s.place, "held", pointer)
                 self.line(f"if ({held} < {s.count}U) {{")
                 self._next()
             case ir.UnlessEmpty(place=place, note=note):
                 self.note(note)
                 if self.timed[place]:
-                    self.line(f"if (pn_bag_available(&{self.bags[place]}, m, cx->now) > 0U) {{")
+                    self.line(f"if (pn_bag_available({self.bags[place]}, m, cx->now) > 0U) {{")
                 elif self._packed(place):
                     self.line(f"if (!{self._x.place_names[place]}_is_empty(m)) {{")
                 elif place in self.slots:
-                    self.line(f"if (m->{self._x.place_names[place]}.full) {{")
+                    self.line(f"if ({self._x.tokens[place]}full) {{")
                 else:
-                    self.line(f"if (m->{self._x.place_names[place]}.used > 0U) {{")
+                    self.line(f"if ({self._x.tokens[place]}used > 0U) {{")
                 self._next()
             case ir.Wanted(takes=takes):
                 self._wanted(takes)
@@ -342,10 +359,10 @@ class Statements:
             case ir.Threshold(place=place, delay=delay, note=note):
                 self.note(note)
                 bag, time = self.bags[place], self._x.time(delay)
-                self.line(f"pn_bag_threshold(&{bag}, m, cx->now, {time}, found, next);")
+                self.line(f"pn_bag_threshold({bag}, m, cx->now, {time}, found, next);")
             case ir.Reset(place=place, note=note):
                 self.note(note)
-                self.line(f"pn_moves_reset(&{self.moves}, &{self.bags[place]}, cx->now);")
+                self.line(f"pn_moves_reset(&{self.moves}, {self.bags[place]}, cx->now);")
 
     def _packed(self, place: int) -> PackedPlace | None:
         return self._x.packed[place] if self._x.packed else None
@@ -372,15 +389,14 @@ class Statements:
             self._for_colours(s, packed)
             return
         if s.place in self.slots:
-            self.note(s.note)
-            self.line(f"if (!m->{self._x.place_names[s.place]}.full) {{")
+            self.line_with_note(f"if (!{self._x.tokens[s.place]}full) {{", s.note)
             self._next()
             self.body(s.body)
             return
         i = self._x.local(s.index)
-        place = self._x.place_names[s.place]
+        tokens = self._x.tokens[s.place]
         self.note(s.note)
-        self.line(f"for (uint32_t {i} = 0U; {i} < m->{place}.used; {i}++) {{")
+        self.line(f"for (uint32_t {i} = 0U; {i} < {tokens}used; {i}++) {{")
         self._loops += 1
         if self.timed[s.place]:
             self._depth += 1
@@ -388,7 +404,7 @@ class Statements:
                 "tokens of one value lie together, the earliest first: look at each value once"
             )
             table = self.tables_of_places[s.place]
-            token = f"m->{place}.token"
+            token = f"{tokens}token"
             self.line(
                 f"if (({i} > 0U) && pn_same(&{table}, &{token}[{i}].value, &{token}[{i} - 1U].value)) {{"
             )
@@ -412,14 +428,14 @@ class Statements:
 
     def _differs(self, place: int, value: str, pointer: str) -> str:
         """Whether a slot does not hold a value, as a C condition: the value is given as C, and by its address."""
-        slot = f"m->{self._x.place_names[place]}"
+        slot = self._x.tokens[place]
         rep = self.token_types[place].rep
         if rep is Rep.UNIT:
-            return f"!{slot}.full"
+            return f"!{slot}full"
         if rep in SCALARS:
-            return f"!{slot}.full || ({slot}.value != {value})"
+            return f"!{slot}full || ({slot}value != {value})"
         table = self.tables_of_places[place]
-        return f"!{slot}.full || !pn_same(&{table}, &{slot}.value, {pointer})"
+        return f"!{slot}full || !pn_same(&{table}, &{slot}value, {pointer})"
 
     def _unless_available(self, s: ir.UnlessAvailable) -> None:
         if s.place in self.slots:
@@ -429,7 +445,7 @@ class Statements:
             self.line(f"if ({count} < {s.count}U) {{")
             self._next()
             return
-        token = f"m->{self._x.place_names[s.place]}.token[{self._x.local(s.index)}]"
+        token = f"{self._x.tokens[s.place]}token[{self._x.local(s.index)}]"
         if s.limit is None:
             self.line(f"if ({token}.count < {s.count}U) {{")
         else:
@@ -490,10 +506,10 @@ class Statements:
         for s in takes:
             if isinstance(s, ir.Take):
                 values.append(self._x.address(s.value))
-                place = self._x.place_names[s.place]
+                place = s.place
             else:
                 self.statement(s)
-        self.line(f"if (!{place}_holds(m, {', '.join(values)})) {{")
+        self.line(f"if (!{self._x.call(place, 'holds', *values)}) {{")
         self._next()
 
     def _yield(self) -> None:
@@ -501,6 +517,9 @@ class Statements:
             self.line("if (!pn_ok(cx)) {")
             self.line(f"{_INDENT}return true;")
             self.line("}")
+        if self.is_flat:
+            self.line("return sink(user, self, &b);")
+            return
         if self.keeps and self.releases:
             self.line("is_kept = true;")
         self.line("if (!sink(user, self, &b)) {")
@@ -512,7 +531,7 @@ class Statements:
             self.note(s.note)
         verb, time = ("take", s.limit) if isinstance(s, ir.Take) else ("put", s.stamp)
         parts = [
-            f"&{self.moves}", f"&{self.bags[s.place]}", self._x.address(s.value), self._x.text(s.count),
+            f"&{self.moves}", f"{self.bags[s.place]}", self._x.address(s.value), self._x.text(s.count),
             self._x.time(time),
         ]  # fmt: skip
         self.line(f"pn_moves_{verb}({', '.join(parts)});")
@@ -525,7 +544,7 @@ class Statements:
         else:
             verb, time = ("put_timed" if s.timed else "put_list"), s.stamp
         parts = [
-            f"&{self.moves}", f"&{self.bags[s.place]}", f"&{self._names.table(s.table)}",
+            f"&{self.moves}", f"{self.bags[s.place]}", f"&{self._names.table(s.table)}",
             self._x.text(s.multiset), self._x.time(time),
         ]  # fmt: skip
         self.line(f"pn_moves_{verb}({', '.join(parts)});")

@@ -122,7 +122,7 @@ def function(
     Args:
         s: the sum.
         binding: type of the binding.
-        bag: of the place.
+        bag: a pointer to the table of the place.
         list_table: of the list.
         numbers: of colours.
         text: prints an expression over `b->`.
@@ -148,7 +148,7 @@ def function(
     lines += [
         "    if (state[number] == PN_SUM_UNKNOWN) {",
         "        const size_t start = pn_arena_mark(cx->arena);",
-        f"        state[number] = (uint8_t)pn_sum_make(cx, &{bag}, &{list_table},",
+        f"        state[number] = (uint8_t)pn_sum_make(cx, {bag}, &{list_table},",
         f"            {text(s.multiset)}, counters[number]);",
         "        if (pn_ok(cx)) {",
         "            pn_arena_release(cx->arena, start);",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pn2code.emission.c_expressions import Types, c_big_initialiser, c_integer
+from pn2code.emission.c_lines import wrap
 from pn2code.emission.environment import c_comment, c_float, c_string
 from pn2code.emission.names import label
 from pn2code.lowering import ir
@@ -162,9 +163,7 @@ class Tables:
             ]
         if d.member:
             members.append(f".member = {self._members[d.member]}")
-        lines.append(f"static const pn_type_t {name} = {{")
-        lines += [f"    {m}," for m in members]
-        return [*lines, "};"]
+        return [*lines, *wrap(f"static const pn_type_t {name} = {{ {', '.join(members)} }};")]
 
     @staticmethod
     def _flags(d: Descriptor) -> list[str]:

@@ -34,7 +34,7 @@ _PREFIXES = ("pn_", "PN_", "sim_", "SIM_", "NET_")
 _TYPES = """
     size_t ptrdiff_t wchar_t max_align_t off_t ssize_t fpos_t float_t double_t locale_t time_t clock_t sig_atomic_t
     int8_t int16_t int32_t int64_t uint8_t uint16_t uint32_t uint64_t intptr_t uintptr_t intmax_t uintmax_t
-    net_marking_t any_binding_t net_successor_t begin_net_successor
+    net_marking_t net_successor_t begin_net_successor
 """
 """Of the headers, and of every net."""
 
@@ -82,6 +82,16 @@ class Scope:
         self._names[key] = candidate
         self._used.add(candidate)
         return candidate
+
+    def name_of_type(self, key: Hashable, text: str) -> str:
+        """A name of which nobody else has the type, either: neither `POSE_slot` nor `POSE_slot_t`."""
+        if key not in self._names:
+            name, n = stem(text), 2
+            while self._is_used(name) or self._is_used(f"{name}_t"):
+                name, n = stem(f"{stem(text)}_{n}"), n + 1
+            self._names[key] = name
+            self.reserve(name, f"{name}_t")
+        return self._names[key]
 
     def reserve(self, *names: str) -> None:
         """Names that are not to be given."""
@@ -152,6 +162,22 @@ class Names:
     def transition(self, index: int, name: str) -> str:
         """`Robot1_Accept`: the instance path without the prime page."""
         return self._scope.name(("transition", index), _path(name))
+
+    def page_transition(self, index: int, page: str, short: str) -> str:
+        """`MoveBoth_Command`: what all instances of a page have in common."""
+        return self._scope.name(("page transition", index), f"{page}_{short}")
+
+    def page_places(self, page: str, paths: tuple[str, ...]) -> str:
+        """`MoveBoth_places`: the struct of the places of a page."""
+        return self._scope.name_of_type(("page places", page, paths), f"{page}_places")
+
+    def instance(self, path: str, struct: str) -> str:
+        """`s_in_Supervisor_Approach_Move_both`: the places of a page instance."""
+        return self._scope.name(("instance", path, struct), _path(path), "s_in_{}")
+
+    def kept(self, key: str, kind: str) -> str:
+        """`POSE_slot`, `POSE_array_64`: what holds the tokens of a place of a colour set."""
+        return self._scope.name_of_type(("kept", key, kind), f"{key}_{kind}")
 
     def bag(self, index: int, name: str) -> str:
         """`s_at_Robot1_Waiting`."""

@@ -742,6 +742,8 @@ class Transition:
     fire: tuple[Stmt, ...]
     guard_text: str
     thresholds: tuple[Stmt, ...] = ()
+    places: tuple[tuple[int, str], ...] = ()
+    """those of its arcs, with their names on its page"""
 
 
 @frozen

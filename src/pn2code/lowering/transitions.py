@@ -62,6 +62,7 @@ def lower_transition(
         fire=_firing(program, net, t, variables),
         guard_text=", ".join(g.span.text for g in t.guards),
         thresholds=_Thresholds(program, net, t, variables).run(),
+        places=tuple({a.place: _name_on_page(net, a) for a in reversed(t.arcs)}.items()),
     )
 
 
@@ -109,9 +110,13 @@ def take_terms(
 
 def arc_note(net: FlatNet, arc: FlatArc) -> str:
     """`Buffer: 1`n (ID1414)`."""
-    place = net.places[arc.place].name.rsplit(".", 1)[-1]
+    place = _name_on_page(net, arc)
     text = arc.inscription.value.span.source.text if arc.inscription is not None else arc.kind.value
     return f"{place}: {text.strip()} ({arc.id})"
+
+
+def _name_on_page(net: FlatNet, arc: FlatArc) -> str:
+    return arc.place_name or net.places[arc.place].name.rsplit(".", 1)[-1]
 
 
 @dataclass(slots=True)

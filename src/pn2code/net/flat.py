@@ -84,13 +84,15 @@ class ArcInscription:
 
 @frozen
 class FlatArc:
-    """An arc instance; `place` is an index into `FlatNet.places`. `inscription` is None for INHIBITOR and RESET."""
+    """An arc instance; `place` is an index into `FlatNet.places`. `inscription` is None for INHIBITOR and RESET.
+    `place_name` is the name of the place on the arc's page; "" where it is on none."""
 
     id: str
     kind: ArcKind
     place: int
     inscription: ArcInscription | None
     origin: Origin
+    place_name: str = ""
 
 
 @frozen

@@ -311,6 +311,7 @@ class _Flattener:
                         place=group_of[(instance.index, a.place)],
                         inscription=a.inscription,
                         origin=replace(a.origin, instance=instance.path),
+                        place_name=self.typed[instance.index, a.place].name,
                     )
                     for a in t.arcs
                 )

@@ -27,7 +27,7 @@
 #define PN_NET_SEARCH
 #endif
 
-#if PN_NET_ABI != 2U
+#if PN_NET_ABI != 3U
 #error "Generate this file again: runtime and generator disagree (PN_NET_ABI)."
 #endif
 
@@ -35,40 +35,22 @@
 
 /* colset PART */
 static const char *const s_PART_names[] = { "screw", "nut" };
-static const pn_type_t s_PART = {
-    .kind = PN_KIND_ENUM,
-    .name = "PART",
-    .size = sizeof(PART_t),
-    .name_of_value = s_PART_names,
-    .count = 2U,
-};
+static const pn_type_t s_PART = { .kind = PN_KIND_ENUM, .name = "PART", .size = sizeof(PART_t),
+    .name_of_value = s_PART_names, .count = 2U };
 
 /* colset REAL */
-static const pn_type_t s_REAL = {
-    .kind = PN_KIND_REAL,
-    .name = "REAL",
-    .size = sizeof(double),
-};
+static const pn_type_t s_REAL = { .kind = PN_KIND_REAL, .name = "REAL", .size = sizeof(double) };
 
 /* colset BOX */
 static const pn_field_t s_BOX_fields[] = {
     { "part", &s_PART, offsetof(BOX_t, part), false },
     { "weight", &s_REAL, offsetof(BOX_t, weight), false },
 };
-static const pn_type_t s_BOX = {
-    .kind = PN_KIND_RECORD,
-    .name = "BOX",
-    .size = sizeof(BOX_t),
-    .count = 2U,
-    .field = s_BOX_fields,
-};
+static const pn_type_t s_BOX = { .kind = PN_KIND_RECORD, .name = "BOX", .size = sizeof(BOX_t),
+    .count = 2U, .field = s_BOX_fields };
 
 /* colset INT */
-static const pn_type_t s_INT = {
-    .kind = PN_KIND_INT,
-    .name = "INT",
-    .size = sizeof(int64_t),
-};
+static const pn_type_t s_INT = { .kind = PN_KIND_INT, .name = "INT", .size = sizeof(int64_t) };
 
 /* --- values ------------------------------------------------------------------------------------ */
 
@@ -111,14 +93,6 @@ static int64_t ml_label(pn_ctx_t *cx, BOX_t a)
 
 /* --- places ------------------------------------------------------------------------------------ */
 
-/* The scalars of the colour sets of places: kinds, names, and how an input file is laid out in lines. */
-static const pn_leaf_kind_t s_BOX_kinds[] = { PN_LEAF_ENUM, PN_LEAF_REAL };
-static const char *const s_BOX_leaves[] = { "part", "weight" };
-static const uint32_t s_BOX_lines[] = { 2U };
-static const pn_leaf_kind_t s_INT_kinds[] = { PN_LEAF_INT };
-static const char *const s_INT_leaves[] = { "" };
-static const uint32_t s_INT_lines[] = { 1U };
-
 static inline bool is_before_BOX(const BOX_t *a, const BOX_t *b)
 {
     if (a->part != b->part) {
@@ -131,15 +105,12 @@ static inline bool is_before_BOX(const BOX_t *a, const BOX_t *b)
     return false;
 }
 
-/* place Top.Buffer, colour set BOX: page `Top`, place `Buffer` (ID16) */
-static const pn_bag_t s_at_Buffer = {
-    .origin = "page `Top`, place `Buffer` (ID16)",
-    .type = &s_BOX,
-    .capacity = 64U,
-    PN_BAG_TOKENS(net_marking_t, Buffer),
-};
+PN_UNTIMED_ARRAY(BOX_array_64, BOX_t, is_before_BOX)
+PN_UNTIMED_ARRAY(INT_array_64, int64_t, PN_LESS)
 
-PN_UNTIMED_PLACE(Buffer, net_marking_t, BOX_t, is_before_BOX, s_at_Buffer)
+/* place Top.Buffer, colour set BOX: page `Top`, place `Buffer` (ID16) */
+static const pn_bag_t s_at_Buffer = { .origin = "page `Top`, place `Buffer` (ID16)", .type = &s_BOX,
+    .capacity = 64U, PN_BAG_TOKENS(net_marking_t, Buffer) };
 
 /* initial marking:
  *     1`{part = screw, weight = 3.0} ++ 2`{part = nut, weight = 0.1}
@@ -156,14 +127,8 @@ static bool Buffer_init(pn_ctx_t *cx, void *marking)
 }
 
 /* place Top.Count, colour set INT: page `Top`, place `Count` (ID19) */
-static const pn_bag_t s_at_Count = {
-    .origin = "page `Top`, place `Count` (ID19)",
-    .type = &s_INT,
-    .capacity = 64U,
-    PN_BAG_TOKENS(net_marking_t, Count),
-};
-
-PN_UNTIMED_PLACE(Count, net_marking_t, int64_t, PN_LESS, s_at_Count)
+static const pn_bag_t s_at_Count = { .origin = "page `Top`, place `Count` (ID19)", .type = &s_INT,
+    .capacity = 64U, PN_BAG_TOKENS(net_marking_t, Count) };
 
 /* initial marking:
  *     0
@@ -178,14 +143,8 @@ static bool Count_init(pn_ctx_t *cx, void *marking)
 }
 
 /* place Top.Out, colour set BOX: page `Top`, place `Out` (ID22) */
-static const pn_bag_t s_at_Out = {
-    .origin = "page `Top`, place `Out` (ID22)",
-    .type = &s_BOX,
-    .capacity = 64U,
-    PN_BAG_TOKENS(net_marking_t, Out),
-};
-
-PN_UNTIMED_PLACE(Out, net_marking_t, BOX_t, is_before_BOX, s_at_Out)
+static const pn_bag_t s_at_Out = { .origin = "page `Top`, place `Out` (ID22)", .type = &s_BOX,
+    .capacity = 64U, PN_BAG_TOKENS(net_marking_t, Out) };
 
 /* --- transitions ------------------------------------------------------------------------------- */
 
@@ -196,33 +155,23 @@ typedef struct Pick_binding {
     BOX_t b;
     int64_t n;
 } Pick_binding_t;
-
 static const pn_field_t s_variables_Pick[] = {
     { "b", &s_BOX, offsetof(Pick_binding_t, b), false },
     { "n", &s_INT, offsetof(Pick_binding_t, n), false },
 };
-
-static const pn_type_t s_binding_Pick = {
-    .kind = PN_KIND_RECORD,
-    .name = "Top.Pick",
-    .size = sizeof(Pick_binding_t),
-    .count = 2U,
-    .field = s_variables_Pick,
-};
+static const pn_type_t s_binding_Pick = { .kind = PN_KIND_RECORD, .name = "Top.Pick",
+    .size = sizeof(Pick_binding_t), .count = 2U, .field = s_variables_Pick };
 
 PN_NET_SEARCH static bool Pick_enumerate(pn_ctx_t *cx, const void *marking,
     uint32_t self, pn_binding_sink_t sink, void *user)
 {
     const net_marking_t *const m = marking;
     Pick_binding_t b = { 0 };
-    cx->origin = "page `Top`, transition `Pick` (ID25)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Top`, transition `Pick` (ID25)", m->now);
     /* Buffer: b (ID30) */
     for (uint32_t i = 0U; i < m->Buffer.used; i++) {
         b.b = m->Buffer.token[i].value;
-        /* guard [#weight b < 10.0] */
-        if (!(b.b.weight < 10.0)) {
+        if (!(b.b.weight < 10.0)) { /* guard [#weight b < 10.0] */
             continue;
         }
         /* Count: n (ID32) */
@@ -236,35 +185,33 @@ PN_NET_SEARCH static bool Pick_enumerate(pn_ctx_t *cx, const void *marking,
     return true;
 }
 
-PN_NET_SEARCH static bool Pick_fire(pn_ctx_t *cx, void *marking, void *binding)
+PN_NET_SEARCH static bool Pick_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     net_marking_t *const m = marking;
+    (void)self;
     Pick_binding_t *const b = binding;
-    cx->origin = "page `Top`, transition `Pick` (ID25)";
-    cx->now = m->now;
-    cx->rounds = 0U;
+    pn_begin(cx, "page `Top`, transition `Pick` (ID25)", m->now);
     const int64_t Count_token = pn_int_add(cx, b->n, ml_label(cx, b->b));
     if (!pn_ok(cx)) {
         return false;
     }
     /* Buffer: b (ID30) */
-    bool is_taken = Buffer_take(m, &b->b, 1U);
+    bool is_taken = BOX_array_64_take(&m->Buffer, &b->b, 1U);
     /* Count: n (ID32) */
-    is_taken = is_taken && Count_take(m, &b->n, 1U);
+    is_taken = is_taken && INT_array_64_take(&m->Count, &b->n, 1U);
     if (!is_taken) {
-        pn_raise(cx, PN_ERR_SUBTRACT, NULL);
-        return false;
+        return pn_fail_missing(cx);
     }
     /* Count: n + label b (ID34) */
-    bool fits = Count_add(cx, m, &Count_token, 1U);
+    bool fits = INT_array_64_add(cx, &m->Count, &s_at_Count, &Count_token, 1U);
     /* Out: b (ID36) */
-    fits = Out_add(cx, m, &b->b, 1U) && fits;
+    fits = BOX_array_64_add(cx, &m->Out, &s_at_Out, &b->b, 1U) && fits;
     if (!fits) {
         /* a place is full: everything is put back */
-        (void)Out_take(m, &b->b, 1U);
-        (void)Count_take(m, &Count_token, 1U);
-        (void)Count_add(cx, m, &b->n, 1U);
-        (void)Buffer_add(cx, m, &b->b, 1U);
+        (void)BOX_array_64_take(&m->Out, &b->b, 1U);
+        (void)INT_array_64_take(&m->Count, &Count_token, 1U);
+        (void)INT_array_64_add(cx, &m->Count, &s_at_Count, &b->n, 1U);
+        (void)BOX_array_64_add(cx, &m->Buffer, &s_at_Buffer, &b->b, 1U);
         return false;
     }
     return true;
@@ -273,59 +220,28 @@ PN_NET_SEARCH static bool Pick_fire(pn_ctx_t *cx, void *marking, void *binding)
 /* --- the net as hosts see it ------------------------------------------------------------------- */
 
 static const pn_place_t s_places[] = {
-    {
-        .name = "Top.Buffer", .colset = "BOX", .owner = 0, .bag = &s_at_Buffer,
-        .initial = Buffer_init,
-        .leaf_count = 2U, .leaf_kind = s_BOX_kinds, .leaf_name = s_BOX_leaves,
-        .line_count = 1U, .line_leaves = s_BOX_lines,
-    },
-    {
-        .name = "Top.Count", .colset = "INT", .owner = 0, .bag = &s_at_Count,
-        .initial = Count_init,
-        .leaf_count = 1U, .leaf_kind = s_INT_kinds, .leaf_name = s_INT_leaves,
-        .line_count = 1U, .line_leaves = s_INT_lines,
-    },
-    {
-        .name = "Top.Out", .colset = "BOX", .owner = 0, .bag = &s_at_Out,
-        .leaf_count = 2U, .leaf_kind = s_BOX_kinds, .leaf_name = s_BOX_leaves,
-        .line_count = 1U, .line_leaves = s_BOX_lines,
-    },
+    { .name = "Top.Buffer", .colset = "BOX", .owner = 0, .bag = &s_at_Buffer,
+        .initial = Buffer_init },
+    { .name = "Top.Count", .colset = "INT", .owner = 0, .bag = &s_at_Count, .initial = Count_init },
+    { .name = "Top.Out", .colset = "BOX", .owner = 0, .bag = &s_at_Out },
 };
 
 static const uint32_t s_bag_places[] = { 0U, 1U, 2U };
 
-/* For each transition those that may be enabled in another way when it has occurred. */
-
-/* For each transition the places that its occurrence may change. */
-static const uint32_t s_touched_by_Pick[] = { 0U, 1U, 2U };
-
-/* And those that decide about it. */
-static const uint32_t s_read_by_Pick[] = { 0U, 1U };
-
+/* For each transition: those that may be enabled in another way when it has occurred, the places that it may change, and the
+ * places that decide about it. */
 static const pn_transition_t s_transitions[] = {
-    {
-        .name = "Top.Pick", .id = "ID25", .owner = 0, .priority = 1000,
-        .origin = "page `Top`, transition `Pick` (ID25)",
-        .enumerate = Pick_enumerate, .fire = Pick_fire, .binding = &s_binding_Pick,
-        .touched_count = sizeof s_touched_by_Pick / sizeof s_touched_by_Pick[0],
-        .touched = s_touched_by_Pick,
-        .read_count = sizeof s_read_by_Pick / sizeof s_read_by_Pick[0],
-        .read = s_read_by_Pick,
-    },
+    { /* 0 */ .name = "Top.Pick", .id = "ID25", .origin = "page `Top`, transition `Pick` (ID25)",
+        .owner = 0, .priority = 1000, PN_CODE(Pick), PN_INDICES(touched, 0U, 1U, 2U),
+        PN_INDICES(read, 0U, 1U) },
 };
 
-static const uint32_t s_order[] = {
-    0U, /* Top.Pick */
-};
+static const uint32_t s_order[] = { 0U };
 
-/* For hosts that are compiled in one piece with the net: index and name of each transition, and whether each choice of tokens
- * gives a binding, so that counting them costs nothing. */
+/* For hosts that are compiled in one piece with the net: index of each transition, name of its code, and whether each choice of
+ * tokens gives a binding, so that counting them costs nothing. */
 #define NET_TRANSITIONS(EACH) \
     EACH(0U, Pick, false)
-
-typedef union any_binding {
-    Pick_binding_t Pick;
-} any_binding_t;
 
 static const pn_owner_t s_owners[] = {
     { "supervisor" },
@@ -339,7 +255,6 @@ const pn_net_t pn_net = {
     .timed = false,
     .real_time = false,
     .marking_size = sizeof(net_marking_t),
-    .binding_size = sizeof(any_binding_t),
     .place_count = 3U,
     .place = s_places,
     .transition_count = 1U,

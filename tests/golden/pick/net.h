@@ -24,34 +24,34 @@ struct BOX {
     double weight;
 };
 
+/* --- what holds the tokens of a place: a slot for one, an array for several ------------------- */
+
+typedef struct BOX_array_64 {
+    uint32_t used;
+    struct {
+        BOX_t value;
+        uint32_t count;
+    } token[64 + 1];
+} BOX_array_64_t;
+
+typedef struct INT_array_64 {
+    uint32_t used;
+    struct {
+        int64_t value;
+        uint32_t count;
+    } token[64 + 1];
+} INT_array_64_t;
+
 /* --- the marking ------------------------------------------------------------------------------- */
 
 typedef struct net_marking {
     pn_time_t now;
     /* Top.Buffer: page `Top`, place `Buffer` (ID16) */
-    struct {
-        uint32_t used;
-        struct {
-            BOX_t value;
-            uint32_t count;
-        } token[64];
-    } Buffer;
+    BOX_array_64_t Buffer;
     /* Top.Count: page `Top`, place `Count` (ID19) */
-    struct {
-        uint32_t used;
-        struct {
-            int64_t value;
-            uint32_t count;
-        } token[64 + 1];
-    } Count;
+    INT_array_64_t Count;
     /* Top.Out: page `Top`, place `Out` (ID22) */
-    struct {
-        uint32_t used;
-        struct {
-            BOX_t value;
-            uint32_t count;
-        } token[64 + 1];
-    } Out;
+    BOX_array_64_t Out;
 } net_marking_t;
 
 #endif /* NET_H */

@@ -218,6 +218,12 @@ uint64_t pn_bag_count(const pn_bag_t *bag, const void *marking, const void *valu
 
 /* --- change -------------------------------------------------------------------------------------------------------- */
 
+bool pn_fail_missing(pn_ctx_t *cx)
+{
+    pn_raise(cx, PN_ERR_SUBTRACT, NULL);
+    return false;
+}
+
 bool pn_bag_fail_full(pn_ctx_t *cx, const pn_bag_t *bag)
 {
     const char *origin = cx->origin;

@@ -15,6 +15,16 @@ static void make_empty(const pn_net_t *net, void *marking)
     }
 }
 
+size_t pn_binding_size(const pn_net_t *net)
+{
+    size_t most = 1U;
+    for (uint32_t i = 0U; i < net->transition_count; i++) {
+        const size_t size = net->transition[i].binding->size;
+        most = (size > most) ? size : most;
+    }
+    return most;
+}
+
 bool pn_marking_init(const pn_net_t *net, pn_ctx_t *cx, void *marking)
 {
     make_empty(net, marking);

@@ -28,7 +28,7 @@
 #include "simulate_impl.h"
 
 typedef bool (*sim_enumerate_t)(pn_ctx_t *cx, const void *marking, uint32_t self, pn_binding_sink_t sink, void *user);
-typedef bool (*sim_fire_t)(pn_ctx_t *cx, void *marking, void *binding);
+typedef bool (*sim_fire_t)(pn_ctx_t *cx, void *marking, uint32_t self, void *binding);
 
 enum { SIM_WORD = 64 }; /* bits of a word of the sets of transitions */
 
@@ -235,7 +235,7 @@ static SIM_INLINE bool sim_fire_with(sim_t *sim, uint32_t transition, sim_fire_t
 {
     pn_ctx_t *const cx = &sim->cx;
     cx->step = sim->steps + 1U;
-    if (!fire(cx, sim->marking, binding)) {
+    if (!fire(cx, sim->marking, transition, binding)) {
         (void)memmove(sim->binding, binding, size);
         sim_fail(sim, "it occurred", (int64_t)transition, true);
         return false;
@@ -294,29 +294,29 @@ bool sim_fire(sim_t *sim, uint32_t transition)
 #ifdef PN_NET_SOURCE
 
 /* A binding is kept by assignment: the compiler then leaves out what it need not put together first. */
-#define SIM_TRANSITION(index, name, is_plain)                                                                  \
-    static SIM_INLINE bool sim_keep_##name(void *user, uint32_t transition, const void *binding)               \
+#define SIM_TRANSITION(index, code, is_plain)                                                                   \
+    static SIM_INLINE bool sim_keep_##index(void *user, uint32_t transition, const void *binding)               \
     {                                                                                                          \
-        name##_binding_t *const at = sim_next_kept(user, sizeof *at);                                          \
+        code##_binding_t *const at = sim_next_kept(user, sizeof *at);                                          \
         (void)transition;                                                                                      \
         if (at != NULL) {                                                                                      \
-            *at = *(const name##_binding_t *)binding;                                                          \
+            *at = *(const code##_binding_t *)binding;                                                          \
         }                                                                                                      \
         return true;                                                                                           \
     }                                                                                                          \
-    static bool sim_look_##name(sim_t *sim)                                                                    \
+    static bool sim_look_##index(sim_t *sim)                                                                    \
     {                                                                                                          \
-        return sim_look(sim, index, name##_enumerate);                                                         \
+        return sim_look(sim, index, code##_enumerate);                                                         \
     }                                                                                                          \
-    static bool sim_occur_##name(sim_t *sim, uint64_t state)                                                   \
+    static bool sim_occur_##index(sim_t *sim, uint64_t state)                                                   \
     {                                                                                                          \
         if (is_plain) {                                                                                        \
-            return sim_occur_plain(sim, index, state, name##_enumerate, name##_fire, sizeof(name##_binding_t)); \
+            return sim_occur_plain(sim, index, state, code##_enumerate, code##_fire, sizeof(code##_binding_t)); \
         }                                                                                                      \
-        return sim_occur(sim, index, state, name##_enumerate, sim_keep_##name, name##_fire,                    \
-                         sizeof(name##_binding_t));                                                            \
+        return sim_occur(sim, index, state, code##_enumerate, sim_keep_##index, code##_fire,                    \
+                         sizeof(code##_binding_t));                                                            \
     }
-#define SIM_ROW(index, name, is_plain) { sim_look_##name, sim_occur_##name },
+#define SIM_ROW(index, code, is_plain) { sim_look_##index, sim_occur_##index },
 #ifndef NET_TRANSITIONS /* there is none */
 #define NET_TRANSITIONS(EACH)
 #endif

@@ -240,7 +240,7 @@ static bool check_generated(sup_t *sup)
         if ((channel->place >= pn_net.place_count) || (channel->peer >= pn_cell.peer_count) ||
             (channel->scalar_count > PN_CHANNEL_SCALARS) ||
             (strcmp(pn_net.place[channel->place].name, channel->place_name) != 0) ||
-            (pn_net.place[channel->place].leaf_count != channel->scalar_count)) {
+            (pn_leaf_count(pn_net.place[channel->place].bag->type) != channel->scalar_count)) {
             return sup_stop(sup, SUP_EXIT_INTERNAL, "channel `%s` does not fit net.c: generate again", channel->name);
         }
     }
@@ -248,7 +248,7 @@ static bool check_generated(sup_t *sup)
         const pn_cell_input_t *const input = &pn_cell.input[i];
         if ((input->place >= pn_net.place_count) || (input->scalar_count > PN_CHANNEL_SCALARS) ||
             (strcmp(pn_net.place[input->place].name, input->place_name) != 0) ||
-            (pn_net.place[input->place].leaf_count != input->scalar_count)) {
+            (pn_leaf_count(pn_net.place[input->place].bag->type) != input->scalar_count)) {
             return sup_stop(sup, SUP_EXIT_INTERNAL, "input `%s` does not fit net.c: generate again", input->name);
         }
     }
@@ -259,7 +259,7 @@ static bool check_generated(sup_t *sup)
 static bool get_memory(sup_t *sup)
 {
     sup->marking = calloc(1U, (pn_net.marking_size > 0U) ? pn_net.marking_size : 1U);
-    sup->binding = calloc(1U, (pn_net.binding_size > 0U) ? pn_net.binding_size : 1U);
+    sup->binding = calloc(1U, pn_binding_size(&pn_net));
     sup->fired_of = calloc((size_t)pn_net.transition_count + 1U, sizeof *sup->fired_of);
     if ((sup->marking == NULL) || (sup->binding == NULL) || (sup->fired_of == NULL)) {
         return sup_stop(sup, SUP_EXIT_IO, "not enough memory");

@@ -24,6 +24,7 @@ typedef struct pn_bag {
     uint32_t capacity;       /* entries: so many distinct colours, with so many stamps, fit */
     bool is_timed;
     bool is_real_time;       /* stamps are reals */
+    size_t at;               /* offset in the marking of what holds its tokens */
     bool is_slot;            /* `used` is a bool, and there is one entry, of one token, which is a value and nothing else */
     size_t used;             /* offset of `used` in the marking */
     size_t first;            /* offset of token[0] in the marking */
@@ -52,18 +53,31 @@ typedef union pn_colour {
     unsigned char bytes[256];
 } pn_colour_t;
 
-/* The offsets of a place `member` of a marking, for the initialiser of a pn_bag_t; PN_BAG_STAMPS as well if it is timed. */
+/* The offsets of a place `member` of a marking, for the initialiser of a pn_bag_t. */
 #define PN_BAG_TOKENS(marking_type, member)                                                                        \
-    .used = offsetof(marking_type, member.used), .first = offsetof(marking_type, member.token),                    \
+    .at = offsetof(marking_type, member), .used = offsetof(marking_type, member.used),                             \
+    .first = offsetof(marking_type, member.token),                                                                 \
     .stride = sizeof(((const marking_type *)0)->member.token[0]),                                                  \
     .value = offsetof(marking_type, member.token[0].value) - offsetof(marking_type, member.token),                 \
     .count = offsetof(marking_type, member.token[0].count) - offsetof(marking_type, member.token)
-/* The same for a slot. */
+/* The same for a slot, and for a timed array. */
 #define PN_BAG_SLOT(marking_type, member)                                                                          \
-    .is_slot = true, .used = offsetof(marking_type, member.full), .first = offsetof(marking_type, member.value),   \
+    .at = offsetof(marking_type, member), .is_slot = true, .used = offsetof(marking_type, member.full),            \
+    .first = offsetof(marking_type, member.value),                                                                 \
     .stride = sizeof(((const marking_type *)0)->member.value)
 #define PN_BAG_STAMPS(marking_type, member)                                                                        \
+    PN_BAG_TOKENS(marking_type, member),                                                                           \
     .stamp = offsetof(marking_type, member.token[0].stamp) - offsetof(marking_type, member.token)
+
+/* What holds the tokens of a place that is not packed. */
+static inline const void *pn_bag_look(const pn_bag_t *bag, const void *marking)
+{
+    return (const unsigned char *)marking + bag->at;
+}
+static inline void *pn_bag_reach(const pn_bag_t *bag, void *marking)
+{
+    return (unsigned char *)marking + bag->at;
+}
 
 /* Number of tokens. */
 uint64_t pn_bag_total(const pn_bag_t *bag, const void *marking);
@@ -75,6 +89,13 @@ uint64_t pn_bag_count(const pn_bag_t *bag, const void *marking, const void *valu
 bool pn_bag_add(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const void *value, uint32_t count, pn_time_t stamp);
 /* Raises PN_ERR_CAPACITY at the place; false. */
 bool pn_bag_fail_full(pn_ctx_t *cx, const pn_bag_t *bag);
+/* Raises that if a slot is full: whether a token can be put there. */
+static inline bool pn_has_room(pn_ctx_t *cx, bool is_full, const pn_bag_t *bag)
+{
+    return !is_full || pn_bag_fail_full(cx, bag);
+}
+/* Raises PN_ERR_SUBTRACT: a token that an occurrence takes is not there; false. */
+bool pn_fail_missing(pn_ctx_t *cx);
 /* Narrows a value and raises PN_ERR_COLOUR at the place if it is not in the colour set. */
 void pn_bag_check(pn_ctx_t *cx, const pn_bag_t *bag, void *value);
 void pn_bag_clear(const pn_bag_t *bag, void *marking);

@@ -25,7 +25,7 @@
 extern "C" {
 #endif
 
-#define PN_NET_ABI 2U
+#define PN_NET_ABI 3U
 
 #if defined(__GNUC__)
 #define PN_NODISCARD __attribute__((warn_unused_result))
@@ -99,11 +99,6 @@ typedef struct pn_place {
     int32_t owner;          /* index in pn_net_t.owner; -1: a channel */
     bool is_bounded;        /* more tokens than `bound` have been proven impossible, or declared to be */
     uint32_t bound;
-    uint32_t leaf_count;             /* 0: no fixed number of leaves (lists, unions) */
-    const pn_leaf_kind_t *leaf_kind; /* leaf_count of them */
-    const char *const *leaf_name;    /* "x", "y", ... or "1", "2" for components; for messages */
-    uint32_t line_count;             /* how an input file is laid out: leaves per line, by top-level component */
-    const uint32_t *line_leaves;
     /* Of a packed place that follows from others: its counters and those of these places, so often, are always the same in sum. All
      * of them have as many counters of as many bits, or one counter each; no sum is more than a counter of this place can hold. */
     uint32_t share_count;
@@ -123,8 +118,10 @@ typedef struct pn_transition {
      * Returns false when the sink stopped it. */
     bool (*enumerate)(pn_ctx_t *cx, const void *marking, uint32_t self, pn_binding_sink_t sink, void *user);
     /* Fires an enabled binding and stores the code segment's outputs in it. On error (context error set, false) the marking
-     * is unchanged. `binding` is the host's copy (binding_size bytes) of what the sink was given. */
-    bool (*fire)(pn_ctx_t *cx, void *marking, void *binding);
+     * is unchanged. `binding` is the host's copy (pn_binding_size) of what the sink was given. */
+    bool (*fire)(pn_ctx_t *cx, void *marking, uint32_t self, void *binding);
+    /* Where the functions are those of all instances of a page, the places that are this instance's: a struct of the generated net. */
+    const void *places;
     /* The type of a binding: a record of the variables. Outputs of the code segment are there after `fire`. */
     const struct pn_type *binding;
     /* The transitions that may be enabled in another way after this one has occurred, model time being the same. NULL: all. */
@@ -154,6 +151,12 @@ typedef struct pn_transition {
     bool (*words)(pn_words_t *words, uint32_t self);
 } pn_transition_t;
 
+/* For rows of the table of transitions: their functions and binding by the stem of the names; a list of indices with its length. */
+#define PN_CODE(code) .enumerate = code##_enumerate, .fire = code##_fire, .binding = &s_binding_##code
+#define PN_INDICES(member, ...)                                                                                 \
+    .member##_count = (uint32_t)(sizeof((const uint32_t[]){ __VA_ARGS__ }) / sizeof(uint32_t)),                 \
+    .member = (const uint32_t[]){ __VA_ARGS__ }
+
 /* A condition on markings, asked by those who explore the net. */
 typedef struct pn_predicate {
     const char *name;
@@ -180,7 +183,6 @@ typedef struct pn_net {
     bool timed;
     bool real_time;           /* the clock is real: times are double; else int64_t */
     size_t marking_size;      /* bytes of a marking; may hold pointers into the context's arena */
-    size_t binding_size;      /* bytes of the largest binding */
     uint32_t place_count;
     const pn_place_t *place;
     uint32_t transition_count;

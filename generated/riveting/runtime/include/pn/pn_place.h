@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  * pn_place.h - the untimed place with the types known: what pn_bag.h does through tables, as inline functions.
  *
- * PN_UNTIMED_PLACE makes, for the member `place` of the marking,
+ * PN_UNTIMED_ARRAY makes, for places whose tokens are in an `array_t`,
  *
- *     place_find(m, v)        the first entry that is not before *v
- *     place_held(m, v)        the number of tokens of that value
- *     place_holds(m, v, w)    whether there is a token v and another token w
- *     place_take(m, v, n)     takes n of them; false, and nothing taken, when there are fewer
- *     place_add(cx, m, v, n)  puts n of them; false (PN_ERR_CAPACITY) when there are now more than the place may hold
+ *     array_find(p, v)             the first entry that is not before *v
+ *     array_held(p, v)             the number of tokens of that value
+ *     array_holds(p, v, w)         whether there is a token v and another token w
+ *     array_take(p, v, n)          takes n of them; false, and nothing taken, when there are fewer
+ *     array_add(cx, p, bag, v, n)  puts n of them; false (PN_ERR_CAPACITY) when there are now more than the place may hold
  *
  * Behind its capacity the array has room for all that one occurrence may put: nothing is ever written outside, and what has been
  * put beyond the capacity can be taken out again.
@@ -42,66 +42,67 @@
 /* The order of values that C compares itself. */
 #define PN_LESS(a, b) (*(a) < *(b))
 
-#define PN_UNTIMED_PLACE(place, marking_t, value_t, less, bag)                                                      \
-    PN_MAYBE_UNUSED static inline uint32_t place##_find(const marking_t *m, const value_t *v)                       \
-    {                                                                                                               \
-        uint32_t low = 0U;                                                                                          \
-        uint32_t high = m->place.used;                                                                              \
-        while (low < high) {                                                                                        \
-            const uint32_t middle = low + ((high - low) / 2U);                                                      \
-            if (less(&m->place.token[middle].value, v)) {                                                           \
-                low = middle + 1U;                                                                                  \
-            } else {                                                                                                \
-                high = middle;                                                                                      \
-            }                                                                                                       \
-        }                                                                                                           \
-        return low;                                                                                                 \
-    }                                                                                                               \
-    PN_MAYBE_UNUSED static inline uint32_t place##_held(const marking_t *m, const value_t *v)                       \
-    {                                                                                                               \
-        const uint32_t i = place##_find(m, v);                                                                      \
-        const bool is_there = (i < m->place.used) && !less(v, &m->place.token[i].value);                            \
-        return is_there ? m->place.token[i].count : 0U;                                                             \
-    }                                                                                                               \
-    PN_MAYBE_UNUSED static inline bool place##_holds(const marking_t *m, const value_t *v, const value_t *w)        \
-    {                                                                                                               \
-        const bool is_same = !less(v, w) && !less(w, v);                                                            \
-        return is_same ? (place##_held(m, v) >= 2U) : ((place##_held(m, v) >= 1U) && (place##_held(m, w) >= 1U));   \
-    }                                                                                                               \
-    PN_MAYBE_UNUSED static inline bool place##_take(marking_t *m, const value_t *v, uint32_t n)                     \
-    {                                                                                                               \
-        const uint32_t i = place##_find(m, v);                                                                      \
-        const uint32_t used = m->place.used;                                                                        \
-        if ((i >= used) || less(v, &m->place.token[i].value) || (m->place.token[i].count < n)) {                    \
-            return false;                                                                                           \
-        }                                                                                                           \
-        m->place.token[i].count -= n;                                                                               \
-        if (m->place.token[i].count == 0U) {                                                                        \
-            for (uint32_t k = i + 1U; k < used; k++) {                                                              \
-                m->place.token[k - 1U] = m->place.token[k];                                                         \
-            }                                                                                                       \
-            m->place.used = used - 1U;                                                                              \
-        }                                                                                                           \
-        return true;                                                                                                \
-    }                                                                                                               \
-    PN_MAYBE_UNUSED static inline bool place##_add(pn_ctx_t *cx, marking_t *m, const value_t *v, uint32_t n)        \
-    {                                                                                                               \
-        const uint32_t i = place##_find(m, v);                                                                      \
-        const uint32_t used = m->place.used;                                                                        \
-        if (n == 0U) {                                                                                              \
-            return true;                                                                                            \
-        }                                                                                                           \
-        if ((i < used) && !less(v, &m->place.token[i].value)) {                                                     \
-            m->place.token[i].count += n;                                                                           \
-            return (m->place.token[i].count >= n) || pn_bag_fail_full(cx, &(bag));                                  \
-        }                                                                                                           \
-        for (uint32_t k = used; k > i; k--) {                                                                       \
-            m->place.token[k] = m->place.token[k - 1U];                                                             \
-        }                                                                                                           \
-        m->place.token[i].value = *v;                                                                               \
-        m->place.token[i].count = n;                                                                                \
-        m->place.used = used + 1U;                                                                                  \
-        return (used < (bag).capacity) || pn_bag_fail_full(cx, &(bag));                                             \
+#define PN_UNTIMED_ARRAY(array, value_t, less)                                                                   \
+    PN_MAYBE_UNUSED static inline uint32_t array##_find(const array##_t *p, const value_t *v)                    \
+    {                                                                                                            \
+        uint32_t low = 0U;                                                                                       \
+        uint32_t high = p->used;                                                                                 \
+        while (low < high) {                                                                                     \
+            const uint32_t middle = low + ((high - low) / 2U);                                                   \
+            if (less(&p->token[middle].value, v)) {                                                              \
+                low = middle + 1U;                                                                               \
+            } else {                                                                                             \
+                high = middle;                                                                                   \
+            }                                                                                                    \
+        }                                                                                                        \
+        return low;                                                                                              \
+    }                                                                                                            \
+    PN_MAYBE_UNUSED static inline uint32_t array##_held(const array##_t *p, const value_t *v)                    \
+    {                                                                                                            \
+        const uint32_t i = array##_find(p, v);                                                                   \
+        const bool is_there = (i < p->used) && !less(v, &p->token[i].value);                                     \
+        return is_there ? p->token[i].count : 0U;                                                                \
+    }                                                                                                            \
+    PN_MAYBE_UNUSED static inline bool array##_holds(const array##_t *p, const value_t *v, const value_t *w)     \
+    {                                                                                                            \
+        const bool is_same = !less(v, w) && !less(w, v);                                                         \
+        return is_same ? (array##_held(p, v) >= 2U) : ((array##_held(p, v) >= 1U) && (array##_held(p, w) >= 1U)); \
+    }                                                                                                            \
+    PN_MAYBE_UNUSED static inline bool array##_take(array##_t *p, const value_t *v, uint32_t n)                  \
+    {                                                                                                            \
+        const uint32_t i = array##_find(p, v);                                                                   \
+        const uint32_t used = p->used;                                                                           \
+        if ((i >= used) || less(v, &p->token[i].value) || (p->token[i].count < n)) {                             \
+            return false;                                                                                        \
+        }                                                                                                        \
+        p->token[i].count -= n;                                                                                  \
+        if (p->token[i].count == 0U) {                                                                           \
+            for (uint32_t k = i + 1U; k < used; k++) {                                                           \
+                p->token[k - 1U] = p->token[k];                                                                  \
+            }                                                                                                    \
+            p->used = used - 1U;                                                                                 \
+        }                                                                                                        \
+        return true;                                                                                             \
+    }                                                                                                            \
+    PN_MAYBE_UNUSED static inline bool array##_add(pn_ctx_t *cx, array##_t *p, const pn_bag_t *bag,              \
+                                                   const value_t *v, uint32_t n)                                 \
+    {                                                                                                            \
+        const uint32_t i = array##_find(p, v);                                                                   \
+        const uint32_t used = p->used;                                                                           \
+        if (n == 0U) {                                                                                           \
+            return true;                                                                                         \
+        }                                                                                                        \
+        if ((i < used) && !less(v, &p->token[i].value)) {                                                        \
+            p->token[i].count += n;                                                                              \
+            return (p->token[i].count >= n) || pn_bag_fail_full(cx, bag);                                        \
+        }                                                                                                        \
+        for (uint32_t k = used; k > i; k--) {                                                                    \
+            p->token[k] = p->token[k - 1U];                                                                      \
+        }                                                                                                        \
+        p->token[i].value = *v;                                                                                  \
+        p->token[i].count = n;                                                                                   \
+        p->used = used + 1U;                                                                                     \
+        return (used < bag->capacity) || pn_bag_fail_full(cx, bag);                                              \
     }
 
 #endif /* PN_PLACE_H */

@@ -54,4 +54,12 @@ typedef struct pn_ctx {
     uint64_t random;          /* state of the generator for CS.ran() and the distributions; see pn_random.h */
 } pn_ctx_t;
 
+/* An element of the net is evaluated from here on. */
+static inline void pn_begin(pn_ctx_t *cx, const char *origin, pn_time_t now)
+{
+    cx->origin = origin;
+    cx->now = now;
+    cx->rounds = 0U;
+}
+
 #endif /* PN_TYPES_H */

@@ -1,0 +1,150 @@
+"""What all that is printed of one net has in common: names, types, how places are kept, printers of functions."""
+
+from __future__ import annotations
+
+from pn2code.diagnostics import Origin
+from pn2code.emission import c_packed, c_places, c_tables
+from pn2code.emission.c_effects import Effects
+from pn2code.emission.c_expressions import Expressions, Types
+from pn2code.emission.c_needs import used_locals, uses_context
+from pn2code.emission.c_own import OwnPlaces
+from pn2code.emission.c_shared import share, tables
+from pn2code.emission.c_slots import slots
+from pn2code.emission.c_statements import Statements
+from pn2code.emission.c_sums import Sum
+from pn2code.emission.names import Names, Scope
+from pn2code.lowering import ir
+from pn2code.lowering.ir import NetIR, Rep
+from pn2code.lowering.packing import KEY_BITS, key_bits
+
+_MOST_INLINED = 150
+"""Transitions of a net for which the compiler is told to put searches where they are called."""
+
+
+class Frame:
+    """Of one net; see `c.py`."""
+
+    def __init__(self, net: NetIR, version: str) -> None:
+        self._net = net
+        self._version = version
+        self._names = Names()
+        self._definitions = {d.name: d for d in net.definitions}
+        self._types = Types(self._names, self._definitions)
+        self._descriptors = {d.name: d for d in net.descriptors}
+        self._functions = {f.key: f for f in net.functions}
+        self._blocks: dict[str, tuple[str, str, Origin]] = {}
+        self._place_names = tuple(self._names.place(p.index, p.name) for p in net.places)
+        for t in net.transitions:
+            self._names.transition(t.index, t.name)
+        for definition in net.definitions:
+            self._names.type(definition.name)
+        self._bags = tuple(f"&{self._names.bag(p.index, p.name)}" for p in net.places)
+        self._tokens = tuple(f"m->{name}." for name in self._place_names)
+        self._holders = tuple(f"&m->{name}" for name in self._place_names)
+        self._tables = tuple(self._names.table(p.table) for p in net.places)
+        self._timed = tuple(p.timed for p in net.places)
+        self._slots = slots(net)
+        self._needs_context = self._context_users()
+        self._effects = Effects(net, self._types.holds_reference)
+        self._orders = c_places.Orders(self._types, self._names, self._descriptors)
+        self._numbers = c_packed.Numbers(self._types, self._names, self._descriptors)
+        self._packed = self._numbers.of_places(
+            net.places, lambda key: self._effects.is_pure(self._functions[key].body)
+        )
+        self._has_inlined = net.has_successors and len(net.transitions) <= _MOST_INLINED
+        self._has_words = (
+            self._has_inlined
+            and not net.timed
+            and all(p.packed for p in net.places)
+            and 0 < key_bits(net.places) <= KEY_BITS
+        )
+        self._sums_found: dict[int, dict[tuple[int, ir.Ir], Sum]] = {}
+        self._referring = tuple(p.index for p in net.places if self._refers(p.table))
+        self._kept = tuple(map(self._kept_in, net.places))
+        self._room = self._rooms_of_arrays()
+        # Explorers have a function for each instance, so that the compiler can put it where it is called.
+        self._shared = share(
+            net.transitions, lambda a, b: not net.has_successors and self._agree(a, b)
+        )
+        self._place_tables = tables(self._shared)
+
+    def _agree(self, a: int, b: int) -> bool:
+        """Whether two places are kept in the same way, and hold the same colours."""
+        return a == b or (self._kept[a] != "" and self._kept[a] == self._kept[b])
+
+    def _kept_in(self, p: ir.Place) -> str:
+        """The stem of the C type that holds the tokens of a place, and of its functions; "": it is packed."""
+        if p.packed:
+            return ""
+        if p.index in self._slots:
+            return self._names.kept(p.table, "slot")
+        kind = "timed_array" if p.timed else "array"
+        return self._names.kept(p.table, f"{kind}_{p.capacity}")
+
+    def _rooms_of_arrays(self) -> dict[str, int]:
+        """By what holds the tokens: entries of untimed arrays behind their capacity, for what an occurrence adds."""
+        found: dict[str, int] = {}
+        for p, most in zip(self._net.places, c_places.rooms(self._net), strict=True):
+            if not p.timed:
+                # gcc warns of loops that would go through an array of one, though they never do.
+                kept = self._kept[p.index]
+                found[kept] = max(found.get(kept, 0), most, 2 - p.capacity)
+        return found
+
+    def _context_users(self) -> frozenset[str]:
+        """The functions that take the context: those that may raise, directly or through what they call."""
+        users = {f.key for f in self._net.functions if f.loops or f.recursive}
+        while True:
+            more = {
+                f.key
+                for f in self._net.functions
+                if f.key not in users and uses_context(f.body, frozenset(users), self._definitions)
+            }
+            if not more:
+                return frozenset(users)
+            users |= more
+
+    # --- pieces --------------------------------------------------------------------------------
+
+    def _printer(
+        self, statements: tuple[ir.Stmt, ...], binding: str = "", own: OwnPlaces | None = None
+    ) -> tuple[Statements, Expressions, Scope]:
+        scope = Scope()
+        x = Expressions(self._types, self._net.real_time, scope, binding)
+        x.functions = self._functions
+        x.int_bits = self._net.int_bits
+        x.needs_context = self._needs_context
+        x.place_names = self._place_names
+        x.tokens, x.holders, x.kept = self._tokens, self._holders, self._kept
+        x.bags = self._bags
+        x.packed = self._packed
+        x.slots = self._slots
+        x.global_hints = {g.name: g.hint for g in self._net.globals}
+        s = Statements(self._types, x, scope, self._net.real_time)
+        s.used = used_locals(statements)
+        s.bags = self._bags
+        s.timed = self._timed
+        s.slots = self._slots
+        if any(self._packed):
+            s.number_of = self._numbers.if_whole
+        s.token_types = tuple(p.type for p in self._net.places)
+        s.tables_of_places = self._tables
+        if own:
+            own.reserve(scope)
+            x.place_names = own.names(x.place_names)
+            x.tokens, x.holders = own.tokens(x.tokens), own.holders(x.holders)
+            s.bags = x.bags = own.bags(x.bags)
+        return s, x, scope
+
+    def _block(self, element: str, kind: str, origin: Origin) -> str:
+        number = str(len(self._blocks))
+        self._blocks[number] = (element, kind, origin)
+        return number
+
+    def _refers(self, table: str) -> bool:
+        """Whether values of a type refer into the arena."""
+        found = (self._descriptors[key].type.rep for key in self._closure({table}))
+        return any(rep in (Rep.STRING, Rep.LIST, Rep.UNION, Rep.BIG) for rep in found)
+
+    def _closure(self, roots: set[str]) -> set[str]:
+        return c_tables.Tables(self._types, self._descriptors, {}).needed(roots)

@@ -1,0 +1,69 @@
+"""How code that several instances of a page share reaches the places that each instance has for its own.
+
+const MoveBoth_places_t *const own = pn_net.transition[self].places;
+const ORDER_slot_t *const at_order = pn_bag_look(own->order, m);
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+from pn2code.emission.c_lines import mentions
+from pn2code.emission.names import Scope
+
+
+@dataclass(frozen=True, slots=True)
+class OwnPlaces:
+    """Of one transition.
+
+    Args:
+        struct: stem of the C type of the table of places.
+        members: by place its member in that struct.
+        kept: by place the stem of the C type of what holds its tokens.
+    """
+
+    struct: str
+    members: Mapping[int, str]
+    kept: Mapping[int, str]
+
+    def reserve(self, scope: Scope) -> None:
+        """The variables that `reach` declares."""
+        scope.reserve("own", *(f"at_{member}" for member in self.members.values()))
+
+    def names(self, others: Sequence[str]) -> tuple[str, ...]:
+        """What local variables are named after, for all places of the net."""
+        return self._with(others, "{}")
+
+    def tokens(self, others: Sequence[str]) -> tuple[str, ...]:
+        """What leads to the members of what holds the tokens."""
+        return self._with(others, "at_{}->")
+
+    def holders(self, others: Sequence[str]) -> tuple[str, ...]:
+        """Pointers to what holds the tokens."""
+        return self._with(others, "at_{}")
+
+    def bags(self, others: Sequence[str]) -> tuple[str, ...]:
+        """Pointers to the tables of places."""
+        return self._with(others, "own->{}")
+
+    def _with(self, others: Sequence[str], pattern: str) -> tuple[str, ...]:
+        texts = list(others)
+        for place, member in self.members.items():
+            texts[place] = pattern.format(member)
+        return tuple(texts)
+
+    def reach(self, lines: Sequence[str], is_const: bool) -> list[str]:
+        """What has to stand before these lines."""
+        text = "\n".join(lines)
+        reached = [p for p, member in self.members.items() if mentions(f"at_{member}", text)]
+        if not reached and not mentions("own", text):
+            return []
+        constant, call = ("const ", "pn_bag_look") if is_const else ("", "pn_bag_reach")
+        return [
+            f"    const {self.struct}_t *const own = pn_net.transition[self].places;",
+            *(
+                f"    {constant}{self.kept[p]}_t *const at_{self.members[p]} = {call}(own->{self.members[p]}, m);"
+                for p in reached
+            ),
+        ]

@@ -1,0 +1,276 @@
+"""Transitions in C: one block of code for all instances that share it, and for each instance a row of the table."""
+
+from __future__ import annotations
+
+from pn2code.emission import c_places, c_rows, c_sums
+from pn2code.emission.c_effects import is_assignment, is_draw
+from pn2code.emission.c_firing import DirectFiring
+from pn2code.emission.c_frame import Frame
+from pn2code.emission.c_lines import mentions
+from pn2code.emission.c_needs import uses_context
+from pn2code.emission.c_own import OwnPlaces
+from pn2code.emission.c_shared import PlaceTable, Shared, path_of
+from pn2code.emission.c_statements import Statements
+from pn2code.emission.c_sums import Sum
+from pn2code.emission.c_texts import where
+from pn2code.emission.environment import c_comment
+from pn2code.emission.names import Members
+from pn2code.lowering import ir
+from pn2code.lowering.calls import ir_nodes
+
+
+class Transitions(Frame):
+    """Those of one net."""
+
+    def _own_places(self, shared: Shared) -> OwnPlaces | None:
+        """How the code of a transition of several instances reaches the places that each has for its own."""
+        for table in self._place_tables:
+            if shared.varying and (table.page, table.paths) == (shared.page, shared.paths):
+                kept = {p: self._kept[p] for p in shared.varying}
+                return OwnPlaces(
+                    self._names.page_places(table.page, table.paths),
+                    {p: self._member_of(table, shared, p) for p in shared.varying},
+                    kept,
+                )
+        return None
+
+    def _member_of(self, table: PlaceTable, shared: Shared, place: int) -> str:
+        own = tuple(row[shared.varying.index(place)] for row in shared.at)
+        return self._member_names(table)[list(zip(*table.rows, strict=True)).index(own)]
+
+    def _member_names(self, table: PlaceTable) -> tuple[str, ...]:
+        members = Members()
+        return tuple(members.name(i, name) for i, name in enumerate(table.names))
+
+    def _place_table(self, table: PlaceTable) -> dict[str, object]:
+        """The struct of a page, and what it is for each of its instances."""
+        members = self._member_names(table)
+        struct = self._names.page_places(table.page, table.paths)
+        return {
+            "page": table.page,
+            "struct": struct,
+            "members": members,
+            "instances": [
+                {
+                    "path": path,
+                    "name": self._names.instance(path, struct),
+                    "fields": [(m, self._bags[p]) for m, p in zip(members, row, strict=True)],
+                }
+                for path, row in zip(table.paths, table.rows, strict=True)
+            ],
+        }
+
+    def _stem(self, shared: Shared) -> str:
+        """The stem of the names of what is printed for a transition."""
+        t = shared.model
+        if len(shared.instances) == 1:
+            return self._names.transition(t.index, t.name)
+        return self._names.page_transition(t.index, shared.page, t.name.rsplit(".", 1)[-1])
+
+    def _row(self, t: ir.Transition, shared: Shared, code: dict[str, object]) -> dict[str, object]:
+        """What the tables of hosts say of one instance."""
+        own = self._own_places(shared)
+        stem, flags = self._stem(shared), ("looks", "looks_outside", "assigns", "search_assigns")
+        affected = self._effects.affected(t.index)
+        further = [f".places = &{self._names.instance(path_of(t), own.struct)}"] if own else []
+        further += [f".successors = {stem}_successors"] if self._net.has_successors else []
+        further += [f".words = {stem}_words"] if self._has_words else []
+        if len(affected) < len(self._net.transitions):
+            further += c_rows.indices("affected", affected)
+        further += c_rows.indices("touched", self._effects.touched(t.index))
+        further += c_rows.indices("read", self._effects.read(t.index))
+        further += [f".{flag} = true" for flag in flags if code[flag]]
+        return {
+            "index": t.index,
+            "code": code,
+            "lines": c_rows.transition(t, stem, further),
+        }
+
+    def _binding_name(self, shared: Shared) -> str:
+        """The name of the instance, or of the page's transition where there are several."""
+        t = shared.model
+        is_one = len(shared.instances) == 1
+        return t.name if is_one else f"{shared.page}.{t.name.rsplit('.', 1)[-1]}"
+
+    def _title(self, shared: Shared) -> list[str]:
+        """The element of the net, and all of its instances that the code is of."""
+        t = shared.model
+        element = f"{t.origin.describe()}, {where(t.origin)}"
+        if len(shared.instances) == 1:
+            return [c_comment(f"transition {t.name}: {element}")]
+        instances = [f"    {c_comment(x.name)}" for x in shared.instances]
+        return [c_comment(f"transition: {element}, at all of these:"), *instances]
+
+    def _transition(self, shared: Shared) -> dict[str, object]:
+        t = shared.model
+        name, own = self._stem(shared), self._own_places(shared)
+        members = Members()
+        variables = tuple(members.name(i, v.name) for i, v in enumerate(t.variables))
+        search, x, _ = self._printer(t.enumerate, "b.", own)
+        x.variables = variables
+        search.variable_types = tuple(v.type for v in t.variables)
+        search.keeps = uses_context(
+            _without_wanted(t.enumerate), self._needs_context, self._definitions
+        )
+        search.is_flat = c_places.is_flat(t.enumerate, self._slots)
+        search.releases = not self._effects.reaches(t.enumerate, is_assignment)
+        search.may_fail = search.keeps or any(
+            isinstance(n, ir.Wanted | ir.UnlessLegal) for n in ir_nodes(t.enumerate)
+        )
+        search.sums = self._sums(t)
+        search.body(t.enumerate)
+        search.end_search()
+        is_direct = self._is_direct(t)
+        fire = self._firing(t, is_direct, variables, own, name)
+        sums = self._sums(t)
+        has_lists = is_direct and any(isinstance(s, ir.TakeAll | ir.PutAll) for s in t.fire)
+        lists = self._firing(t, False, variables, own, name) if has_lists else None
+        thresholds = self._thresholds(t, variables, own)
+        text = "\n".join(fire.lines)
+        roots = self._effects.roots()
+        search_draws = self._effects.reaches(t.enumerate, is_draw)
+        fire_draws = self._effects.reaches(t.fire, is_draw)
+        return {
+            "marks": [self._block(x.name, "transition", x.origin) for x in shared.instances],
+            "index": t.index,
+            "search_draws": search_draws,
+            "fire_draws": fire_draws,
+            "draws_between": search_draws and fire_draws,
+            "name": t.name,
+            "stem": name,
+            "title": self._title(shared),
+            "binding": c_rows.binding(
+                name,
+                self._binding_name(shared),
+                [
+                    (self._types.name(v.type), member, v, self._names.table(v.table))
+                    for v, member in zip(t.variables, variables, strict=True)
+                ],
+            ),
+            "guard": c_comment(f"guard [{t.guard_text}]") if t.guard_text else "",
+            "origin": t.origin.describe(),
+            "is_plain": c_places.is_plain(t.enumerate),
+            "keeps": search.keeps and search.releases,
+            "is_flat": search.is_flat,
+            "search": search.lines,
+            "search_reach": own.reach(search.lines, is_const=True) if own else [],
+            "thresholds": thresholds,
+            "thresholds_reach": own.reach(thresholds, is_const=True) if own else [],
+            "thresholds_draw": self._effects.reaches(t.thresholds, is_draw),
+            "searches_marking": mentions("m", "\n".join(search.lines)),
+            "fire": fire.lines,
+            "fire_reach": own.reach(fire.lines, is_const=False) if own else [],
+            "is_direct": is_direct,
+            "sums": [
+                self._sum_function(s, t, name, variables)
+                for s in sums.values()
+                if any(f"{s.name}(" in line for line in search.lines + fire.lines)
+            ],
+            "lists": lists.lines if lists else [],
+            "lists_reach": own.reach(lists.lines, is_const=False) if own and lists else [],
+            "lists_use_binding": lists is not None and mentions("b", "\n".join(lists.lines)),
+            "uses_binding": mentions("b", text),
+            "touched_bags": [
+                self._place_names[i]
+                for i in self._effects.touched(t.index)
+                if not self._net.places[i].packed
+            ],
+            "looks": self._effects.looks((t.enumerate, t.fire)),
+            "looks_outside": self._effects.looks_outside((t.enumerate, t.fire)),
+            "assigns": bool(roots) and self._effects.reaches(t.fire, is_assignment),
+            "search_assigns": bool(roots)
+            and self._effects.reaches((t.enumerate, t.thresholds), is_assignment),
+        }
+
+    def _thresholds(
+        self, t: ir.Transition, variables: tuple[str, ...], own: OwnPlaces | None
+    ) -> list[str]:
+        """The search for the times at which tokens become available, without its preamble."""
+        if not t.thresholds:
+            return []
+        search, x, _ = self._printer(t.thresholds, "b.", own)
+        x.variables = variables
+        search.variable_types = tuple(v.type for v in t.variables)
+        search.is_void = True
+        search.body(t.thresholds)
+        return search.lines
+
+    def _is_direct(self, t: ir.Transition) -> bool:
+        """Whether it can be printed with the functions of its places; what is taken must be what was found."""
+        takes = tuple(s.value for s in t.fire if isinstance(s, ir.Take))
+        return c_places.is_direct(self._net, t, self._sums(t)) and self._effects.is_pure(takes)
+
+    def _sums(self, t: ir.Transition) -> dict[tuple[int, ir.Ir], Sum]:
+        if t.index not in self._sums_found:
+            stem = self._names.transition(t.index, t.name)
+            self._sums_found[t.index] = c_sums.find(
+                self._net, t, stem, self._descriptors, self._effects
+            )
+        return self._sums_found[t.index]
+
+    def _sum_function(
+        self, s: Sum, t: ir.Transition, name: str, variables: tuple[str, ...]
+    ) -> list[str]:
+        _, x, _ = self._printer((), "b->")
+        x.variables = variables
+        return c_sums.function(
+            s,
+            f"{name}_binding_t",
+            self._bags[s.place],
+            self._names.table(s.table),
+            self._numbers,
+            x.text,
+            lambda i: x.address(ir.Bound(i, t.variables[i].type)),
+        )
+
+    def _firing(
+        self,
+        t: ir.Transition,
+        is_direct: bool,
+        variables: tuple[str, ...],
+        own: OwnPlaces | None,
+        name: str,
+    ) -> Statements:
+        printer, x, scope = self._printer(t.fire, "b->", own)
+        x.variables = variables
+        if is_direct:
+            scope.reserve("is_taken", "fits")
+            direct = DirectFiring(
+                self._types,
+                x,
+                scope,
+                self._net.real_time,
+                descriptors=self._descriptors,
+                tables=tuple("" if v.is_output else v.table for v in t.variables),
+                place_tables=tuple(p.table for p in self._net.places),
+            )
+            direct.used, direct.bags, direct.timed = printer.used, printer.bags, printer.timed
+            direct.tables_of_places = printer.tables_of_places
+            direct.token_types = printer.token_types
+            direct.slots = self._slots
+            direct.references = frozenset(g.name for g in self._net.globals if g.is_reference)
+            direct.sums = self._sums(t)
+            direct.otherwise = f"{name}_fire_lists(cx, m, self, b)"
+            direct.variable_types = tuple(v.type for v in t.variables)
+            direct.fire(t.fire, uses_context(t.fire, self._needs_context, self._definitions))
+            return direct
+        printer.variable_types = tuple(v.type for v in t.variables)
+        printer.body(t.fire)
+        return printer
+
+    # --- the whole -----------------------------------------------------------------------------
+
+
+def _without_wanted(statements: tuple[ir.Stmt, ...]) -> tuple[ir.Stmt, ...]:
+    """The statements that may leave something in the arena: the demands clean up after themselves."""
+    out: list[ir.Stmt] = []
+    for s in statements:
+        if isinstance(s, ir.Wanted):
+            out.extend(x for x in s.takes if not isinstance(x, (ir.Take, ir.TakeAll)))
+        elif isinstance(s, ir.ForTokens):
+            out.append(ir.ForTokens(s.place, s.index, _without_wanted(s.body), s.note))
+        elif isinstance(s, ir.ForValues):
+            out.append(ir.ForValues(s.variable, s.table, _without_wanted(s.body), s.note))
+        else:
+            out.append(s)
+    return tuple(out)
