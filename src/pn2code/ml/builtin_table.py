@@ -22,7 +22,7 @@ Int.>= : int * int -> bool ; greater or equal
 Int.min : int * int -> int ; the smaller
 Int.max : int * int -> int ; the larger
 Int.sign : int -> int ; ~1, 0 or 1
-Int.sameSign : int * int -> bool ; whether the signs are equal
+Int.sameSign : int * int -> bool ; whether both are below zero, or none is
 Int.compare : int * int -> order ; three-way comparison
 Int.toString : int -> string ; decimal, with ~ for minus
 Int.fromString : string -> int option ; after blanks, an optional sign and digits; the rest is ignored

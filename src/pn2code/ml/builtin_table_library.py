@@ -334,7 +334,7 @@ Word8Vector.fromList : Word8.word list -> Word8Vector.vector ; the bytes
 Word8Vector.concat : Word8Vector.vector list -> Word8Vector.vector ; joined
 ConnManagementLayer.stringEncode : string -> Word8Vector.vector ; the codes of the characters
 ConnManagementLayer.stringDecode : Word8Vector.vector -> string ; the characters
-ConnManagementLayer.integerEncode : int -> Word8Vector.vector ; four bytes, the highest first
+ConnManagementLayer.integerEncode : int -> Word8Vector.vector ; the characters of its text
 ConnManagementLayer.integerDecode : Word8Vector.vector -> int ; the reverse
 
 -- the SML/NJ library's generator; here all draw from the run's own stream

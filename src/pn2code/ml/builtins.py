@@ -550,6 +550,7 @@ _EXCEPTIONS: tuple[tuple[str, Type | None], ...] = (
     ("ClosedStream", None),
     ("IOError", STRING),
     ("InternalError", STRING),
+    ("InvalidDataExn", None),
 )  # fmt: skip
 
 EXCEPTIONS: dict[str, tuple[Constructor, Type | None]] = {
@@ -571,6 +572,7 @@ QUALIFIED_EXCEPTIONS: dict[str, str] = {
     "Date.Date": "Date",
     "IEEEReal.Unordered": "Unordered",
     "ListPair.UnequalLengths": "UnequalLengths",
+    "ConnManagementLayer.InvalidDataExn": "InvalidDataExn",
     "Option.Option": "Option",
     "List.Empty": "Empty",
     **{

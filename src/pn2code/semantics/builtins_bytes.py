@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from pn2code.semantics.builtins_numbers import checked, fail
-from pn2code.semantics.values import Value
+from pn2code.semantics.builtins_numbers import checked, fail, read_integer
+from pn2code.semantics.values import Value, int_text
 
 if TYPE_CHECKING:
     from pn2code.semantics.evaluate import Evaluator
@@ -29,15 +29,11 @@ def _sub(p: tuple[Bytes, int]) -> int:
     return p[0][p[1]]
 
 
-def _integer_bytes(number: int) -> Bytes:
-    return tuple((number >> shift) & 255 for shift in (24, 16, 8, 0))
-
-
 def _integer(e: Evaluator, data: Bytes) -> Value:
-    if len(data) < 4:
-        raise fail("Subscript")
-    number = int.from_bytes(bytes(data[:4]), "big", signed=True)
-    return checked(e, number)
+    found = read_integer(_text(data), 10)
+    if found is None:
+        raise fail("InvalidDataExn")
+    return checked(e, found[0])
 
 
 FUNCTIONS: dict[str, tuple[int, Function]] = {
@@ -54,7 +50,7 @@ FUNCTIONS: dict[str, tuple[int, Function]] = {
     "Word8Vector.concat": (1, lambda e, parts: tuple(byte for part in parts for byte in part)),
     "ConnManagementLayer.stringEncode": (1, lambda e, text: _bytes(text)),
     "ConnManagementLayer.stringDecode": (1, lambda e, data: _text(data)),
-    "ConnManagementLayer.integerEncode": (1, lambda e, number: _integer_bytes(number)),
+    "ConnManagementLayer.integerEncode": (1, lambda e, number: _bytes(int_text(number))),
     "ConnManagementLayer.integerDecode": (1, _integer),
 }
 """Full name -> number of curried arguments, function."""

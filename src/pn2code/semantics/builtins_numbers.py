@@ -140,7 +140,10 @@ def _integers(
         "min": lambda e, p: min(p[0], p[1]),
         "max": lambda e, p: max(p[0], p[1]),
         "sign": lambda e, a: _sign(a),
-        "sameSign": lambda e, p: _sign(p[0]) == _sign(p[1]),
+        # SML/NJ takes 0 for positive here, but not among unlimited integers
+        "sameSign": lambda e, p: (
+            (p[0] < 0) == (p[1] < 0) if structure == "Int" else _sign(p[0]) == _sign(p[1])
+        ),
         "toString": lambda e, a: int_text(a),
         "fromString": from_string(read),
         "toLarge": lambda e, a: a,

@@ -1,4 +1,4 @@
-fun Int_sameSign (a, b) = Int.sign a = Int.sign b
+fun Int_sameSign (a, b) = (a < 0) = (b < 0)
 
 (* Of an `int` the digits are capital letters. *)
 fun Int_fmt radix n = String.map Char.toUpper (IntInf.fmt radix (Int.toLarge n))
