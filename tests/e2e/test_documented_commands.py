@@ -194,7 +194,14 @@ def test_what_is_mentioned_exists(path: Path) -> None:
         if words[0] == "./dev":
             assert re.search(rf"^    [\w |-]*\b{words[1]}\b[\w |-]*\)", verbs, re.MULTILINE), text
             words = words[1:]
-        if words[0] != "pn2code" or words[1:2] in ([], ["VERB"], ["..."], ["--version"]):
+        if words[0] != "pn2code" or words[1:2] in (
+            [],
+            ["VERB"],
+            ["..."],
+            ["--version"],
+            ["--install-completion"],
+            ["--show-completion"],
+        ):
             continue
         assert words[1] in VERBS, text
         unknown = {w for w in words[2:] if w.startswith("-")} - options_of(words[1])

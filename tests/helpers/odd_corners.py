@@ -1184,7 +1184,7 @@ place A : INT = 1`1 ++ 1`3
 place B : INT
 trans T
   in A : n
-  out B : ownf n handle Own m => m * 100
+  out B : ownf n handle Own own => own * 100
 """,
         2,
         {'B': '1`1++ 1`300'},
@@ -1567,7 +1567,7 @@ place A : MSG = 1`Num 3 ++ 1`Quit ++ 1`Data (1,2)
 place B : INT
 trans T
   in A : g
-  out B : case g of Num n => 1`n | Data (n, m) => 1`n ++ 1`m | Quit => empty
+  out B : case g of Num one => 1`one | Data (one, two) => 1`one ++ 1`two | Quit => empty
 """,
         3,
         {'B': '1`1++ 1`2++ 1`3'},
@@ -1615,7 +1615,7 @@ place A : INT = 1`4
 place B : INT
 trans T
   in A : n
-  out B : let fun f 0 = 0 | f k = k + f (k - 1) in f n end
+  out B : let fun f 0 = 0 | f i = i + f (i - 1) in f n end
 """,
         1,
         {'B': '1`10'},

@@ -314,7 +314,9 @@ class _Emitter(Transitions):
             else [],
             "order": c_rows.braces(
                 "static const uint32_t s_order[] = ", [f"{i}U" for i in net.order]
-            ),
+            )
+            if net.order
+            else [],
             "roots": [
                 (self._names.table(g.table), self._names.value(g.name, g.hint))
                 for g in self._effects.roots()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Container, Iterable, Mapping, Sequence
 
 from pn2code.emission.c_expressions import Types
 from pn2code.emission.names import Names, label
@@ -138,14 +138,14 @@ def is_plain(statements: Iterable[ir.Stmt]) -> bool:
     )
 
 
-def is_flat(statements: Iterable[ir.Stmt], slots: Container[int]) -> bool:
-    """Whether a search has no loops: of slots there is one token to look at."""
-    return all(
-        s.place in slots and is_flat(s.body, slots)
-        if isinstance(s, ir.ForTokens)
-        else not isinstance(s, ir.ForValues)
-        for s in statements
-    )
+def is_flat(statements: Sequence[ir.Stmt], slots: Container[int]) -> bool:
+    """Whether a search gives one binding at most, and does so last: of a slot there is one token to look at."""
+    if not statements or any(isinstance(n, ir.Yield) for n in ir_nodes(tuple(statements[:-1]))):
+        return False
+    last = statements[-1]
+    if isinstance(last, ir.ForTokens):
+        return last.place in slots and is_flat(last.body, slots)
+    return isinstance(last, ir.Yield)
 
 
 def is_count(e: ir.Ir) -> bool:

@@ -111,7 +111,7 @@ class NetVariables:
 
     def seen(self, *expressions: Exp | None) -> Uses:
         """Net variables that CPN Tools sees in the expressions of an arc or a guard (None is skipped)."""
-        found: Uses = {}
+        found = self.of(*expressions)
         stack = [(e, _NOTHING) for e in reversed(expressions) if e is not None]
         while stack:
             e, hidden = stack.pop()
