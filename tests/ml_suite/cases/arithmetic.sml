@@ -35,7 +35,7 @@ Int.max (3, ~4)
 Int.sign ~9
 Int.sign 0
 Int.sameSign (3, ~3)
-Int.sameSign (0, 3)
+Int.sameSign (2, 3)
 Int.compare (1, 2)
 Int.compare (2, 2)
 Int.compare (3, 2)
