@@ -760,8 +760,9 @@ def said_of(folder: Path) -> dict[str, Any]:
     return json.loads(done.stdout)  # type: ignore[no-any-return]
 
 
-def test_a_tool_that_takes_longer_than_an_answer_may(tmp_path: Path) -> None:
-    cell = toml(["A", "B"], TOOL).replace("final =", "reply_timeout_s = 1\nfinal =")
+@pytest.mark.parametrize("limit", [1, 2])
+def test_a_tool_that_takes_as_long_as_an_answer_may(limit: int, tmp_path: Path) -> None:
+    cell = toml(["A", "B"], TOOL).replace("final =", f"reply_timeout_s = {limit}\nfinal =")
     said = said_of(write(tmp_path, RACE, cell))
     ends = next(c for c in said["controller"] if c["check"] == "non-blocking")
     assert (ends["answer"], ends["why"]) == ("unknown", "late")

@@ -73,11 +73,12 @@ class Replies:
                 return Replies()
             time = _Silence(program, config).longest()
             who = partition.owners[owner].phrase
-            if time.seconds > limit:
+            # An answer takes a little longer than its commands: with as much time as there is, it is late.
+            if time.seconds >= limit:
                 needs = "any time" if time.seconds == _ENDLESS else f"{time.seconds:g} s"
                 return Replies(
                     f"{who} may need {needs} for an answer, by its tools, waits and delays alone, and "
-                    f"`reply_timeout_s` is {limit:g}: whoever owes an answer for longer stops the cell"
+                    f"`reply_timeout_s` is {limit:g}: whoever owes an answer for that long stops the cell"
                 )
             most = Time.longest((most, time))
         if not asked:
