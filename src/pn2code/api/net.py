@@ -15,6 +15,8 @@ from pn2code.api.verification import Verification, verify
 from pn2code.diagnostics import Diagnostic, Diagnostics
 from pn2code.diagnostics.near import nearest
 from pn2code.drawing.picture import picture
+from pn2code.drawing.state import State, enabled_in
+from pn2code.drawing.svg import Overlay
 from pn2code.net.finding import Finder
 from pn2code.net.flat import FlatNet
 from pn2code.reading.document import RawPage
@@ -208,10 +210,12 @@ class Net:
         document = self._opened.examined.document
         assert document is not None
         shown = [p for p in self._pages if page in (None, p.name)]
-        if marking is None:
-            return Drawing(picture(document, shown))
-        with playing():
-            return Drawing(picture(document, shown, self.game, marking._state))
+        overlays = [Overlay()] * len(shown)
+        if marking is not None:
+            with playing():
+                state = State(self.flat, marking._state, enabled_in(self.game, marking._state))
+            overlays = [state.overlay(p, state.shown_first(p), Overlay()) for p in shown]
+        return Drawing(picture(document, list(zip(shown, overlays, strict=True))))
 
     def _repr_svg_(self) -> str:
         return self.draw().svg

@@ -279,11 +279,9 @@ class _Drawing:
 
     def svg(self) -> str:
         """One SVG with everything."""
-        from pn2code.drawing.svg import draw_pages, page_svg
+        from pn2code.drawing.picture import picture
 
-        if len(self.pages) == 1:
-            return page_svg(self.document, self.pages[0], self.overlay(self.pages[0]))
-        return draw_pages(self.document, [(p, self.overlay(p)) for p in self.pages])
+        return picture(self.document, [(p, self.overlay(p)) for p in self.pages])
 
     def files(self) -> dict[str, str]:
         """One SVG a page, by file name; they link to each other."""
