@@ -9,9 +9,9 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from helpers.small_cell import NET, TOML, write
-from pn2code.cli import ahead
 from pn2code.cli.main import app
 from pn2code.robot.backend import BackendUnavailableError
+from pn2code.verdict import ahead
 
 ROBOT = """model = "kr120_r2500"
 tool = "counterpoint"

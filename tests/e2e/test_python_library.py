@@ -13,6 +13,7 @@ import pytest
 import pn2code
 from helpers.netbuilder import write
 from helpers.processes import pn2code as command
+from helpers.small_cell import TOML
 from helpers.small_cell import write as write_cell
 
 pytestmark = pytest.mark.cc
@@ -114,6 +115,13 @@ def test_what_is_wrong_is_raised(tmp_path: Path) -> None:
     with pytest.raises(pn2code.NetError) as raised:
         pn2code.load(broken)
     assert raised.value.diagnostics == pn2code.check(broken)
+
+
+def test_check_says_what_the_command_says_of_a_cell(tmp_path: Path) -> None:
+    folder = write_cell(tmp_path, toml=TOML.replace("moveHome =", "moveHom ="))
+    said = json.loads(command("check", str(folder), "--json").stdout)["diagnostics"]
+    assert [item.code for item in pn2code.check(folder)] == [item["code"] for item in said]
+    assert said
 
 
 def test_pictures_show_the_tokens(tmp_path: Path) -> None:

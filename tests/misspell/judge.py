@@ -17,10 +17,10 @@ from tests.misspell.mutants import ADDED, Mistake, as_it_is
 
 from pn2code.cell.config import CellConfig
 from pn2code.cell.load import load
-from pn2code.cli import check
 from pn2code.diagnostics import Diagnostics
 from pn2code.net import front
 from pn2code.pipeline import generate
+from pn2code.verdict import checking
 
 OPTIONS: dict[tuple[str, ...], str] = {
     ("storage",): "reals are stored as they are computed",
@@ -130,7 +130,7 @@ class Judge:
             return
         if key not in self._nets:
             self._nets[key] = front.examine(config.net_path, d, config.values)
-        check.examine_cell(config.net_path, config, self._nets[key], d, ahead=whole)
+        checking.examine_cell(config.net_path, config, self._nets[key], d, ahead=whole)
 
     def _generated(self, config: CellConfig) -> Mapping[str, str] | str:
         """The files; the first code if the cell is refused. They follow from the logic of the cell alone."""

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal
 
 from pn2code.api.drawing import Drawing
-from pn2code.api.errors import NetError, playing, refuse
+from pn2code.api.errors import playing, refuse
 from pn2code.api.marking import Marking
 from pn2code.api.simulation import Simulation, simulate
 from pn2code.api.verification import Verification, verify
@@ -21,6 +21,7 @@ from pn2code.net.finding import Finder
 from pn2code.net.flat import FlatNet
 from pn2code.reading.document import RawPage
 from pn2code.semantics.game import Game
+from pn2code.verdict import checking
 from pn2code.verdict.opened import OpenNet, read
 
 
@@ -224,7 +225,7 @@ class Net:
 def load(
     path: str | Path, *, values: Mapping[str, object] | None = None, int_bits: int = 31
 ) -> Net:
-    """A net that is free of errors.
+    """A net that is free of errors. What the cell beside it says of the net is looked at by `check` and `Net.verify`.
 
     Args:
         path: a .cpn or .pnml file, a cell.toml, or a folder with a cell.toml.
@@ -236,7 +237,7 @@ def load(
         NetError: the file is missing or malformed, or the net or the cell has errors.
     """
     d = Diagnostics()
-    texts = {name: _written(value) for name, value in (values or {}).items()}
+    texts = _texts(values)
     opened = read(Path(path), texts, d, int_bits=int_bits)
     if opened is None:
         raise refuse(d)
@@ -246,11 +247,14 @@ def load(
 def check(
     path: str | Path, *, values: Mapping[str, object] | None = None
 ) -> tuple[Diagnostic, ...]:
-    """Everything that is wrong with a net, errors and warnings; nothing is raised for it."""
-    try:
-        return load(path, values=values).warnings
-    except NetError as error:
-        return error.diagnostics
+    """Everything that `pn2code check` says of a net, and of the cell beside it; nothing is raised for it."""
+    d = Diagnostics()
+    checking.check(Path(path), _texts(values), d)
+    return tuple(d.sorted())
+
+
+def _texts(values: Mapping[str, object] | None) -> dict[str, str]:
+    return {name: _written(value) for name, value in (values or {}).items()}
 
 
 def _written(value: object) -> str:

@@ -1,0 +1,96 @@
+"""Whether a net, and the cell beside it, are well-formed: everything that `pn2code check` says.
+
+checked = check(Path("examples/riveting"), {}, d)
+checked.is_fine, checked.file                     # True, examples/riveting/cell.cpn
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pn2code.cell.locate import locate
+from pn2code.diagnostics import Diagnostics
+from pn2code.net import front
+from pn2code.net.front import Examined
+
+if TYPE_CHECKING:
+    from pn2code.cell.config import CellConfig
+
+
+@dataclass(frozen=True, slots=True)
+class Checked:
+    """What was looked at.
+
+    Args:
+        file: the file of the net; what was given where that means none.
+        examined: what the front end made of it.
+        is_fine: whether there are no errors.
+    """
+
+    file: Path
+    examined: Examined
+    is_fine: bool
+
+
+def check(path: Path, values: Mapping[str, str], d: Diagnostics, *, int_bits: int = 31) -> Checked:
+    """Looks at a net or cell without running it.
+
+    Args:
+        path: a .cpn or .pnml file, a cell.toml, or a folder with a cell.toml.
+        values: replace `val`s of the net, over those of cell.toml.
+        d: gets the errors and warnings.
+        int_bits: width of `int`.
+    """
+    found = locate(path, d)
+    if found is None:
+        return Checked(path, Examined(None, None), is_fine=False)
+    file, config = found
+    replaced = {**(config.values if config else {}), **values}
+    result = front.examine(file, d, replaced, int_bits=int_bits)
+    if config is not None:
+        examine_cell(file, config, result, d)
+    else:
+        _properties(file, None, result, d)
+    return Checked(file, result, is_fine=result.flat is not None and not d.has_errors)
+
+
+def examine_cell(
+    net: Path, config: CellConfig, result: Examined, d: Diagnostics, *, ahead: bool = True
+) -> None:
+    """What cell.toml says of the net; the robots' programs; the robots and the scene, in all layouts; properties.
+
+    Args:
+        net: the file of the net.
+        config: the cell.
+        result: what the front end made of the net.
+        d: gets the errors.
+        ahead: whether files beside the cell and the robots' places are looked at, which takes longer.
+    """
+    # Most nets have no cell, and these load NumPy and the like.
+    from pn2code.lowering.robot import lower_robots
+    from pn2code.pipeline import check_geometry, divided
+
+    if result.flat is None or d.has_errors:
+        check_geometry(config, d, to_run=True)
+        return
+    partition = divided(result.flat, config, d, to_run=True)
+    programs = lower_robots(partition, config, d) if partition is not None else None
+    _properties(net, config, result, d)
+    if ahead and partition is not None and programs is not None and not d.has_errors:
+        from pn2code.verdict.ahead import look_ahead
+
+        look_ahead(partition, config, programs, d)
+
+
+def _properties(net: Path, config: CellConfig | None, result: Examined, d: Diagnostics) -> None:
+    """Whether what is asked about the net can be understood; it is not answered."""
+    beside = net.with_suffix(".properties.toml").is_file()
+    if result.flat is None or not (beside or (config is not None and "property" in config.raw)):
+        return
+    from pn2code.verdict import properties  # loads what verifies nets
+    from pn2code.verdict.opened import OpenNet
+
+    properties.asked(OpenNet(result.flat, config, result), (), None, d, found=True)
