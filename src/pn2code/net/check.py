@@ -13,6 +13,7 @@ from pathlib import Path
 from pn2code.diagnostics import Diagnostics, Note, Origin, SourceText
 from pn2code.diagnostics.near import did_you_mean
 from pn2code.ml.colsets import Colset, Kind
+from pn2code.ml.computing import Compute
 from pn2code.ml.core import Exp, Lit
 from pn2code.ml.elaborate import ColsetSpec, Elaborator, is_layered
 from pn2code.ml.parser import declared_names, odd_declaration
@@ -63,6 +64,7 @@ def check(
     *,
     partial: bool = False,
     int_bits: int = 31,
+    compute: Compute | None = None,
 ) -> TypedNet | None:
     """Type a net.
 
@@ -72,18 +74,24 @@ def check(
         values: replacements for `val` declarations: name -> CPN ML text.
         partial: give the typed net even after errors, without the elements that are wrong.
         int_bits: width of `int`, 31 or 64.
+        compute: evaluates bounds and priorities that cannot be folded.
 
     Returns:
         The typed net, or None if there were errors.
     """
     before = len(d.errors)
-    typed = _Checker(net, d, values or {}, int_bits).typed()
+    typed = _Checker(net, d, values or {}, int_bits, compute).typed()
     return None if len(d.errors) > before and not partial else typed
 
 
 class _Checker:
     def __init__(
-        self, net: Net, d: Diagnostics, values: Mapping[str, str], int_bits: int = 31
+        self,
+        net: Net,
+        d: Diagnostics,
+        values: Mapping[str, str],
+        int_bits: int,
+        compute: Compute | None,
     ) -> None:
         self.net = net
         self.d = d
@@ -93,6 +101,7 @@ class _Checker:
             real_time=net.real_time,
             int_bits=int_bits,
             folder=Path(net.document.file).parent,
+            compute=compute,
         )
         self.is_pnml = net.document.tool == "PNML"
         self.broken: set[str] = set()
