@@ -18,7 +18,7 @@ from pn2code.ml.core import Exp, Lit
 from pn2code.ml.elaborate import ColsetSpec, Elaborator, is_layered
 from pn2code.ml.parser import declared_names, odd_declaration
 from pn2code.ml.types import INT, Type, list_of, timed_of
-from pn2code.net import reserved_words, space_names
+from pn2code.net import initial_effects, reserved_words, space_names
 from pn2code.net.binding import Parts, Planner
 from pn2code.net.codes import (
     ARC_AS,
@@ -201,6 +201,7 @@ class _Checker:
         if not self.is_pnml:
             colsets = {c.name: c.origin for c in self.net.declarations if isinstance(c, RawColset)}
             space_names.warn(self.program, colsets, self.d)
+            initial_effects.warn(self.program, pages, self.d)
         return TypedNet(
             net=self.net,
             program=replace(self.program, datatypes=self.elaborator.datatypes()),
