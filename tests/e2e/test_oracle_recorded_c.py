@@ -1,4 +1,4 @@
-"""What the engine of CPN Tools said of the functions of colour sets: compiled nets say the same, too."""
+"""What the engine of CPN Tools said of texts of reals and of functions of colour sets: compiled nets say the same."""
 
 from __future__ import annotations
 
@@ -29,7 +29,8 @@ IN_A_PLACE = 40
 def cases() -> list[tuple[str, str]]:
     """An expression of type string, and its value; a text for an exception. One in four, without `make thorough`."""
     found = []
-    for expression, answer in rows("colsets")[:: 1 if THOROUGH else 4]:
+    reals = [row for row in rows("numbers") if row[0].startswith(("Real.fmt", "Real.toString"))]
+    for expression, answer in reals + rows("colsets")[:: 1 if THOROUGH else 4]:
         value = re.fullmatch(r"value: (.*) : (\w+)", answer)
         if value:
             text = value[1]
