@@ -38,6 +38,8 @@ def test_a_name_that_the_tool_uses(declarations: str, what: str) -> None:
         "var left: INT;",
         "val left = 7",
         "fun left (x : int) = let val length = x in length end",
+        "structure S = struct fun map x = x + 1 val length = 7 end;",
+        "fun f t = HashTable.map (fn x => x + 1) t",
         "colset R = record left: INT * item: INT;",
     ],
 )

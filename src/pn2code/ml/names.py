@@ -131,7 +131,10 @@ class Names:
                 return BROKEN
             case UnsupportedEntry():
                 self._ctx.error(
-                    codes.UNSUPPORTED_BUILTIN, f"function `{name}` is not supported", span
+                    codes.UNSUPPORTED_BUILTIN,
+                    f"function `{name}` is not supported",
+                    span,
+                    hint="write a function of your own for it" if "." in name else "",
                 )
                 return BROKEN
 

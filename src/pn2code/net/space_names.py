@@ -119,9 +119,9 @@ def _declared(program: Program, origins: Mapping[str, Origin]) -> Iterator[tuple
                     yield "exception", constructor.name, dec.span.origin
             case ValBind(pattern):
                 for symbol in pattern_variables(pattern):
-                    if symbol.name in VALUES:
+                    if symbol.name in VALUES and program.globals.get(symbol.name) == symbol:
                         yield "value", symbol.name, dec.span.origin
             case RecBind(bindings):
                 for symbol, _ in bindings:
-                    if symbol.name in VALUES:
+                    if symbol.name in VALUES and program.globals.get(symbol.name) == symbol:
                         yield "function", symbol.name, dec.span.origin
