@@ -75,7 +75,8 @@ use valOf
 VALUES = frozenset(_VALUES.split())
 """As values and functions, unless they can be used like those that they hide."""
 _STRUCTURES = """
-Char Date Int Int32 List ListUtils Misc OS Output String TMS TextIO Time
+Bind CalcStat Char Date Inst Int Int32 List ListUtils Mark Misc OGSet OS Output PI String TI TMS TextIO
+Time
 """
 STRUCTURES = frozenset(_STRUCTURES.split())
 """As colour sets, each of which is a structure."""
