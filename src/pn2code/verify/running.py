@@ -19,6 +19,8 @@ taken. Added are flags of which others know nothing:
   several readers, its messages are *out* one after the other: the first reader may act before the next is written to.
 * When the supervisor has finished, a robot ends where it notices that (docs/protocol.md, I9): as likely before its next
   message as after it. One step ends them all, since any of them may have been slow until then.
+* Where a script stops, the cell stops: nothing happens after the step that says so. What others do until they hear of
+  it comes before this step, which may come late: the supervisor ends its cycle, and looks at the robots between two.
 * Emptying a file is no step: whoever writes a second message without having heard that the first one was taken may do
   so before it is taken, too; then the place holds two.
 * Time: a step of the clock may come whenever something is waited for, whether or not something else is enabled: the
@@ -335,6 +337,7 @@ class _Composer:
         *arcs: Arc,
         guards: Sequence[core.Exp] = (),
     ) -> int:
+        arcs = (*arcs, self.b.absent(self.stopped))
         self.b.transition(f"cell.{name}", arcs, priority=priority, guards=guards)
         self.step_owner.append(owner)
         return len(self.partition.net.transitions) + len(self.step_owner) - 1
@@ -361,6 +364,7 @@ class _Composer:
         taken = [a.place for a in t.arcs if a.kind is ArcKind.INPUT]
         arcs = [self._off(own[place]) for place in taken for own in flags if place in own]
         arcs += [self._has(self.calm)] if owner == SUPERVISOR else self._goes_on()
+        arcs.append(self.b.absent(self.stopped))
         self.b.add_arcs(t.index, arcs, {})
 
     def _owing(self) -> Iterator[tuple[int, int]]:
@@ -444,7 +448,6 @@ class _Composer:
         """A robot whose script finds no transition that fits, and none that waits, stops; or ends owing an answer."""
         program = self.machines[owner]
         name = self.partition.owners[owner].name
-        halted = self.b.place(f"cell.{name}.stopped", self.b.unit)
         for step in program.steps:
             t = step.transition
             if sum(p in program.channels for p, *_ in step.takes) > MOST_MESSAGES:
@@ -455,13 +458,13 @@ class _Composer:
         for place in program.control:
             if program.steps_from(place):
                 short = self.partition.net.places[place].short
-                arcs = [self._any(place), self.b.absent(halted), self._on(halted)]
-                arcs += [self._on(self.stopped), *self._goes_on()]
-                self._step(owner, f"{name} stops at {short}", self.after + 1, *arcs)
+                arcs = [self._any(place), self._on(self.stopped), *self._goes_on()]
+                for between in (self.idle, self.over):
+                    here = self._has(between)
+                    self._step(owner, f"{name} stops at {short}", self.after + 1, *arcs, here)
             elif owner in self.owes:
-                arcs = [self._any(place), self._has(self.owes[owner]), self.b.absent(halted)]
-                arcs += [self.b.absent(self.calm), self.b.absent(self.over)]
-                arcs += [self._on(halted), self._on(self.stopped)]
+                arcs = [self._any(place), self._has(self.owes[owner]), self._has(self.idle)]
+                arcs += [self._on(self.stopped)]
                 self._step(owner, f"{name} {OWING}", self.after + 3, *arcs)
         can_end = not all(map(program.steps_from, program.control))
         for c in self.looked if owner in self.owes and can_end else ():
