@@ -129,7 +129,7 @@ def settled(control: Control) -> Control:
     checks = []
     for check in control.checks:
         if check.name == BLOCKING and check.answer == "yes" and control.stops:
-            why = "late" if control.stops == control.late else "stops"
+            why = {control.late: "late", control.doubt: "error"}.get(control.stops, "stops")
             check = replace(check, answer="unknown", why=why, says=f"not known: {control.stops}")
         assumes = control.premises.of_check(check.name, check.answer)
         checks.append(replace(check, assumes=assumes))
