@@ -84,21 +84,27 @@ typedef enum tb_kind {
     TB_REACH, /* is a marking reachable in which the formula is true? */
     TB_BOUND, /* the most tokens that the places of a sum hold together */
     TB_CTL,   /* does the formula hold in the initial marking? */
-    TB_LTL    /* does the automaton accept a run? */
+    TB_LTL    /* does the automaton accept a run? one that ends in a dead marking stays there */
 } tb_kind_t;
 
-/* An arc of a Büchi automaton: where `guard` is true it may go to `target`. */
+/* An arc of a Buechi automaton: where the atoms have these values it may go to `target`. */
 typedef struct tb_move {
     uint32_t target;
-    tb_formula_t *guard;
+    uint64_t is_true;  /* bits: atoms that must be true */
+    uint64_t is_false; /* bits: atoms that must be false */
 } tb_move_t;
 
+/* State 0 is the initial one. */
 typedef struct tb_automaton {
+    uint32_t atoms;
+    tb_formula_t **atom;
     uint32_t states;
     bool *is_accepting;
     uint32_t *first; /* state -> its moves */
     tb_move_t *move;
 } tb_automaton_t;
+
+enum { TB_MOST_ATOMS = 63 };
 
 typedef enum tb_answer { TB_UNKNOWN, TB_NO, TB_YES } tb_answer_t;
 
@@ -193,6 +199,39 @@ typedef enum tb_added { TB_ADDED, TB_KNOWN, TB_FULL } tb_added_t;
 /* The number of a marking; a new one is the next number. TB_FULL: there is no room for it. */
 tb_added_t tb_store_add(tb_store_t *s, const tb_count_t *marking, uint32_t *number);
 void tb_store_get(const tb_store_t *s, uint32_t number, tb_count_t *marking);
+
+/* --- the state space, as far as it is needed ------------------------------------------------------------------------------------- */
+
+/* Markings by number with their successors, which are looked up when they are first asked for (tables_graph.c). */
+typedef struct tb_graph {
+    const tb_net_t *net;
+    tb_store_t store;
+    tb_cursor_t cursor;
+    uint64_t *first;    /* marking -> index of its first successor + 1; 0: not looked up */
+    uint32_t *count;    /* marking -> successors, each once */
+    uint64_t room;      /* markings for which there are entries */
+    uint32_t *successor;
+    uint64_t successors;
+    uint64_t successor_room;
+    uint32_t at;        /* the marking at the cursor */
+    tb_count_t *marking;
+    uint32_t *fire;
+    bool is_full;       /* memory is exhausted, a place is, or the time is over: successors are missing */
+} tb_graph_t;
+
+void tb_graph_init(tb_graph_t *g, const tb_net_t *net);
+void tb_graph_free(tb_graph_t *g);
+
+/* Look up the successors of a marking; false: not all of them can be had (g->is_full from then on). */
+bool tb_expand(tb_graph_t *g, uint32_t marking);
+
+/* Move the cursor to a marking. */
+void tb_visit(tb_graph_t *g, uint32_t marking);
+
+static inline uint32_t tb_successor(const tb_graph_t *g, uint32_t marking, uint32_t which)
+{
+    return g->successor[g->first[marking] - 1U + which];
+}
 
 /* --- stubborn sets --------------------------------------------------------------------------------------------------------------- */
 

@@ -10,7 +10,8 @@
  *
  *     FORMULA    true | false | dead | not F | and N F.. | or N F.. | sum N (place factor).. limit | enabled N transition..
  *                EX F | AX F | EF F | AF F | EG F | AG F | EU F F | AU F F
- *     AUTOMATON  states, for each state: whether it accepts (0 or 1), how many moves, (target FORMULA)...
+ *     AUTOMATON  atoms FORMULA.. states, for each state: whether it accepts (0 or 1), how many moves, (target TRUE FALSE)..,
+ *                where TRUE and FALSE are numbers with the bits of the atoms that must be so
  *
  * The text comes from pn2code itself, so that an error in it is an error of the program; it is found all the same.
  */
@@ -278,6 +279,11 @@ static tb_formula_t *formula(reader_t *r, uint32_t *numbers)
 static void read_automaton(reader_t *r, tb_question_t *q)
 {
     tb_automaton_t *a = &q->automaton;
+    a->atoms = (uint32_t)number(r, 0, TB_MOST_ATOMS);
+    a->atom = tb_new(a->atoms, sizeof *a->atom);
+    for (uint32_t i = 0U; i < a->atoms; i++) {
+        a->atom[i] = formula(r, &q->formulas);
+    }
     a->states = (uint32_t)number(r, 1, 1000000);
     a->is_accepting = tb_new(a->states, sizeof *a->is_accepting);
     a->first = tb_new((size_t)a->states + 1U, sizeof *a->first);
@@ -293,7 +299,8 @@ static void read_automaton(reader_t *r, tb_question_t *q)
         }
         for (uint32_t i = 0U; i < moves; i++) {
             a->move[before + i].target = index_below(r, a->states);
-            a->move[before + i].guard = formula(r, &q->formulas);
+            a->move[before + i].is_true = (uint64_t)number(r, 0, INT64_MAX);
+            a->move[before + i].is_false = (uint64_t)number(r, 0, INT64_MAX);
         }
         a->first[s + 1U] = before + moves;
     }

@@ -71,15 +71,19 @@ class Tables:
         """The question whether a marking is reachable in which a formula without operators of time is true."""
         return f"{number} reach {self.formula(formula)}"
 
+    def ctl(self, number: int, formula: Formula) -> str:
+        """The question whether a formula of CTL holds in the initial marking."""
+        return f"{number} ctl {self.formula(formula)}"
+
     def bound(self, number: int, tokens: Tokens) -> str:
         """The question for the most tokens that places hold together."""
-        return f"{number} bound {self._sum(dict.fromkeys(self._places(tokens), 1), 0)}"
+        return f"{number} bound {self.sum(dict.fromkeys(self._places(tokens), 1), 0)}"
 
     def formula(self, f: Formula) -> str:
-        """A formula in the engine's own words.
+        """A formula of CTL in the engine's own words.
 
         Raises:
-            FormulaError: it names a place or transition that the net has not.
+            FormulaError: it is of another kind, or names a place or transition that the net does not have.
         """
         match f:
             case AtMost(left, right):
@@ -91,7 +95,9 @@ class Tables:
                 return f"not {self.formula(part)}"
             case Op("and" | "or" as operator, parts):
                 return f"{operator} {len(parts)} {' '.join(map(self.formula, parts))}"
-        raise FormulaError(f"{f} has an operator of time")
+            case Op("A" | "E" as path, (Op("X" | "F" | "G" | "U" as operator, parts),)):
+                return f"{path}{operator} {' '.join(map(self.formula, parts))}"
+        raise FormulaError(f"{f} is not a formula of CTL")
 
     def _comparison(self, left: Constant | Tokens, right: Constant | Tokens) -> str:
         factors: dict[int, int] = {}
@@ -102,10 +108,11 @@ class Tables:
             else:
                 for p in self._places(side):
                     factors[p] = factors.get(p, 0) + sign
-        return self._sum(factors, limit)
+        return self.sum(factors, limit)
 
     @staticmethod
-    def _sum(factors: Mapping[int, int], limit: int) -> str:
+    def sum(factors: Mapping[int, int], limit: int) -> str:
+        """The comparison `sum of factor * tokens <= limit`; `factors` by place."""
         terms = [f"{p} {n}" for p, n in sorted(factors.items()) if n]
         return f"sum {len(terms)} {' '.join(terms)} {limit}".replace("  ", " ")
 
