@@ -113,14 +113,8 @@ def ask(program: Path, tasks: Sequence[Task]) -> Iterator[Answer | Space]:
 
 
 def _started(program: Path, path: Path, task: Task) -> subprocess.Popen[str]:
-    command = [
-        program,
-        path,
-        task.method,
-        f"{task.seconds:.3f}",
-        str(task.mebibytes),
-        str(task.seed),
-    ]
+    limits = [f"{task.seconds:.3f}", str(task.mebibytes), str(task.seed)]
+    command = [str(program), str(path), task.method, *limits]
     return subprocess.Popen(
         command,
         stdin=subprocess.DEVNULL,
