@@ -28,6 +28,8 @@ _SOURCES = (
     "tables_stubborn.c", "tables_walk.c",
 )  # fmt: skip
 HOST = Host("tables", only=_SOURCES)
+_WRONG = 2
+"""Exit code: the tables are wrong."""
 _GRACE_S = 1.0
 """After its time a process is ended."""
 
@@ -92,24 +94,21 @@ def ask(program: Path, tasks: Sequence[Task]) -> Iterator[Answer | Space]:
     """
     said: SimpleQueue[Answer | Space | str | None] = SimpleQueue()
     with tempfile.TemporaryDirectory(prefix="pn2code-") as folder:
-        running = []
+        running: list[tuple[subprocess.Popen[str], threading.Thread]] = []
         try:
             for n, task in enumerate(tasks):
                 path = Path(folder) / f"{n}.tables"
                 path.write_text(task.text, encoding="ascii")
-                running.append(_started(program, path, task))
-            readers = [
-                threading.Thread(target=_read, args=(process, said), daemon=True)
-                for process in running
-            ]
-            for reader in readers:
+                process = _started(program, path, task)
+                reader = threading.Thread(target=_read, args=(process, said), daemon=True)
                 reader.start()
+                running.append((process, reader))
             longest = max((t.seconds for t in tasks), default=0.0) + _GRACE_S
             yield from _until_all_ended(said, len(running), longest)
         finally:
-            for process in running:
+            for process, reader in running:
                 process.kill()
-                process.wait()
+                reader.join()
 
 
 def _started(program: Path, path: Path, task: Task) -> subprocess.Popen[str]:
@@ -126,13 +125,14 @@ def _started(program: Path, path: Path, task: Task) -> subprocess.Popen[str]:
 
 
 def _read(process: subprocess.Popen[str], said: SimpleQueue[Answer | Space | str | None]) -> None:
-    assert process.stdout is not None and process.stderr is not None
-    for line in process.stdout:
-        found = _parsed(line)
-        if found is not None:
-            said.put(found)
-    errors = process.stderr.read()
-    if process.wait() == 2:
+    with process:
+        assert process.stdout is not None and process.stderr is not None
+        for line in process.stdout:
+            found = _parsed(line)
+            if found is not None:
+                said.put(found)
+        errors = process.stderr.read()
+    if process.returncode == _WRONG:
         said.put(errors.strip())
     said.put(None)
 
