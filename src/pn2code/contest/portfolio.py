@@ -118,6 +118,8 @@ def answers(
             if result is not None:
                 line.is_done = True
                 yield result
+            if all(i in p.known or p.is_done for p, i, _ in (place[n] for n in open_)):
+                break
 
 
 def _tasks(
