@@ -93,6 +93,7 @@ def answers(
         only: a method, alone; "": all.
     """
     lines = [_Line(a) for a in asked]
+    undone = sum(1 for line in lines if line.asked.parts)
     ends = time.monotonic() + seconds
     place: dict[int, tuple[_Line, int, Part]] = {}
     for line in lines:
@@ -118,8 +119,9 @@ def answers(
             if result is not None:
                 line.is_done = True
                 yield result
-            if all(i in p.known or p.is_done for p, i, _ in (place[n] for n in open_)):
-                break
+                undone -= 1
+                if not undone:
+                    return
 
 
 def _tasks(
