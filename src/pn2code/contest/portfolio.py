@@ -99,6 +99,11 @@ def answers(
     for line in lines:
         for i, part in enumerate(line.asked.parts):
             place[len(place)] = (line, i, part)
+    for line in lines:  # without places or transitions nothing has to be asked
+        result = line.result()
+        if result is not None:
+            line.is_done = True
+            yield result
     for number in range(len(_ROUNDS_S) + 1):
         left = ends - time.monotonic()
         open_ = {
