@@ -17,6 +17,7 @@ from helpers.thorough import THOROUGH
 from pn2code.toolchain import build, programs
 from pn2code.verify import proofs
 
+pytest_plugins = ("pace.plugin",)
 ROOT = Path(__file__).resolve().parent.parent
 
 
@@ -33,6 +34,16 @@ def shared() -> Path:
     if not (path / "corpus").is_dir():
         pytest.skip(f"no collection of real nets at {path} (set PN2CODE_SHARED)")
     return path
+
+
+def pytest_configure() -> None:
+    """Where the nets by others must be there (`.ci/run`), nothing is skipped for want of them."""
+    path = Path(os.environ.get("PN2CODE_SHARED", ROOT.parent / "shared"))
+    missing = [name for name in ("corpus", "semantics-suite") if not (path / name).is_dir()]
+    if os.environ.get("PN2CODE_SHARED_NEEDED") and missing:
+        raise pytest.UsageError(
+            f"PN2CODE_SHARED_NEEDED is set, but there is no folder {' and no '.join(missing)} in {path}; set PN2CODE_SHARED"
+        )
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
