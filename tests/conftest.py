@@ -42,7 +42,7 @@ def pytest_configure() -> None:
     missing = [name for name in ("corpus", "semantics-suite") if not (path / name).is_dir()]
     if os.environ.get("PN2CODE_SHARED_NEEDED") and missing:
         raise pytest.UsageError(
-            f"PN2CODE_SHARED_NEEDED is set, but there is no folder {' and no '.join(missing)} in {path}; set PN2CODE_SHARED"
+            f"PN2CODE_SHARED_NEEDED is set, but {path} has no {' and no '.join(missing)}; set PN2CODE_SHARED"
         )
 
 
