@@ -32,7 +32,8 @@ from pn2code.os_reason import os_reason
 from pn2code.report.rows import rows_tsv
 from pn2code.report.summary import summarise
 from pn2code.robot import scene
-from pn2code.robot.backend import Backend, BackendName, open_backend
+from pn2code.robot.backend import Backend, BackendName
+from pn2code.robot.choose_backend import open_backend
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor
 from pn2code.run.device import DeviceExecutor
