@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-from helpers.compiled import FAST, SANITIZERS, Workshop
+from helpers.compiled import DELIVERED, FAST, SANITIZERS, Workshop
 from helpers.session import once
 from helpers.thorough import THOROUGH
 from pn2code.toolchain import build, programs
@@ -59,7 +59,6 @@ settings.register_profile(
     "any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.load_profile("any machine")
-_DELIVERED = programs.FLAGS
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -71,7 +70,7 @@ def quick_programs() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as changed:
         changed.setattr(proofs, "MOST_SECONDS", 3600.0)  # what is known does not depend on time
         if not THOROUGH:
-            flags = tuple("-O0" if flag == "-O2" else flag for flag in _DELIVERED)
+            flags = tuple("-O0" if flag == "-O2" else flag for flag in DELIVERED)
             changed.setattr(programs, "FLAGS", flags)
         yield
 
@@ -79,7 +78,7 @@ def quick_programs() -> Iterator[None]:
 @pytest.fixture
 def as_delivered(monkeypatch: pytest.MonkeyPatch) -> None:
     """Explorers and simulators are compiled as users have them."""
-    monkeypatch.setattr(programs, "FLAGS", _DELIVERED)
+    monkeypatch.setattr(programs, "FLAGS", DELIVERED)
 
 
 def _workshop(factory: pytest.TempPathFactory, name: str, flags: tuple[str, ...]) -> Workshop:

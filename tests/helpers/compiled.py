@@ -32,6 +32,7 @@ from pn2code.semantics.marking import (
     binding_to_json,
     place_to_json,
 )
+from pn2code.toolchain import programs
 
 WARNINGS = (
     "-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion", "-Wsign-conversion",
@@ -41,6 +42,8 @@ WARNINGS = (
 )  # fmt: skip
 SANITIZERS = ("-g1", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 FAST = ("-O1",)
+DELIVERED = programs.FLAGS
+"""Those with which users have explorers and simulators; the tests mostly have others."""
 RUNTIME = (
     "arena", "bag", "big", "codec", "file", "leaves", "library", "list", "marking", "moves", "num", "random", "read",
     "root", "stack", "string", "text", "trace", "type",
