@@ -36,6 +36,7 @@ VERBS = {
     "robot": "Run one robot's script in real time, as a process of its own.",
     "draw": "Draw the pages of a net. Elements with errors are red.",
     "convert": "Convert a net to PNML or to a Promela model for SPIN, or a PNML net to a net of CPN Tools.",
+    "contest": "Answer an examination of the Model Checking Contest, in its own words.",
     "dump": "Print the net as it is after a stage of the pipeline.",
     "explain": "Explain a diagnostic code.",
 }

@@ -23,6 +23,7 @@ from typing import Any
 from pn2code import pipeline
 from pn2code.cell.codes import CELL_MISSING
 from pn2code.cell.config import CellConfig
+from pn2code.cell.names import counted
 from pn2code.channels import GRACE_S, SharedDirectory, specs_of
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.diagnostics.codes import register
@@ -208,7 +209,8 @@ def run_cell(
         record.header = _header(engine.supervisor_trace.header)
     record.wall = time.perf_counter() - started
     _warn(record, prepared.config)
-    summary = summarise(record, prepared.config.report, _names(prepared))
+    occurrences = counted(prepared.generated.partition.net, prepared.config)
+    summary = summarise(record, prepared.config.report, _names(prepared), occurrences)
     _write_results(record, summary, prepared, options.out)
     return RunResult(record, summary, prepared)
 
