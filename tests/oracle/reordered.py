@@ -1,7 +1,8 @@
 """Whether the engine refuses a net only for the order of its arcs.
 
 Where several arcs from one place share variables, it finds out how to bind them, or not, by the order in which they
-stand in the file. A net that it accepts in another order has nothing wrong with it.
+stand in the file. A net that it accepts in another order has nothing wrong with it. Arcs in both directions come first
+for it, wherever they stand; as input arcs, which bind the same variables, they take part in the order.
 """
 
 from __future__ import annotations
@@ -53,5 +54,7 @@ def _orders(path: Path, transition: str) -> Iterator[bytes]:
             for place, arc in zip(at, order, strict=True)
         }
         for place, arc in copies.items():
+            if arc.get("orientation") == "BOTHDIR":
+                arc.set("orientation", "PtoT")
             page[place] = arc
         yield bytes(etree.tostring(root, encoding="iso-8859-1", xml_declaration=True))

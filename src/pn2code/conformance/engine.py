@@ -11,7 +11,7 @@ expressions 1,361 agreed with the evaluator (of the others three need more memor
 |---|---|---|
 | two arcs from one place with patterns that share variables, but not the first one: `(a, b)` and `(c, b)` | `InternalError: insert_transvar`, the page cannot be checked | accepts it with a warning: the shared variable has one value |
 | a declaration other than `val` in an arc inscription, guard or priority: `let fun f x = x + 1 in f n end` | `InternalError: Illegal FunDec`, the page cannot be checked | accepts it, with a warning (`declaration-in-inscription`) |
-| several arcs from one place, one of which shares a variable with an arc that comes later in the file | `No complete binding sequence`, `Cannot bind`, `IllegalBit`; accepted when the arcs come in another order | accepts it |
+| several arcs from one place, one of which shares a variable with an arc that comes later in the file (arcs in both directions come first, wherever they stand) | `No complete binding sequence`, `Cannot bind`, `IllegalBit`; accepted when the arcs come in another order | accepts it |
 | arcs from two places of one fusion set to one transition: ``2`()`` and `()` | looks at each for itself: enabled with 2 tokens, then `Subtract` | needs 3 tokens |
 | a reset arc at an assigned port or a member of a fusion set | the simulator empties the place, the state space tool does not | empties it in both |
 | a variable twice in one pattern: `(x, x)` | takes a wrong binding, then `Internal Error: rm ...` | requires both parts to be equal |
