@@ -20,6 +20,7 @@ from tests.helpers.netbuilder import cpn
 
 from pn2code import pipeline
 from pn2code.diagnostics import Diagnostics, render
+from pn2code.emission import c_flags
 from pn2code.net import front
 from pn2code.semantics.game import Game
 from pn2code.simulate import programs
@@ -293,7 +294,7 @@ def latency(bench: Bench) -> dict[str, list[float]]:
     sources += ["supervisor*.c", "pn_channel*.c", "port_*.c"]
     host = [f for pattern in sources for f in sorted((CNATIVE / "src").glob(pattern))]
     tests = CNATIVE / "tests"
-    compiler = ("cc", "-std=c11", "-O2", "-I", CNATIVE / "include")
+    compiler = ("cc", c_flags.STANDARD, *c_flags.FLOATS, "-O2", "-I", CNATIVE / "include")
     bench.timed(*compiler, tests / "latency.c", "-o", program)
     hand = (tests / "hand_net.c", tests / "hand_cell.c")
     bench.timed(*compiler, "-DHAND_DELAY=0", *host, *hand, "-lm", "-o", supervisor)

@@ -34,12 +34,14 @@ from pn2code.channels import (
 )
 from pn2code.channels.message import compose, parse
 from pn2code.channels.scalars import format_real
+from pn2code.emission import c_flags
 from pn2code.run.supervisor import Exit, SupervisorProcess
 
 pytestmark = pytest.mark.cc
 
 STRICT = [
-    "-std=c11",
+    c_flags.STANDARD,
+    *c_flags.FLOATS,
     "-Wall",
     "-Wextra",
     "-Wpedantic",
@@ -987,7 +989,7 @@ def test_the_latency_program_measures(
     program = tmp_path / "latency"
     source = str(root / "cnative/tests/latency.c")
     subprocess.run(
-        ["gcc", "-std=c11", "-O2", "-Wall", "-Wextra", "-Werror", source, "-o", str(program)],
+        ["gcc", c_flags.STANDARD, "-O2", "-Wall", "-Wextra", "-Werror", source, "-o", str(program)],
         check=True,
     )
     done = subprocess.run(

@@ -21,12 +21,13 @@ from pn2code.conform.cell import ProgramComparison
 from pn2code.conform.folder import PROGRAM
 from pn2code.conform.probe import HOST, ProbeError
 from pn2code.diagnostics import Diagnostics
+from pn2code.emission import c_flags
 from pn2code.pipeline import Generated, generate
 from pn2code.tdl.interpret import Request
 
 SECONDS = 10.0
 """A mutant that takes longer for one answer does not come to rest."""
-FLAGS = ("-std=c11", "-O0", "-w", "-ffp-contract=off")
+FLAGS = (c_flags.STANDARD, "-O0", "-w", *c_flags.FLOATS)
 SURVIVED = "survived"
 NONE = "no mutant"
 

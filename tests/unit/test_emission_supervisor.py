@@ -10,6 +10,7 @@ import pytest
 
 from pn2code.cell.partition import Channel, ChannelKind, Input, Owner, OwnerKind, Partition
 from pn2code.diagnostics import NOWHERE
+from pn2code.emission import c_flags
 from pn2code.emission.environment import c_comment, c_float, c_int, c_string
 from pn2code.emission.supervisor import emit
 from pn2code.ml.colsets import Colset, Kind
@@ -128,9 +129,31 @@ def test_sums_are_rounded_everywhere_alike(tmp_path: Path) -> None:
         (tmp_path / name).touch()
     for target in ("net.o", "supervisor.monitor", "supervisor.sanitize"):
         done = subprocess.run(
-            ["make", "-n", target, "CFLAGS=-O3 -ffp-contract=fast"],
+            ["make", "-n", target, "CFLAGS=-O3 -ffast-math -ffp-contract=fast"],
             cwd=tmp_path, capture_output=True, text=True, check=True,
         )  # fmt: skip
         commands = [line for line in done.stdout.splitlines() if "net.c" in line or "net.o" in line]
-        said = [word for word in commands[-1].split() if word.startswith("-ffp-contract")]
-        assert said[-1] == "-ffp-contract=off" and said[-1] in FLAGS
+        words = commands[-1].split()
+        assert c_flags.STANDARD in words and c_flags.STANDARD in FLAGS
+        for flag, undone in zip(c_flags.FLOATS, ("-ffp-contract=fast", "-ffast-math"), strict=True):
+            assert words.index(flag) > words.index(undone) and flag in FLAGS
+
+
+def test_flags_are_written_down_once(root: Path) -> None:
+    """Whoever compiles C has them from `c_flags`; only the explorer's own code is made for this machine."""
+    sources = [
+        p
+        for name in ("src", "templates", "tests")
+        for p in (root / name).rglob("*")
+        if p.suffix in (".py", ".j2")
+    ]
+    sources.remove(Path(__file__))
+    said = {
+        word: sorted(p.relative_to(root).as_posix() for p in sources if word in p.read_text())
+        for word in ('"-std=c11"', "-ffp-contract", "-march=")
+    }
+    assert said == {
+        '"-std=c11"': ["src/pn2code/emission/c_flags.py"],
+        "-ffp-contract": ["src/pn2code/emission/c_flags.py", "tests/e2e/test_verify_stress.py"],
+        "-march=": ["src/pn2code/verify/programs.py"],
+    }

@@ -5,11 +5,15 @@
  * gives. Hosts (supervisor, simulate, explore, the program under test of `conform`) know nets only through this table. What is done
  * with markings in the same way in every net is in pn_marking.h, and with the multi-set of one place in pn_bag.h.
  *
- * In a generated folder one object file, net.o, is linked with the supervisor, its monitor and the simulator. The explorer of
- * `pn2code verify` has another one: the same generator makes it from the same net, but with packed places where that is possible, with
- * arrays of other sizes, and with flags for the processor at hand. What is proved is proved of that one. `pn2code conform` shows that
- * both do the same: it compares the explorer's graph, and the generated net.c in the deployed supervisor, with the token game in every
- * state that can be reached (docs/conform.md).
+ * In a generated folder one object file, net.o, is linked with the supervisor, its monitor and the simulator of the folder. It is the
+ * object that is deployed. Others are made from the same net, all with the same flags for the standard and for floating-point numbers:
+ *
+ *   verified    `pn2code verify` makes a net.c of its own, with packed places where that is possible and arrays of other sizes, and
+ *               compiles it into its explorer. What is proved is proved of that one.
+ *   simulated   `pn2code simulate` makes a net.c of its own, too, with large arrays and in one piece with its simulator.
+ *   compared    `pn2code conform` compiles the net.c of the generated folder, and the sources of the deployed supervisor except
+ *               port_posix.c, into its program under test. It compares that program, and the explorer's graph, with the token game in
+ *               every state that can be reached (docs/conform.md).
  *
  * Errors: a net's expressions may raise (integer overflow, division by zero, no matching rule, a colour out of range, an
  * array that is full). The first error of a context is kept in it (pn_ctx_t.error) and is sticky: from then on every operation

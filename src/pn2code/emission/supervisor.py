@@ -15,6 +15,7 @@ from pathlib import Path
 from pn2code.cell.partition import Channel, ChannelKind, OwnerKind, Partition
 from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
 from pn2code.diagnostics import Origin
+from pn2code.emission import c_flags
 from pn2code.emission.environment import c_float, c_int, render
 from pn2code.emission.output import Block, OutputFile
 from pn2code.net.flat import FlatPlace
@@ -189,7 +190,11 @@ def emit(
         finals=[{"place": p, "name": net.places[p].name} for p in partition.final_places],
     )
     makefile = render(
-        "c/Makefile.j2", version=version, source=" ".join(source_name.split()), has_simulate=True
+        "c/Makefile.j2",
+        version=version,
+        source=" ".join(source_name.split()),
+        has_simulate=True,
+        c_flags=c_flags,
     )
     elements = [
         (net.places[c.place].name, net.places[c.place].origins[0], f".place = {c.place}U,")

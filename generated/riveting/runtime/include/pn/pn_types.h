@@ -4,9 +4,18 @@
 #ifndef PN_TYPES_H
 #define PN_TYPES_H
 
+#include <float.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
+
+/* The values of a net are those of the token game only where a double is a double and sums keep their order. */
+#if defined(__FAST_MATH__)
+#error "compile without -ffast-math: a net would compute other values than those that were verified"
+#endif
+#if FLT_EVAL_METHOD != 0
+#error "this compiler computes with another precision than double's (32-bit x86: add -msse2 -mfpmath=sse)"
+#endif
 
 /* Model time: an integer, or a real (option `realtimestamp` of the net). pn_net_t.real_time says which member counts. */
 typedef union pn_time {
