@@ -146,6 +146,20 @@ void pn_port_close(int descriptor)
     (void)descriptor;
 }
 
+int pn_port_load(const char *path, char *buffer, size_t capacity, size_t *length)
+{
+    *length = 0U;
+    errno = 0;
+    FILE *const file = fopen(path, "rb"); /* input files are real ones */
+    if (file == NULL) {
+        return errno;
+    }
+    *length = fread(buffer, 1U, capacity, file);
+    const int error = (ferror(file) != 0) ? errno : 0;
+    (void)fclose(file);
+    return error;
+}
+
 int pn_port_read(int directory, const char *name, char *buffer, size_t capacity, size_t *length, int *held)
 {
     const memory_file_t *const file = find(name);

@@ -13,6 +13,8 @@
 /* -1, 0, 1 of two reals: what differs between the order of tokens, that of `lt`, and equality. */
 typedef int (*reals_t)(double, double);
 
+#ifndef PN_FLAT_TYPES
+
 static int compare(const pn_type_t *type, const void *a, const void *b, reals_t reals);
 
 static int compare_lists(const pn_type_t *type, const void *a, const void *b, reals_t reals)
@@ -42,7 +44,10 @@ static int compare_unions(const pn_type_t *type, const void *a, const void *b, r
     return (argument_a == NULL) ? 0 : compare(constructor_a->type, argument_a, argument_b, reals);
 }
 
-static int compare(const pn_type_t *type, const void *a, const void *b, reals_t reals)
+#endif
+
+/* Two values that are no records. */
+static int compare_part(const pn_type_t *type, const void *a, const void *b, reals_t reals)
 {
     switch (type->kind) {
     case PN_KIND_BOOL:
@@ -59,26 +64,46 @@ static int compare(const pn_type_t *type, const void *a, const void *b, reals_t 
         return (int)load_byte(a) - (int)load_byte(b);
     case PN_KIND_ENUM:
         return pn_int_order((int64_t)load_tag(a), (int64_t)load_tag(b));
-    case PN_KIND_RECORD:
-        for (uint32_t i = 0U; i < type->count; i++) {
-            const pn_field_t *field = &type->field[i];
-            const int order = compare(field->type, part(a, field->offset), part(b, field->offset), reals);
-            if (order != 0) {
-                return order;
-            }
-        }
-        return 0;
+#ifndef PN_FLAT_TYPES
     case PN_KIND_LIST:
         return compare_lists(type, a, b, reals);
     case PN_KIND_UNION:
         return compare_unions(type, a, b, reals);
+#else
+    case PN_KIND_LIST:
+    case PN_KIND_UNION:
+#endif
     case PN_KIND_REF:
         /* Equality is all that matters, but it is an order as well. */
         return (load_pointer(a) == load_pointer(b)) ? 0 : 1;
+    case PN_KIND_RECORD: /* a subset: its parts have been compared */
     case PN_KIND_UNIT:
     default:
         return 0;
     }
+}
+
+static int compare_parts(const pn_type_t *type, const void *a, const void *b, reals_t reals)
+{
+    int order = 0;
+    for (uint32_t i = 0U; (order == 0) && (i < parts_of(type)); i++) {
+        const pn_part_t one = part_at(type, i);
+        order = compare_part(one.type, part(a, one.offset), part(b, one.offset), reals);
+    }
+    return order;
+}
+
+static int compare(const pn_type_t *type, const void *a, const void *b, reals_t reals)
+{
+    if ((type->kind != PN_KIND_RECORD) || (type->part_count > 0U)) {
+        return compare_parts(type, a, b, reals);
+    }
+    int order = 0;
+    for (uint32_t i = 0U; (order == 0) && (i < type->count); i++) { /* a binding: its variables */
+        const pn_field_t *const field = &type->field[i];
+        order = compare_parts(field->type, part(a, field->offset), part(b, field->offset), reals);
+    }
+    return order;
 }
 
 int pn_compare(const pn_type_t *type, const void *a, const void *b)
@@ -404,6 +429,8 @@ static bool is_legal_string(const pn_type_t *type, pn_string_t text)
     return true;
 }
 
+#ifndef PN_FLAT_TYPES
+
 static bool is_legal_list(pn_ctx_t *cx, const pn_type_t *type, const void *list)
 {
     int64_t length = 0;
@@ -416,8 +443,18 @@ static bool is_legal_list(pn_ctx_t *cx, const pn_type_t *type, const void *list)
     return !type->has_range || ((length >= type->low) && (length <= type->high));
 }
 
-static bool has_legal_parts(pn_ctx_t *cx, const pn_type_t *type, const void *value)
+static bool is_legal_union(pn_ctx_t *cx, const pn_type_t *type, const void *value)
 {
+    const void *argument = NULL;
+    const pn_field_t *constructor = constructor_of(type, value, &argument);
+    return (argument == NULL) || pn_is_legal(cx, constructor->type, argument);
+}
+
+#endif
+
+static bool is_legal_part(pn_ctx_t *cx, const pn_type_t *type, const void *value)
+{
+    (void)cx; /* only lists and unions look at it */
     switch (type->kind) {
     case PN_KIND_INT: {
         const int64_t number = load_int(value);
@@ -436,20 +473,16 @@ static bool has_legal_parts(pn_ctx_t *cx, const pn_type_t *type, const void *val
         return is_legal_string(type, load_string(value));
     case PN_KIND_ENUM:
         return load_tag(value) < type->count;
-    case PN_KIND_RECORD:
-        for (uint32_t i = 0U; i < type->count; i++) {
-            if (!pn_is_legal(cx, type->field[i].type, part(value, type->field[i].offset))) {
-                return false;
-            }
-        }
-        return true;
+#ifndef PN_FLAT_TYPES
     case PN_KIND_LIST:
         return is_legal_list(cx, type, load_pointer(value));
-    case PN_KIND_UNION: {
-        const void *argument = NULL;
-        const pn_field_t *constructor = constructor_of(type, value, &argument);
-        return (argument == NULL) || pn_is_legal(cx, constructor->type, argument);
-    }
+    case PN_KIND_UNION:
+        return is_legal_union(cx, type, value);
+#else
+    case PN_KIND_LIST:
+    case PN_KIND_UNION:
+#endif
+    case PN_KIND_RECORD: /* its parts come before it */
     case PN_KIND_UNIT:
     case PN_KIND_BOOL:
     case PN_KIND_CHAR:
@@ -461,8 +494,17 @@ static bool has_legal_parts(pn_ctx_t *cx, const pn_type_t *type, const void *val
 
 bool pn_is_legal(pn_ctx_t *cx, const pn_type_t *type, const void *value)
 {
-    return has_legal_parts(cx, type, value) && ((type->member == NULL) || type->member(cx, value));
+    for (uint32_t i = 0U; i < parts_of(type); i++) {
+        const pn_part_t one = part_at(type, i);
+        const void *const at = part(value, one.offset);
+        if (!is_legal_part(cx, one.type, at) || ((one.type->member != NULL) && !one.type->member(cx, at))) {
+            return false;
+        }
+    }
+    return (type->kind != PN_KIND_RECORD) || (type->member == NULL) || type->member(cx, value);
 }
+
+#ifndef PN_FLAT_TYPES
 
 static void narrow_list(pn_ctx_t *cx, const pn_type_t *type, void *value)
 {
@@ -475,7 +517,17 @@ static void narrow_list(pn_ctx_t *cx, const pn_type_t *type, void *value)
     }
 }
 
-void pn_narrow(pn_ctx_t *cx, const pn_type_t *type, void *value)
+static void narrow_union(pn_ctx_t *cx, const pn_type_t *type, void *value)
+{
+    const pn_field_t *constructor = &type->field[load_tag(value)];
+    if ((constructor->type != NULL) && !constructor->is_boxed) {
+        pn_narrow(cx, constructor->type, part_of(value, constructor->offset));
+    }
+}
+
+#endif
+
+static void narrow_part(pn_ctx_t *cx, const pn_type_t *type, void *value)
 {
     if (!type->is_narrow) {
         return;
@@ -486,16 +538,23 @@ void pn_narrow(pn_ctx_t *cx, const pn_type_t *type, void *value)
             pn_raise(cx, PN_ERR_COLOUR, NULL);
         }
         (void)memcpy(value, &rounded, sizeof rounded);
-    } else if (type->kind == PN_KIND_RECORD) {
-        for (uint32_t i = 0U; i < type->count; i++) {
-            pn_narrow(cx, type->field[i].type, part_of(value, type->field[i].offset));
-        }
+#ifndef PN_FLAT_TYPES
     } else if (type->kind == PN_KIND_LIST) {
         narrow_list(cx, type, value);
     } else if (type->kind == PN_KIND_UNION) {
-        const pn_field_t *constructor = &type->field[load_tag(value)];
-        if ((constructor->type != NULL) && !constructor->is_boxed) {
-            pn_narrow(cx, constructor->type, part_of(value, constructor->offset));
+        narrow_union(cx, type, value);
+#endif
+    } else {
+        /* a record: its parts have been narrowed */
+    }
+}
+
+void pn_narrow(pn_ctx_t *cx, const pn_type_t *type, void *value)
+{
+    if (type->is_narrow) {
+        for (uint32_t i = 0U; i < parts_of(type); i++) {
+            const pn_part_t one = part_at(type, i);
+            narrow_part(cx, one.type, part_of(value, one.offset));
         }
     }
 }

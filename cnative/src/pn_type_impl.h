@@ -103,6 +103,18 @@ static inline const pn_field_t *constructor_of(const pn_type_t *type, const void
     return field;
 }
 
+/* Number of parts of a value, and part i: of a record as its table says, of anything else itself. Bindings have no parts. */
+static inline uint32_t parts_of(const pn_type_t *type)
+{
+    return (type->kind == PN_KIND_RECORD) ? type->part_count : 1U;
+}
+
+static inline pn_part_t part_at(const pn_type_t *type, uint32_t i)
+{
+    const pn_part_t whole = { type, 0U };
+    return (type->kind == PN_KIND_RECORD) ? type->part[i] : whole;
+}
+
 /* The header of the cell with these contents. */
 static inline unsigned char *cell_of(const void *contents)
 {

@@ -144,6 +144,28 @@ static int close_with(int fd, int error)
     return error;
 }
 
+int pn_port_load(const char *path, char *buffer, size_t capacity, size_t *length)
+{
+    *length = 0U;
+    const int fd = open(path, O_RDONLY | O_CLOEXEC);
+    if (fd < 0) {
+        return errno;
+    }
+    ssize_t got = 1;
+    int error = 0;
+    while ((got != 0) && (error == 0) && (*length < capacity)) {
+        got = read(fd, &buffer[*length], capacity - *length);
+        if (got > 0) {
+            *length += (size_t)got;
+        } else if ((got < 0) && (errno != EINTR)) {
+            error = errno;
+        } else {
+            /* the end, or interrupted: again */
+        }
+    }
+    return close_with(fd, error);
+}
+
 int pn_port_read(int directory, const char *name, char *buffer, size_t capacity, size_t *length, int *held)
 {
     *length = 0U;

@@ -8,18 +8,14 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
+#include <stdlib.h> /* strtod */
 #include <string.h>
 
-#include "pn/pn_file.h"
 #include "pn/pn_port.h"
 
-#define TRACE_LINE 65536U
 #define MAX_FIRINGS_CELL 100000U
 #define MAX_FIRINGS_ALONE 1000000U
 
-static char s_trace_line[TRACE_LINE];
-static char s_initial[(size_t)1U << 20U]; /* tokens of input files, as JSON */
 static char s_directory[512];
 
 bool sup_stop(sup_t *sup, sup_exit_t exit_code, const char *format, ...)
@@ -71,9 +67,11 @@ static void print_help(const char *program)
                "  --dir DIR          the shared directory, which is made when it is missing; default /dev/shm/pn2code-NET\n"
                "                     where there is a /dev/shm (a file system in memory), else ./shared\n"
                "  --input DIR        where the input files are; default: the current directory\n"
+#ifdef PN_TRACE
                "  --trace FILE       write every firing to FILE (*.trace.jsonl, see docs/trace.md)\n"
                "  --dry-run          no shared files: play the whole net, robots included, in memory and print each\n"
                "                     message; a check before the cell moves\n"
+#endif
                "  --files DIR        let the net read and write files below DIR; without it there are none\n"
                "  --time-scale X     units of model time that pass in one second, for timed nets; default 1.\n"
                "                     Without a cell, and in a dry run, model time jumps ahead unless this is given\n"
@@ -169,8 +167,10 @@ static bool text_option(sup_options_t *o, int argc, char **argv, int *at, bool *
         o->input = value;
     } else if ((value = option_value("--files", argc, argv, at, missing)) != NULL) {
         o->files = value;
+#ifdef PN_TRACE
     } else if ((value = option_value("--trace", argc, argv, at, missing)) != NULL) {
         o->trace = value;
+#endif
     } else {
         return false;
     }
@@ -180,6 +180,24 @@ static bool text_option(sup_options_t *o, int argc, char **argv, int *at, bool *
 static bool is_switch(const char *argument, const char *brief, const char *full)
 {
     return ((brief != NULL) && (strcmp(argument, brief) == 0)) || (strcmp(argument, full) == 0);
+}
+
+static bool switch_option(sup_options_t *o, const char *argument)
+{
+    if (is_switch(argument, NULL, "--lockstep")) {
+        o->lockstep = true;
+    } else if (is_switch(argument, "-q", "--quiet")) {
+        o->verbosity = 0;
+    } else if (is_switch(argument, "-v", "--verbose")) {
+        o->verbosity = 2;
+#ifdef PN_TRACE
+    } else if (is_switch(argument, NULL, "--dry-run")) {
+        o->dry_run = true;
+#endif
+    } else {
+        return false;
+    }
+    return true;
 }
 
 /* Reads the command line. Returns -1 to go on, else the exit code. */
@@ -198,14 +216,8 @@ static int read_options(sup_options_t *o, int argc, char **argv)
                          pn_net.digest);
             return SUP_EXIT_FINISHED;
         }
-        if (is_switch(argument, NULL, "--dry-run")) {
-            o->dry_run = true;
-        } else if (is_switch(argument, NULL, "--lockstep")) {
-            o->lockstep = true;
-        } else if (is_switch(argument, "-q", "--quiet")) {
-            o->verbosity = 0;
-        } else if (is_switch(argument, "-v", "--verbose")) {
-            o->verbosity = 2;
+        if (switch_option(o, argument)) {
+            /* done */
         } else if (number_option(o, argc, argv, &at, &missing, &good)) {
             if (!good) {
                 return usage(argv[0], "not a number that makes sense here:", argv[at]);
@@ -255,16 +267,19 @@ static bool check_generated(sup_t *sup)
     return true;
 }
 
-/* The only memory that is asked for; after this nothing is. */
+/* All memory is static (cell_config.c): there is no heap, before the start or after it. */
 static bool get_memory(sup_t *sup)
 {
-    sup->marking = calloc(1U, (pn_net.marking_size > 0U) ? pn_net.marking_size : 1U);
-    sup->binding = calloc(1U, pn_binding_size(&pn_net));
-    sup->fired_of = calloc((size_t)pn_net.transition_count + 1U, sizeof *sup->fired_of);
-    if ((sup->marking == NULL) || (sup->binding == NULL) || (sup->fired_of == NULL)) {
-        return sup_stop(sup, SUP_EXIT_IO, "not enough memory");
+    const pn_cell_room_t *const room = &pn_cell.room;
+    if ((room->marking_size < pn_net.marking_size) || (*room->binding_size < pn_binding_size(&pn_net)) ||
+        (room->transition_count < pn_net.transition_count)) {
+        return sup_stop(sup, SUP_EXIT_INTERNAL, "cell_config.c has too little room for net.c: generate again");
     }
-    if ((sup->options.files != NULL) && !pn_file_allow(sup->options.files)) {
+    sup->marking = room->marking;
+    sup->binding = room->binding;
+    sup->fired_of = room->fired_of;
+    if ((sup->options.files != NULL) && (pn_cell.needs.allow_files != NULL) &&
+        !pn_cell.needs.allow_files(sup->options.files)) {
         return sup_stop(sup, SUP_EXIT_USAGE, "there is no folder `%s`", sup->options.files);
     }
     pn_arena_init(&sup->arena, pn_cell.arena, pn_cell.arena_size);
@@ -288,7 +303,6 @@ static void choose_directory(sup_options_t *o)
 
 static bool start(sup_t *sup)
 {
-    pn_text_t initial;
     if (!check_generated(sup) || !get_memory(sup)) {
         return false;
     }
@@ -299,39 +313,14 @@ static bool start(sup_t *sup)
     if (!pn_marking_init(&pn_net, &sup->cx, sup->marking)) {
         return sup_stop_error(sup, "making the initial marking");
     }
-    pn_text_init(&initial, s_initial, sizeof s_initial);
-    if (!sup_read_inputs(sup, &initial) || !sup_monitor_start(sup)) {
-        return false;
-    }
-    if (initial.truncated) {
-        return sup_stop(sup, SUP_EXIT_USAGE, "the tokens of the input files are too long for the trace");
-    }
-    if (!pn_trace_open(&sup->trace, sup->options.trace, s_trace_line, sizeof s_trace_line)) {
-        return sup_stop(sup, SUP_EXIT_IO, "cannot write the trace %s: %s", sup->options.trace, strerror(errno));
-    }
-    pn_trace_header(&sup->trace, &pn_net, sup->options.dry_run ? "run" : pn_cell.side, s_initial);
-    return true;
-}
-
-/* Why it ended; when it has come to its end, also where. */
-static void end_trace(sup_t *sup)
-{
-    static char places[8192];
-    const char *members = NULL;
-    if (!sup->stopped && sup_is_final(sup)) {
-        pn_text_t text;
-        pn_text_init(&text, places, sizeof places);
-        pn_text_str(&text, "\"final\": [");
-        sup_final_places(sup, true, &text);
-        pn_text_char(&text, ']');
-        members = text.truncated ? NULL : places;
-    }
-    pn_trace_end(&sup->trace, sup->t, sup->stopped ? sup->reason : "finished", members);
+    return sup_read_inputs(sup) && sup_monitor_start(sup) && sup_trace_start(sup);
 }
 
 int main(int argc, char **argv)
 {
     static sup_t sup;
+    static char output[BUFSIZ]; /* without it the C library would take one from the heap */
+    (void)setvbuf(stdout, output, _IOFBF, sizeof output);
     sup.net = &pn_net;
     sup.cell = &pn_cell;
     sup.options.input = ".";
@@ -350,22 +339,20 @@ int main(int argc, char **argv)
         choose_directory(&sup.options);
     }
     if (start(&sup)) {
-        if (alone) {
+#ifdef PN_TRACE
+        if (sup.options.dry_run) {
             sup_run_alone(&sup);
         } else {
-            sup_run_cell(&sup);
+            pn_cell.needs.run(&sup);
         }
-        end_trace(&sup);
+#else
+        pn_cell.needs.run(&sup);
+#endif
     }
-    if (!pn_trace_close(&sup.trace)) {
-        (void)sup_stop(&sup, SUP_EXIT_IO, "cannot write the trace %s", sup.options.trace);
-    }
+    sup_trace_end(&sup);
     if (sup.stopped) {
         (void)fflush(stdout);
         (void)fprintf(stderr, "error: %s\n", sup.reason);
     }
-    free(sup.marking);
-    free(sup.binding);
-    free(sup.fired_of);
-    return sup.stopped ? (int)sup.exit_code : SUP_EXIT_FINISHED;
+    return sup.stopped ? (int)sup.exit_code : (int)SUP_EXIT_FINISHED;
 }

@@ -92,20 +92,6 @@ static bool play_all(sup_t *sup)
     return true;
 }
 
-static void print_marking(const sup_t *sup)
-{
-    static char text[65536];
-    pn_text_t json;
-    for (uint32_t i = 0U; i < sup->net->place_count; i++) {
-        const pn_place_t *const place = &sup->net->place[i];
-        if (pn_bag_total(place->bag, sup->marking) > 0U) {
-            pn_text_init(&json, text, sizeof text);
-            pn_bag_json(place->bag, sup->marking, &json);
-            sup_say(sup, 1, "  %s  %s%s", place->name, text, json.truncated ? "..." : "");
-        }
-    }
-}
-
 static void print_summary(const sup_t *sup)
 {
     sup_say(sup, 1, "fired %" PRIu64 " transitions:", sup->fired);
@@ -114,8 +100,7 @@ static void print_summary(const sup_t *sup)
             sup_say(sup, 1, "  %s  %" PRIu64, sup->net->transition[i].name, sup->fired_of[i]);
         }
     }
-    sup_say(sup, 1, "marking at the end:");
-    print_marking(sup);
+    sup_trace_marking(sup);
 }
 
 void sup_run_alone(sup_t *sup)

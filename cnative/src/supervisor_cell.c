@@ -254,7 +254,7 @@ static bool cycle(sup_t *sup, double t, uint64_t *fired)
     if (!publish(sup) || !sup_monitor_messages(sup, PN_CHANNEL_OUT)) {
         return false;
     }
-    return !sup->trace.failed || sup_stop(sup, SUP_EXIT_IO, "cannot write the trace %s", sup->options.trace);
+    return sup_trace_is_written(sup);
 }
 
 /* --- the peers (I8, I9) ----------------------------------------------------------------------------------------------- */
@@ -482,7 +482,7 @@ void sup_run_cell(sup_t *sup)
     pn_text_init(&where, places, sizeof places);
     if (!sup->stopped && sup_is_final(sup)) {
         pn_text_str(&where, " in ");
-        sup_final_places(sup, false, &where);
+        sup_final_places(sup, &where);
     }
     sup_say(sup, 1, "%s after %.3f s%s: %" PRIu64 " firings (at most %" PRIu64 " in one cycle), %" PRIu64
             " messages sent, %" PRIu64 " received", sup->stopped ? "stopped" : "finished", sup->t, places, sup->fired,

@@ -7,6 +7,7 @@
  *   supervisor_cell.c   the cell: channels, peers, real time and lock-step
  *   supervisor_monitor.c  with -DPN_MONITOR: each step checked against the rules of the net
  *   supervisor_alone.c  the whole net in memory: --dry-run, and nets without a cell
+ *   supervisor_trace.c  with -DPN_TRACE: `--trace`, `--dry-run`, and colours as JSON. The deployed program has none of it
  */
 #ifndef SUPERVISOR_IMPL_H
 #define SUPERVISOR_IMPL_H
@@ -17,7 +18,9 @@
 #include "pn/pn_marking.h"
 #include "pn/pn_net.h"
 #include "pn/pn_text.h"
+#ifdef PN_TRACE
 #include "pn/pn_trace.h"
+#endif
 
 /* Exit codes; docs/protocol.md and --help list them. */
 typedef enum sup_exit {
@@ -35,8 +38,10 @@ typedef struct sup_options {
     const char *directory;
     const char *input;
     const char *files; /* folder for the net's files; NULL: none */
+#ifdef PN_TRACE
     const char *trace;        /* NULL: none */
-    bool dry_run;
+#endif
+    bool dry_run;             /* with PN_TRACE only */
     bool lockstep;
     bool paced;               /* --time-scale was given */
     double time_scale;        /* model time units per second */
@@ -54,7 +59,9 @@ typedef struct sup {
     pn_arena_t arena;
     void *marking;
     void *binding;            /* the binding that is fired */
+#ifdef PN_TRACE
     pn_trace_t trace;
+#endif
     double t;                 /* seconds since the start */
     uint64_t fired;
     uint64_t *fired_of;       /* per transition */
@@ -95,16 +102,16 @@ bool sup_next_time(sup_t *sup, double *t);
 /* Whether a final place holds a token. */
 bool sup_is_final(const sup_t *sup);
 
-/* The names of the final places that hold a token, with commas between: as JSON strings, or as they are. */
-void sup_final_places(const sup_t *sup, bool as_json, pn_text_t *text);
+/* The names of the final places that hold a token, with commas between. */
+void sup_final_places(const sup_t *sup, pn_text_t *text);
 
 /* The scalars of the token in a channel's place as text. */
 const char *sup_token_text(const sup_t *sup, const pn_cell_channel_t *channel, char *out, size_t capacity);
 
 /* --- supervisor_input.c --- */
 
-/* Replaces markings by what the input files hold. `json` receives the traces' object of these places. */
-bool sup_read_inputs(sup_t *sup, pn_text_t *json);
+/* Replaces markings by what the input files hold. */
+bool sup_read_inputs(sup_t *sup);
 
 /* --- supervisor_monitor.c --- */
 
@@ -122,6 +129,27 @@ bool sup_monitor_messages(sup_t *sup, pn_channel_direction_t direction);
 #define sup_monitor_choice(sup, owner, transition) (true)
 #define sup_monitor_step(sup, transition) (true)
 #define sup_monitor_messages(sup, direction) (true)
+#endif
+
+/* --- supervisor_trace.c --- */
+
+#ifdef PN_TRACE
+/* Opens the trace; after the input files have been read. False when the program has to stop. */
+bool sup_trace_start(sup_t *sup);
+/* A transition has occurred with `sup->binding`. */
+void sup_trace_occurrence(sup_t *sup, uint32_t transition);
+/* False, and the program has to stop, when something could not be written. */
+bool sup_trace_is_written(sup_t *sup);
+/* Why it ended; when it has come to its end, also where. */
+void sup_trace_end(sup_t *sup);
+/* What the places hold, for people. */
+void sup_trace_marking(const sup_t *sup);
+#else
+#define sup_trace_start(sup) (true)
+#define sup_trace_occurrence(sup, fired) sup_say((sup), 2, "%10.3f s  %s", (sup)->t, (sup)->net->transition[(fired)].name)
+#define sup_trace_is_written(sup) (true)
+#define sup_trace_end(sup) ((void)0)
+#define sup_trace_marking(sup) ((void)0)
 #endif
 
 /* --- supervisor_cell.c, supervisor_alone.c --- */

@@ -6,12 +6,13 @@
  */
 #include "supervisor_impl.h"
 
-#include <errno.h>
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
+
+#include "pn/pn_port.h"
 
 #define INPUT_MAX 65536U /* bytes of an input file */
 
@@ -34,21 +35,12 @@ static bool read_file(sup_t *sup, const pn_cell_input_t *input, input_text_t *te
     if (strcmp(sup->options.input, ".") == 0) {
         (void)snprintf(text->path, sizeof text->path, "%s", input->file);
     }
-    errno = 0;
-    FILE *const file = fopen(text->path, "rb");
-    if (file == NULL) {
-        return sup_stop(sup, SUP_EXIT_USAGE,
-                        "%s: cannot read the input file of place `%s`: %s; give its directory with --input DIR", text->path,
-                        input->place_name, strerror(errno));
-    }
-    text->length = fread(text->bytes, 1U, sizeof text->bytes, file);
-    const bool failed = (ferror(file) != 0);
-    const int error = errno;
-    (void)fclose(file);
+    const int error = pn_port_load(text->path, text->bytes, sizeof text->bytes, &text->length);
     text->at = 0U;
     text->line = 0U;
-    if (failed) {
-        return sup_stop(sup, SUP_EXIT_USAGE, "%s: cannot read the input file of place `%s`: %s", text->path,
+    if (error != 0) {
+        return sup_stop(sup, SUP_EXIT_USAGE,
+                        "%s: cannot read the input file of place `%s`: %s; give its directory with --input DIR", text->path,
                         input->place_name, strerror(error));
     }
     if (text->length == sizeof text->bytes) {
@@ -150,11 +142,10 @@ static bool stop_for_colour(sup_t *sup, const pn_cell_input_t *input, const inpu
                     (token->count > 0U) ? token->column_of[0] : 1U, place->colset, place->name);
 }
 
-bool sup_read_inputs(sup_t *sup, pn_text_t *json)
+bool sup_read_inputs(sup_t *sup)
 {
     static input_text_t text;
     static pn_message_t token;
-    pn_text_char(json, '{');
     for (uint32_t i = 0U; i < sup->cell->input_count; i++) {
         const pn_cell_input_t *const input = &sup->cell->input[i];
         const pn_place_t *const place = &sup->net->place[input->place];
@@ -170,13 +161,6 @@ bool sup_read_inputs(sup_t *sup, pn_text_t *json)
             sup->cx.error = PN_OK;
             return stop_for_colour(sup, input, &text, &token);
         }
-        if (i > 0U) {
-            pn_text_str(json, ", ");
-        }
-        pn_text_json_str(json, place->name);
-        pn_text_str(json, ": ");
-        pn_bag_json(place->bag, sup->marking, json);
     }
-    pn_text_char(json, '}');
     return true;
 }

@@ -3,16 +3,29 @@
  */
 #include "pn/pn_arena.h"
 #include "pn/pn_cell.h"
+#include "pn/pn_file.h"
+#include "pn/pn_marking.h"
 
 #include <stddef.h>
 
+void sup_run_cell(struct sup *sup);
+void sup_run_alone(struct sup *sup);
+
+#define HAND_ROOM                                                                                         \
+    {.marking = s_marking, .marking_size = sizeof s_marking, .binding = s_binding, .binding_size = &BINDING_SIZE, \
+     .fired_of = s_fired_of, .transition_count = 16U}
+#define HAND_NEEDS , .allow_files = pn_file_allow, .collect = pn_marking_collect, .next_time = pn_next_time
+static max_align_t s_marking[4096];
+static max_align_t s_binding[64];
+static const size_t BINDING_SIZE = sizeof s_binding;
+static uint64_t s_fired_of[16];
 static max_align_t s_arena[PN_ARENA_DEFAULT_SIZE / sizeof(max_align_t)];
 
 #ifdef HAND_ALONE
 
 const pn_cell_t pn_cell = {
     .abi = PN_CELL_ABI, .name = "hand", .version = "0", .digest = "0000", .side = "supervisor", .owner = -1,
-    .arena = s_arena, .arena_size = sizeof s_arena,
+    .arena = s_arena, .arena_size = sizeof s_arena, .room = HAND_ROOM, .needs = {.run = sup_run_alone HAND_NEEDS},
 };
 
 #else
@@ -55,6 +68,8 @@ const pn_cell_t pn_cell = {
     .final_place = FINAL,
     .arena = s_arena,
     .arena_size = sizeof s_arena,
+    .room = HAND_ROOM,
+    .needs = {.run = sup_run_cell HAND_NEEDS},
 };
 
 #endif

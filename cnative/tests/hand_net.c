@@ -69,13 +69,17 @@ static const pn_type_t ANSWER = {
     .kind = PN_KIND_INT, .name = "ANSWER", .size = sizeof(int64_t), .has_range = true, .low = INT64_MIN, .high = 9};
 static const pn_field_t POSITION_FIELD[] = {
     {"1", &REAL, offsetof(position_t, x), false}, {"2", &REAL, offsetof(position_t, y), false}};
+static const pn_part_t POSITION_PART[] = {{&REAL, offsetof(position_t, x)}, {&REAL, offsetof(position_t, y)}};
 static const pn_type_t POSITION = {
-    .kind = PN_KIND_RECORD, .name = "POSITION", .size = sizeof(position_t), .is_tuple = true, .count = 2U, .field = POSITION_FIELD};
+    .kind = PN_KIND_RECORD, .name = "POSITION", .size = sizeof(position_t), .is_tuple = true, .count = 2U, .field = POSITION_FIELD,
+    .part_count = 2U, .part = POSITION_PART};
 static const pn_field_t ORDER_FIELD[] = {
     {"1", &INT, offsetof(order_t, n), false}, {"2", &POSITION, offsetof(order_t, at), false}};
+static const pn_part_t ORDER_PART[] = {
+    {&INT, offsetof(order_t, n)}, {&REAL, offsetof(order_t, at.x)}, {&REAL, offsetof(order_t, at.y)}};
 static const pn_type_t ORDER_TYPE = {
     .kind = PN_KIND_RECORD, .name = "ORDER", .size = sizeof(order_t), .is_tuple = true, .count = 2U, .field = ORDER_FIELD,
-    .member = is_no_thirteen};
+    .part_count = 3U, .part = ORDER_PART, .member = is_no_thirteen};
 static const pn_field_t BINDING_FIELD[] = {
     {"n", &INT, offsetof(binding_t, n), false}, {"x", &REAL, offsetof(binding_t, x), false}};
 static const pn_type_t BINDING = {

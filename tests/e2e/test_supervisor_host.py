@@ -116,7 +116,7 @@ def build_supervisors(root: Path, folder: Path) -> None:
     """Each object once."""
     folder.mkdir()
     objects = [
-        compile_c(root, folder / f"{source.stem}.o", [source], *SANITIZE, "-c")
+        compile_c(root, folder / f"{source.stem}.o", [source], *SANITIZE, "-DPN_TRACE", "-c")
         for source in host_sources(root)
     ]
     main = [o for o in objects if o.name.startswith("supervisor")]
@@ -127,7 +127,7 @@ def build_supervisors(root: Path, folder: Path) -> None:
     compile_c(root, folder / "quick", [*objects, *hand], *SANITIZE, "-DHAND_DELAY=0")
     cell = root / "cnative/src/supervisor_cell.c"
     others = [o for o in objects if o.name != "supervisor_cell.o"]
-    patient = ("-DHAND_DELAY=0", "-DSUP_GRACE_S=600.0", f"-I{root / 'cnative/src'}")
+    patient = ("-DPN_TRACE", "-DHAND_DELAY=0", "-DSUP_GRACE_S=600.0", f"-I{root / 'cnative/src'}")
     compile_c(root, folder / "patient", [*others, cell, *hand], *SANITIZE, *patient)
     compile_c(root, folder / "alone", [*objects, *hand], *SANITIZE, "-DHAND_ALONE")
     compile_c(root, folder / "scalars", [*common, tests / "scalars.c"], *SANITIZE)

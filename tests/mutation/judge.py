@@ -52,7 +52,7 @@ def judge_of(cell: Path, *flags: str) -> Iterator[Judge]:
     made = generate(cell, d)
     assert made is not None, [str(i) for i in d]
     with tempfile.TemporaryDirectory(prefix="pn2code-") as room:
-        yield Judge(cell, made, Path(room), (*FLAGS, *flags))
+        yield Judge(cell, made, Path(room), (*FLAGS, *HOST.flags, *HOST.net, *flags))
 
 
 class Judge:

@@ -55,7 +55,7 @@ def partition() -> Partition:
 
 
 def config(p: Partition) -> str:
-    files = emit(p, name="cell", reply_timeout_s=120.0, digest="d" * 64, version="9.9")
+    files = emit(p, name="cell", reply_timeout_s=120.0, digest="d" * 64, version="9.9", net_c="")
     assert [f.path for f in files] == ["cell_config.c", "Makefile"]
     return files[0].text
 
@@ -85,7 +85,9 @@ def test_same_input_same_bytes() -> None:
 
 
 def test_blocks_name_the_channels_lines() -> None:
-    files = emit(partition(), name="cell", reply_timeout_s=1.0, digest="d" * 64, version="9.9")
+    files = emit(
+        partition(), name="cell", reply_timeout_s=1.0, digest="d" * 64, version="9.9", net_c=""
+    )
     lines = files[0].text.splitlines()
     blocks = {b.element: b for b in files[0].blocks}
     block = blocks["Top.done"]
@@ -121,7 +123,9 @@ def test_c_literals() -> None:
 
 def test_sums_are_rounded_everywhere_alike(tmp_path: Path) -> None:
     """Whatever the caller's CFLAGS say, the last word is that of the token game and the explorer."""
-    files = emit(partition(), name="cell", reply_timeout_s=1.0, digest="d" * 64, version="9.9")
+    files = emit(
+        partition(), name="cell", reply_timeout_s=1.0, digest="d" * 64, version="9.9", net_c=""
+    )
 
     (makefile,) = [f for f in files if f.path == "Makefile"]
     (tmp_path / "Makefile").write_text(makefile.text)

@@ -7,13 +7,13 @@
 #ifndef PN_CELL_H
 #define PN_CELL_H
 
-#include "pn/pn_types.h"
+#include "pn/pn_net.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-#define PN_CELL_ABI 3U
+#define PN_CELL_ABI 4U
 #define PN_CELL_CHANNELS_MAX 128U
 #define PN_CELL_PEERS_MAX 64U
 
@@ -77,6 +77,26 @@ typedef struct pn_cell_peer {
     int32_t owner;       /* index in pn_net.owner */
 } pn_cell_peer_t;
 
+struct sup;
+
+/* What this net needs besides what every supervisor does; NULL: nothing. Only what is named here is linked. */
+typedef struct pn_cell_needs {
+    void (*run)(struct sup *sup);             /* sup_run_cell; sup_run_alone: there is no cell */
+    bool (*allow_files)(const char *folder);  /* pn_file_allow: the net reads or writes files */
+    void (*collect)(const pn_net_t *net, pn_ctx_t *cx, void *marking); /* pn_marking_collect: values refer into the arena */
+    bool (*next_time)(const pn_net_t *net, pn_ctx_t *cx, const void *marking, pn_time_t *next); /* pn_next_time: it is timed */
+} pn_cell_needs_t;
+
+/* Memory of a program that has no heap. */
+typedef struct pn_cell_room {
+    void *marking;          /* aligned as max_align_t */
+    size_t marking_size;
+    void *binding;          /* likewise; as large as the largest binding */
+    const size_t *binding_size;
+    uint64_t *fired_of;     /* for each transition */
+    uint32_t transition_count;
+} pn_cell_room_t;
+
 typedef struct pn_cell {
     uint32_t abi;              /* PN_CELL_ABI */
     const char *name;          /* of the net, "cell" */
@@ -97,6 +117,8 @@ typedef struct pn_cell {
     const uint32_t *final_place;
     void *arena;               /* memory for lists and strings (pn_arena.h), aligned as max_align_t; as much as was found to be enough */
     size_t arena_size;
+    pn_cell_room_t room;
+    pn_cell_needs_t needs;
 } pn_cell_t;
 
 extern const pn_cell_t pn_cell;

@@ -51,6 +51,9 @@ bool pn_port_dir_exists(int directory);
 
 void pn_port_close(int descriptor);
 
+/* Reads a whole file by its path, cut at `capacity`; the only one that need not lie in a directory that was opened. */
+PN_PORT_CHECK int pn_port_load(const char *path, char *buffer, size_t capacity, size_t *length);
+
 /* Reads a whole small file, cut at `capacity`; `*length` tells how much was read. With `held` the descriptor is kept open: as
  * long as it is, replacing the file does not have to free it, which makes that a third quicker. On an error it is -1. */
 PN_PORT_CHECK int pn_port_read(int directory, const char *name, char *buffer, size_t capacity, size_t *length, int *held);

@@ -37,7 +37,7 @@ static void set_used(const pn_bag_t *bag, void *marking, uint32_t used)
 
 void pn_bag_begin(const pn_bag_t *bag, void *marking)
 {
-    if (!bag->is_packed) {
+    if (!PN_IS_PACKED(bag)) {
         set_used(bag, marking, 0U);
     }
 }
@@ -179,7 +179,7 @@ pn_sum_state_t pn_sum_make(pn_ctx_t *cx, const pn_bag_t *bag, const pn_type_t *l
 
 uint64_t pn_bag_total(const pn_bag_t *bag, const void *marking)
 {
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         return packed_total(bag, marking);
     }
     uint64_t total = 0U;
@@ -191,7 +191,7 @@ uint64_t pn_bag_total(const pn_bag_t *bag, const void *marking)
 
 uint64_t pn_bag_available(const pn_bag_t *bag, const void *marking, pn_time_t now)
 {
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         return packed_total(bag, marking);
     }
     uint64_t total = 0U;
@@ -204,7 +204,7 @@ uint64_t pn_bag_available(const pn_bag_t *bag, const void *marking, pn_time_t no
 
 uint64_t pn_bag_count(const pn_bag_t *bag, const void *marking, const void *value, pn_time_t limit)
 {
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         const uint32_t number = bag->number_of(value);
         return (number != PN_NO_COLOUR) ? packed_count(bag, marking, number) : 0U;
     }
@@ -246,7 +246,7 @@ void pn_bag_check(pn_ctx_t *cx, const pn_bag_t *bag, void *value)
 
 bool pn_bag_add(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const void *value, uint32_t count, pn_time_t stamp)
 {
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         return packed_add(cx, bag, marking, value, count);
     }
     if (bag->is_slot && ((count > 1U) || (pn_bag_used(bag, marking) > 0U))) {
@@ -306,7 +306,7 @@ void pn_bag_remove_at(const pn_bag_t *bag, void *marking, uint32_t i, uint32_t c
 
 void pn_bag_clear(const pn_bag_t *bag, void *marking)
 {
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         packed_clear(bag, marking);
         return;
     }
@@ -405,7 +405,7 @@ static void packed_json(const pn_bag_t *bag, const void *marking, pn_text_t *out
 
 void pn_bag_json(const pn_bag_t *bag, const void *marking, pn_text_t *out)
 {
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         packed_json(bag, marking, out);
         return;
     }
@@ -432,7 +432,7 @@ void pn_bag_json(const pn_bag_t *bag, const void *marking, pn_text_t *out)
 
 uint32_t pn_bag_token(const pn_bag_t *bag, const void *marking, uint32_t i, pn_leaf_t *leaf, uint32_t capacity)
 {
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         pn_colour_t colour;
         uint32_t number = packed_next(bag, marking, 0U);
         for (uint32_t k = 0U; (k < i) && (number < bag->colours); k++) {
@@ -513,7 +513,7 @@ static bool get_stamp(const pn_bag_t *bag, const uint8_t *in, size_t length, siz
 
 size_t pn_bag_encode(const pn_bag_t *bag, const void *marking, uint8_t *out, size_t room)
 {
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         return packed_encode(bag, marking, out, room);
     }
     if (!bag->is_timed) {
@@ -576,7 +576,7 @@ static size_t source_end(const pn_bag_t *bag, const source_t *s)
 
 size_t pn_bag_decode(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uint8_t *in, size_t length)
 {
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         packed_clear(bag, marking);
         return pn_bag_add_bytes(cx, bag, marking, in, length);
     }
@@ -631,7 +631,7 @@ size_t pn_bag_add_bytes(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const 
 
 void pn_bag_relocate(pn_ctx_t *cx, const pn_bag_t *bag, void *marking)
 {
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         return; /* a colour of few refers to nothing */
     }
     for (uint32_t i = 0U; i < pn_bag_used(bag, marking); i++) {

@@ -177,7 +177,7 @@ static pn_move_t *next_move(const pn_moves_t *moves, pn_move_kind_t kind)
 static bool take(pn_ctx_t *cx, pn_move_t *move, void *marking)
 {
     const pn_bag_t *bag = move->bag;
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         const bool is_taken = pn_bag_take_packed(bag, marking, move->value, move->count);
         if (!is_taken) {
             pn_raise(cx, PN_ERR_SUBTRACT, NULL);
@@ -224,7 +224,7 @@ static void undo_move(pn_ctx_t *cx, const pn_move_t *move, void *marking)
         (void)pn_bag_add(cx, bag, marking, move->value, move->count, move->taken);
         return;
     }
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         (void)pn_bag_take_packed(bag, marking, move->value, move->count);
         return;
     }

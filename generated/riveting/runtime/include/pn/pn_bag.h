@@ -47,6 +47,13 @@ typedef struct pn_bag {
 
 #define PN_NO_COLOUR UINT32_MAX
 
+/* Whether a place is packed; a net without packed places is compiled with -DPN_ARRAYS_ONLY, which leaves their code out. */
+#if defined(PN_ARRAYS_ONLY)
+#define PN_IS_PACKED(bag) (false)
+#else
+#define PN_IS_PACKED(bag) ((bag)->is_packed)
+#endif
+
 /* Room for a colour of a packed place. */
 typedef union pn_colour {
     max_align_t align;

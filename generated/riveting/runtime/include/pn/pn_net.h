@@ -5,14 +5,15 @@
  * gives. Hosts (supervisor, simulate, explore, the program under test of `conform`) know nets only through this table. What is done
  * with markings in the same way in every net is in pn_marking.h, and with the multi-set of one place in pn_bag.h.
  *
- * In a generated folder one object file, net.o, is linked with the supervisor, its monitor and the simulator of the folder. It is the
- * object that is deployed. Others are made from the same net, all with the same flags for the standard and for floating-point numbers:
+ * Several objects are made from a net, all with the same flags for the standard and for floating-point numbers:
  *
+ *   deployed    net_own.o, linked with `./supervisor` of a generated folder: net.c without the transitions of robots (-DPN_OWN_ONLY). The
+ *               folder's net.o has all of them, for the supervisor's traced and monitored variants and for `./simulate`.
  *   verified    `pn2code verify` makes a net.c of its own, with packed places where that is possible and arrays of other sizes, and
  *               compiles it into its explorer. What is proved is proved of that one.
  *   simulated   `pn2code simulate` makes a net.c of its own, too, with large arrays and in one piece with its simulator.
  *   compared    `pn2code conform` compiles the net.c of the generated folder, and the sources of the deployed supervisor except
- *               port_posix.c, into its program under test. It compares that program, and the explorer's graph, with the token game in
+ *               port_posix.c, likewise without the transitions of robots, into its program under test. It compares that program, and the explorer's graph, with the token game in
  *               every state that can be reached (docs/conform.md).
  *
  * Errors: a net's expressions may raise (integer overflow, division by zero, no matching rule, a colour out of range, an
@@ -157,6 +158,12 @@ typedef struct pn_transition {
 
 /* For rows of the table of transitions: their functions and binding by the stem of the names; a list of indices with its length. */
 #define PN_CODE(code) .enumerate = code##_enumerate, .fire = code##_fire, .binding = &s_binding_##code
+/* The same for transitions of robots. The deployed supervisor never tries one, and has none of their code (-DPN_OWN_ONLY). */
+#if defined(PN_OWN_ONLY)
+#define PN_OTHERS(code) .binding = &s_binding_##code
+#else
+#define PN_OTHERS(code) PN_CODE(code)
+#endif
 #define PN_INDICES(member, ...)                                                                                 \
     .member##_count = (uint32_t)(sizeof((const uint32_t[]){ __VA_ARGS__ }) / sizeof(uint32_t)),                 \
     .member = (const uint32_t[]){ __VA_ARGS__ }

@@ -16,7 +16,8 @@
  *     ref              pointer to what it holds: a cell of pn_ref_new, or a static variable
  *     function, exn    as unions: the constructors are the functions, or exceptions, that there are
  *
- * The functions recurse over types and, for recursive data types, over values: never deeper than the value itself is nested.
+ * Records are walked by their tables of parts, without recursion. The functions recurse over lists, unions and what references hold,
+ * never deeper than the value itself is nested; a net without any of these is compiled with -DPN_FLAT_TYPES, which leaves that out.
  */
 #ifndef PN_TYPE_H
 #define PN_TYPE_H
@@ -53,6 +54,12 @@ typedef struct pn_field {
     bool is_boxed;                /* union: the member is a pointer to the argument */
 } pn_field_t;
 
+/* What a record consists of after all its records have been taken apart, in order; and after its own parts a record that is a subset. */
+typedef struct pn_part {
+    const struct pn_type *type;
+    size_t offset;                /* in the whole */
+} pn_part_t;
+
 typedef struct pn_type {
     pn_kind_t kind;
     const char *name;             /* of the colour set */
@@ -73,6 +80,8 @@ typedef struct pn_type {
     uint8_t char_high;
     uint32_t count;               /* of fields, of names */
     const pn_field_t *field;      /* RECORD, UNION */
+    uint32_t part_count;
+    const pn_part_t *part;        /* RECORD */
     const char *const *name_of_value; /* ENUM: constructors; UNIT, BOOL: as declared; INT with is_index: the stem */
     const struct pn_type *element;    /* LIST, REF */
     size_t head;                  /* LIST: offset of the head in a cell; the tail is first */
