@@ -13,6 +13,7 @@
 
 #include "pn/pn_port.h"
 
+#define OUTPUT_SIZE 4096U
 #define MAX_FIRINGS_CELL 100000U
 #define MAX_FIRINGS_ALONE 1000000U
 
@@ -27,8 +28,8 @@ bool sup_stop(sup_t *sup, sup_exit_t exit_code, const char *format, ...)
         sup->exit_code = exit_code;
         (void)vsnprintf(sup->reason, sizeof sup->reason, format, arguments);
         va_end(arguments);
-        for (char *c = sup->reason; *c != '\0'; c++) { /* it goes into one line of the status file and of lock-step */
-            *c = (*c == '\n') ? ' ' : *c;
+        for (size_t i = 0U; sup->reason[i] != '\0'; i++) { /* it goes into one line of the status file and of lock-step */
+            sup->reason[i] = (sup->reason[i] == '\n') ? ' ' : sup->reason[i];
         }
     }
     return false;
@@ -319,7 +320,7 @@ static bool start(sup_t *sup)
 int main(int argc, char **argv)
 {
     static sup_t sup;
-    static char output[BUFSIZ]; /* without it the C library would take one from the heap */
+    static char output[OUTPUT_SIZE]; /* without it the C library would take one from the heap */
     (void)setvbuf(stdout, output, _IOFBF, sizeof output);
     sup.net = &pn_net;
     sup.cell = &pn_cell;

@@ -152,9 +152,6 @@ void sup_trace_marking(const sup_t *sup);
 #define sup_trace_marking(sup) ((void)0)
 #endif
 
-/* --- supervisor_cell.c, supervisor_alone.c --- */
-
-void sup_run_cell(sup_t *sup);
-void sup_run_alone(sup_t *sup);
+/* supervisor_cell.c and supervisor_alone.c have sup_run_cell and sup_run_alone: see pn_cell.h. */
 
 #endif /* SUPERVISOR_IMPL_H */

@@ -57,7 +57,8 @@ static bool take_line(input_text_t *text, const char **line, size_t *length)
     while (!found && (text->at < text->length)) {
         const char *const begin = text->bytes + text->at;
         const char *const end = memchr(begin, '\n', text->length - text->at);
-        const size_t n = (end != NULL) ? (size_t)(end - begin) : text->length - text->at;
+        const ptrdiff_t distance = (end != NULL) ? (end - begin) : 0;
+        const size_t n = (end != NULL) ? (size_t)distance : text->length - text->at;
         text->at += n + ((end != NULL) ? 1U : 0U);
         text->line++;
         size_t first = 0U;

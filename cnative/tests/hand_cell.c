@@ -8,9 +8,6 @@
 
 #include <stddef.h>
 
-void sup_run_cell(struct sup *sup);
-void sup_run_alone(struct sup *sup);
-
 #define HAND_ROOM                                                                                         \
     {.marking = s_marking, .marking_size = sizeof s_marking, .binding = s_binding, .binding_size = &BINDING_SIZE, \
      .fired_of = s_fired_of, .transition_count = 16U}

@@ -24,8 +24,6 @@
 #include "pn/pn_cell.h"
 #include "net.h"
 
-void sup_run_cell(struct sup *sup);
-
 #include <stddef.h>
 #include <stdint.h>
 

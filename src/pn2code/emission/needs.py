@@ -44,7 +44,7 @@ class Needs:
             found.append('#include "pn/pn_file.h"')
         if self.collect != _NONE or self.next_time != _NONE:
             found.append('#include "pn/pn_marking.h"')
-        return (*found, "", f"void {self.run}(struct sup *sup);")
+        return tuple(found)
 
 
 def of(net_c: str, *, is_cell: bool) -> Needs:

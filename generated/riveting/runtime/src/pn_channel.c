@@ -370,7 +370,8 @@ static bool enum_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf
 static int hex_value(char c)
 {
     const char *const at = (c != '\0') ? strchr(HEX, c) : NULL;
-    return (at != NULL) ? (int)(at - HEX) : -1;
+    const ptrdiff_t distance = (at != NULL) ? (at - HEX) : -1;
+    return (int)distance;
 }
 
 /* Decodes a quoted string into the message's text. */
@@ -390,7 +391,8 @@ static bool string_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_le
                 c = word->text[i++];
             } else if ((left >= 3U) && (word->text[i] == 'x') && (hex_value(word->text[i + 1U]) >= 0) &&
                        (hex_value(word->text[i + 2U]) >= 0)) {
-                c = (char)((hex_value(word->text[i + 1U]) * 16) + hex_value(word->text[i + 2U]));
+                const int code = (hex_value(word->text[i + 1U]) * 16) + hex_value(word->text[i + 2U]);
+                c = (char)code;
                 i += 3U;
             } else {
                 good = false;
@@ -550,7 +552,8 @@ static bool trailer_parse(const char *payload, size_t payload_length, const char
     (void)memcpy(found_session, run.text, run.length);
     found_session[run.length] = '\0';
     for (size_t i = 0U; i < seq.length; i++) {
-        out->seq = (out->seq * 10U) + (uint64_t)(seq.text[i] - '0');
+        const int digit = seq.text[i] - '0';
+        out->seq = (out->seq * 10U) + (uint64_t)digit;
     }
     out->sealed = true;
     const uint32_t expected = seal(payload, payload_length, out->seq, found_session);
@@ -570,7 +573,8 @@ static bool trailer_parse(const char *payload, size_t payload_length, const char
 static size_t line_length(const char *text, size_t length)
 {
     const char *const end = memchr(text, '\n', length);
-    size_t n = (end != NULL) ? (size_t)(end - text) : length;
+    const ptrdiff_t distance = (end != NULL) ? (end - text) : 0;
+    size_t n = (end != NULL) ? (size_t)distance : length;
     return n;
 }
 

@@ -49,7 +49,8 @@ static struct {
 
 static double wall_time(void)
 {
-    return (double)(pn_port_now() - s_cell.begin) * 1e-9;
+    const uint64_t passed = pn_port_now() - s_cell.begin;
+    return (double)passed * 1e-9;
 }
 
 static bool stop_for_transport(sup_t *sup)
@@ -379,7 +380,8 @@ static bool command_line(char *line, size_t capacity)
         }
         end = memchr(buffer, '\n', have);
     }
-    const size_t length = (size_t)(end - buffer);
+    const ptrdiff_t distance = end - buffer;
+    const size_t length = (size_t)distance;
     const size_t kept = (length < capacity) ? length : capacity - 1U;
     (void)memcpy(line, buffer, kept);
     line[kept] = '\0';
@@ -392,8 +394,9 @@ static bool step_command(sup_t *sup, double t, bool *finished)
 {
     uint64_t fired = 0U;
     char text[128];
-    char when[PN_REAL_TEXT_SIZE] = "-";
+    char when[PN_REAL_TEXT_SIZE];
     double next = 0.0;
+    (void)memcpy(when, "-", sizeof "-");
     if (!look_at_peers(sup) || !cycle(sup, t, &fired)) {
         return false;
     }

@@ -77,7 +77,10 @@ typedef struct pn_cell_peer {
     int32_t owner;       /* index in pn_net.owner */
 } pn_cell_peer_t;
 
+/* The supervisor host: what the program does from start to end, with a cell and without one. */
 struct sup;
+void sup_run_cell(struct sup *sup);
+void sup_run_alone(struct sup *sup);
 
 /* What this net needs besides what every supervisor does; NULL: nothing. Only what is named here is linked. */
 typedef struct pn_cell_needs {
