@@ -125,7 +125,8 @@ static inline view_t look(const unsigned char *bucket, unsigned char tag, uint32
     view_t view = { 0U, 0U, 0U };
 #ifdef EX_VECTOR
     const uint32_t all = (1U << slots) - 1U;
-    const __m128i tags = _mm_load_si128((const __m128i *)(const void *)bucket);
+    /* Read only once, which `volatile` demands: as in explore_words.h. */
+    const __m128i tags = *(const volatile __m128i *)(const volatile void *)bucket;
     view.same = (uint32_t)_mm_movemask_epi8(_mm_cmpeq_epi8(tags, _mm_set1_epi8((char)tag))) & all;
     view.vacant = (uint32_t)_mm_movemask_epi8(_mm_cmpeq_epi8(tags, _mm_setzero_si128())) & all;
     view.busy = (uint32_t)_mm_movemask_epi8(_mm_cmpeq_epi8(tags, _mm_set1_epi8((char)BUSY))) & all;

@@ -24,9 +24,10 @@ static inline ex_line_view_t ex_line_look(const uint64_t *line, uint64_t wanted)
 {
     ex_line_view_t view = { 0U, 0U };
 #ifdef EX_LINE_VECTOR
-    /* Each word is read as a whole; a store of the vector kind is not needed. */
-    const __m256i first = _mm256_load_si256((const __m256i *)(const void *)line);
-    const __m256i last = _mm256_load_si256((const __m256i *)(const void *)&line[4]);
+    /* Each word is read as a whole, and only once, which `volatile` demands: if a compiler read the line once for what is the same and
+     * once for what is free, a word that another thread enters in between would be neither, and would be entered again behind itself. */
+    const __m256i first = *(const volatile __m256i *)(const volatile void *)line;
+    const __m256i last = *(const volatile __m256i *)(const volatile void *)&line[4];
     const __m256i all = _mm256_set1_epi64x((long long)wanted);
     const __m256i zero = _mm256_setzero_si256();
     view.same = (uint32_t)_mm256_movemask_pd(_mm256_castsi256_pd(_mm256_cmpeq_epi64(first, all)))

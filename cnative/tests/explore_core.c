@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * explore_core.c - the store and the tables of numbers against plain ones: `explore_core store|threads|numbers|memory SEED`.
+ * explore_core.c - the store and the tables of numbers against plain ones: `explore_core store|threads|meetings|numbers|memory SEED`.
  *
  * Prints `fine`, or what is wrong.
  */
+#include <sched.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -287,6 +288,67 @@ static void try_threads(void)
     try_threads_on(&s_codec);
 }
 
+/* --- meetings ------------------------------------------------------------------------------------------------------------- */
+
+/* Two threads that put the same key into the store at the same moment, again and again. */
+typedef struct meeting {
+    ex_store_t *store;
+    _Atomic uint64_t *come; /* how often a thread has come to the next key: both together */
+    uint64_t count;
+    uint64_t fresh;
+} meeting_t;
+
+enum { TOGETHER = 2 };
+
+static void *insert_at_once(void *user)
+{
+    meeting_t *const own = user;
+    for (uint64_t k = 0U; k < own->count; k++) {
+        const ex_key_t key = numbered(k + 1U, own->store->is_word ? s_word_widths : s_widths);
+        const uint64_t hash = ex_hash(&key);
+        (void)atomic_fetch_add(own->come, 1U);
+        while (atomic_load(own->come) < ((k + 1U) * (uint64_t)TOGETHER)) {
+            (void)sched_yield();
+        }
+        own->fresh += (ex_store_insert(own->store, &key, hash, NULL) == EX_NEW) ? 1U : 0U;
+    }
+    return NULL;
+}
+
+static void try_meetings_on(ex_codec_t *codec)
+{
+    const uint64_t count = 200000U;
+    ex_run_t run;
+    ex_store_t store;
+    pthread_t thread[TOGETHER];
+    meeting_t meeting[TOGETHER];
+    _Atomic uint64_t come;
+    atomic_init(&come, 0U);
+    make_run(&run, (uint64_t)1U << 30U);
+    run.codec = codec;
+    check(ex_store_make(&store, &run, codec->is_word ? s_word_widths : s_widths, (count * 5U) / 4U), "no memory");
+    for (uint32_t i = 0U; i < (uint32_t)TOGETHER; i++) {
+        meeting[i] = (meeting_t){ .store = &store, .come = &come, .count = count };
+        check(pthread_create(&thread[i], NULL, insert_at_once, &meeting[i]) == 0, "no thread");
+    }
+    uint64_t fresh = 0U;
+    for (uint32_t i = 0U; i < (uint32_t)TOGETHER; i++) {
+        (void)pthread_join(thread[i], NULL);
+        fresh += meeting[i].fresh;
+    }
+    check(fresh == count, "a key is new for two that meet");
+    check(count_slots(&store) == count, "another number of slots than of keys that were met");
+    ex_store_free(&store);
+}
+
+static void try_meetings(void)
+{
+    static ex_codec_t s_codec;
+    try_meetings_on(&s_codec);
+    s_codec.is_word = true;
+    try_meetings_on(&s_codec);
+}
+
 /* --- numbers -------------------------------------------------------------------------------------------------------------- */
 
 static void try_numbers(void)
@@ -364,7 +426,7 @@ int main(int argc, char **argv)
     static const struct {
         const char *name;
         void (*try)(void);
-    } s_parts[] = { { "store", try_stores }, { "threads", try_threads }, { "numbers", try_numbers }, { "memory", try_memory } };
+    } s_parts[] = { { "store", try_stores }, { "threads", try_threads }, { "meetings", try_meetings }, { "numbers", try_numbers }, { "memory", try_memory } };
     s_random = (argc > 2) ? strtoull(argv[2], NULL, 10) : 1U;
     for (size_t i = 0U; (argc > 1) && (i < (sizeof s_parts / sizeof s_parts[0])); i++) {
         if (strcmp(argv[1], s_parts[i].name) == 0) {
@@ -373,6 +435,6 @@ int main(int argc, char **argv)
             return 0;
         }
     }
-    (void)printf("usage: explore_core store|threads|numbers|memory SEED\n");
+    (void)printf("usage: explore_core store|threads|meetings|numbers|memory SEED\n");
     return 2;
 }

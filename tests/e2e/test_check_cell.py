@@ -106,11 +106,20 @@ def test_verify_says_nothing_of_a_cell_that_is_not_generated(what: str, tmp_path
     assert code in said[0].stderr and said[1].stderr == said[0].stderr and said[1].stdout == ""
 
 
+def test_a_sensor_of_a_misspelt_variable_is_named_where_a_script_lacks_it(tmp_path: Path) -> None:
+    found = diagnostics(write(tmp_path, *with_sensor("", variable="bb")))
+    said = " ".join(message for _, _, message in found)
+    assert "nothing decides the value of `b`" in said, found
+    assert "no robot or device asks sensor `eye`" in said and "leaves variable `bb` open" in said, (
+        found
+    )
+
+
 @pytest.mark.parametrize(
     ("text", "words"),
     [
         ("true\nfalse\n1\n", ""),
-        ("true\nyes\n", "`yes` is neither `0` nor `1`"),
+        ("true\nyes\n", "`yes` is neither `true` (or `1`) nor `false` (or `0`)"),
         ("# nothing\n", "holds no value"),
         (None, "there is no file `eye.txt`"),
     ],

@@ -10,6 +10,7 @@ import pytest
 from helpers.explored import Explorers, agrees, explorer_test
 from helpers.netbuilder import flat
 from helpers.random_graphs import numbered
+from pn2code.verify.programs import HOST
 
 pytestmark = pytest.mark.cc
 
@@ -39,6 +40,13 @@ def _says(program: Path, part: str, seed: int) -> str:
 @pytest.mark.parametrize("part", ["store", "numbers", "memory", "threads"])
 def test_against_plain_tables(checked: Path, part: str, seed: int) -> None:
     assert _says(checked, part, seed) == "fine\n"
+
+
+def test_threads_that_meet_at_a_key_as_explorers_are_compiled(tmp_path: Path) -> None:
+    """Only with these flags are lines read by instructions that a compiler may repeat."""
+    built = _built(tmp_path, "-O2", *HOST.flags)
+    for part in ("threads", "meetings"):
+        assert _says(built, part, 1) == "fine\n", part
 
 
 def test_threads_do_not_race(tmp_path: Path) -> None:

@@ -78,6 +78,11 @@ FUSED = Verdict(
 RESETS = Verdict(
     "engine", "its state space tool does not carry out reset arcs at ports and fused places"
 )
+UNENTERED = Verdict(
+    "engine", "its state space tool cannot be entered with a name or a fusion set of the net"
+)
+SPACE_WARNINGS = {"state-space-name", "state-space-fusion"}
+ENTERING = "Exception raised entering state space tool"
 SUBTRACT = re.compile(r"Exception Subtract raised while executing .*\((\w+)\)")
 BROKEN = "InternalError"
 """So the engine names what is wrong with itself."""
@@ -109,6 +114,10 @@ class Seen:
                 self.game = Game(self.net, seed=1)
             except GameError as error:
                 self.raised = error.message
+
+    def unentered(self, message: str) -> bool:
+        """Whether the state space tool fails with a message that was foreseen."""
+        return ENTERING in message and not SPACE_WARNINGS.isdisjoint(self.codes)
 
     # --- verdict and marking
 

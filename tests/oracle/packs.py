@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from tests.oracle import engine
-from tests.oracle.compare import LATE, UNCOMPILED, Seen, Verdict, differs
+from tests.oracle.compare import LATE, UNCOMPILED, UNENTERED, Seen, Verdict, differs
 from tests.oracle.together import numbers_in, one_of, side_by_side
 
 from helpers.netbuilder import cpn
@@ -79,6 +79,7 @@ def asked(kind: Kind, nets: dict[int, str], folder: Path) -> Iterator[Result]:
             failure = said["failure"]
             said_so = differs(f"the engine: {failure['kind']}: {failure['message']}")
             answer = LATE if UNCOMPILED in failure["message"] else said_so
+            answer = UNENTERED if seen.unentered(failure["message"]) else answer
         yield Result(numbers, path, {"verdict": verdict, kind.name: answer}, said)
         return
     blamed = json.dumps([said.get("errors"), said.get("failure")])

@@ -74,6 +74,35 @@ def test_port_without_a_socket_anywhere() -> None:
     assert [x.code for x in d] == ["port-unassigned"] * 2
 
 
+def test_the_only_place_of_a_fusion_set_as_a_socket() -> None:
+    """CPN Tools cannot enter its state-space tool with it; with a second place or instance it can (asked)."""
+    alone = HIERARCHY.replace("place B :", "place B fusion F :")
+    _, d = run(alone)
+    assert warned(d) == ["state-space-fusion"]
+    _, d = run(
+        alone.replace(
+            "place B fusion F : INT", "place B fusion F : INT\n        place C fusion F : INT"
+        )
+    )
+    assert not warned(d)
+    _, d = run(HIERARCHY.replace("place M :", "place M fusion F :"))
+    assert not warned(d)  # no socket
+    below = """
+      page Low
+        place Z port in : INT
+        trans T
+          in Z : n
+    """
+    inner = alone.replace("place B fusion F :", "place B :").replace(
+        "place M : INT", "place M fusion F : INT\n        subst L = Low (Z -> M)"
+    )
+    _, d = run(inner.rstrip() + below)
+    assert not warned(d)  # two instances of the page
+    once = inner.replace("        subst S2 = Sub (I -> B, O -> A)\n", "")
+    _, d = run(once.rstrip() + below)
+    assert warned(d) == ["state-space-fusion"]
+
+
 def test_bad_and_double_assignments() -> None:
     net, d = run(
         HIERARCHY.replace("(I -> B, O -> A)", "(I -> B, O -> A, M -> B, O -> B, I -> Nowhere)")

@@ -237,6 +237,38 @@ def test_partitions(tmp_path: Path) -> None:
     assert enabled(moved(op("gtp", part, other), ABC + parts), tmp_path) == []
 
 
+def test_an_element_of_a_partition_is_all_values_in_it(tmp_path: Path) -> None:
+    """Where values of the divided sort are wanted, as in the contest's VehicularWifi."""
+    parts = (
+        '<partition id="Half" name="Half"><usersort declaration="Abc"/>'
+        '<partitionelement id="low" name="low"><useroperator declaration="a"/><useroperator declaration="b"/>'
+        '</partitionelement><partitionelement id="high" name="high"><useroperator declaration="c"/>'
+        "</partitionelement></partition>"
+    )
+    pair = named("Pair", f"<productsort>{sort('Abc')}{sort('Abc')}</productsort>")
+    both = op("add", const("low"), const("high"))
+    text = net(
+        place("P", "Pair", op("tuple", const("a"), both)),
+        place("Q", "Abc", const("low")),
+        declarations=ABC + parts + pair,
+    )
+    assert [len(p) for p in Game(flat(text, tmp_path)).marking.places] == [3, 2]
+
+
+def test_summands_that_share_a_variable(tmp_path: Path) -> None:
+    """CPN Tools finds no order to bind them; a PNML net is none of its nets, and has a meaning."""
+    pair = named("Pair", f"<productsort>{sort('Abc')}{sort('Abc')}</productsort>")
+    tuples = [op("tuple", var("x"), var("y")), op("tuple", var("x"), var("z"))]
+    text = net(
+        place("P", "Pair", op("tuple", const("a"), every("Abc"))),
+        transition("t"),
+        arc("P", "t", op("add", *tuples)),
+        declarations=ABC + pair + variable("z", "Abc"),
+    )
+    game = Game(flat(text, tmp_path))
+    assert len(list(game.enabled())) == 6  # y and z are different tokens
+
+
 def test_operators_of_the_net(tmp_path: Path) -> None:
     twice = (
         '<namedoperator id="skip" name="skip"><parameter>'

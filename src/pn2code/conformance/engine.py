@@ -24,6 +24,7 @@ expressions 1,361 agreed with the evaluator (of the others three need more memor
 | a timed net in which nothing can occur any more | its clock may advance to a time that it has noted for tokens that are gone | keeps the time of the last step |
 | state spaces of timed nets, 4.0.0 | restores time stamps relative to the time of the node (those of 3.0.3 are right) | restores them correctly |
 | top-level names that its state-space sources use | the state space tool cannot be entered | a warning (`state-space-name`) |
+| a socket that is the only place instance of a fusion set | the state space tool cannot be entered (`ExnDuringExecution`) | a warning (`state-space-fusion`) |
 
 Of 1,000 published nets with one text changed, 157 were accepted by both, with the same initial markings. The verdicts differed for four, all fixed since (reserved words,
 an empty declaration); 34 differences were faults of the engine. Of 560 random nets in packs (280 for their state spaces, 280 for runs), 556 verdicts, 264 whole state

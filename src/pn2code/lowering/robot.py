@@ -59,15 +59,23 @@ def lower_robots(
             for x in found:
                 if (x.code, x.message, x.origin.line, x.origin.column) not in said:
                     d.items.append(x)
-    if len(d.errors) == before:
-        _unasked(out, partition, config, d)
+    _unasked(out, partition, config, d, all_made=len(d.errors) == before)
     return tuple(out) if len(d.errors) == before else None
 
 
 def _unasked(
-    programs: Sequence[RobotIR], partition: Partition, config: CellConfig, d: Diagnostics
+    programs: Sequence[RobotIR],
+    partition: Partition,
+    config: CellConfig,
+    d: Diagnostics,
+    *,
+    all_made: bool,
 ) -> None:
-    """Sensors that no program asks: a misspelt variable would otherwise go unnoticed."""
+    """Sensors that no program asks: a misspelt variable would otherwise go unnoticed.
+
+    Where not all programs could be made (perhaps for lack of just this sensor), only those whose variable the net
+    does not have.
+    """
     asked = {
         s.sensor
         for ir in programs
@@ -77,7 +85,7 @@ def _unasked(
     }
     names = {v.name for x in partition.net.transitions for v in x.variables}
     for sensor in config.sensors:
-        if sensor.name not in asked:
+        if sensor.name not in asked and (all_made or sensor.variable not in names):
             d.error(
                 CELL_VALUE,
                 f"no robot or device asks sensor `{sensor.name}`: none of them leaves variable "

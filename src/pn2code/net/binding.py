@@ -77,6 +77,7 @@ class Planner:
 
     Args:
         declared: names of colour sets with `declare all`, enumerated at any size.
+        is_pnml: whether what CPN Tools finds no order for is no error.
     """
 
     def __init__(
@@ -85,7 +86,10 @@ class Planner:
         terms: TermReader,
         declared: frozenset[str],
         d: Diagnostics,
+        *,
+        is_pnml: bool = False,
     ) -> None:
+        self.is_pnml = is_pnml
         self.variables = variables
         self.terms = terms
         self.declared = declared
@@ -111,7 +115,7 @@ class Planner:
         everything = merge([needed, *outputs, self.variables.of(parts.delay)])
         free = {s: at for s, at in everything.items() if s not in results}
         steps = self.steps(parts, needed, free)
-        if steps is None or not self.check_sequence(parts, free):
+        if steps is None or not (self.is_pnml or self.check_sequence(parts, free)):
             return None
         self.warn_of_local_names(parts, steps, free)
         ordered = sorted(free, key=lambda s: (s.name, s.uid))

@@ -110,7 +110,9 @@ class _Checker:
         self.program = self.elaborator.program()
         self.variables = NetVariables(self.program.variables)
         self.terms = TermReader(self.program, self.variables, d)
-        self.planner = Planner(self.variables, self.terms, frozenset(declared), d)
+        self.planner = Planner(
+            self.variables, self.terms, frozenset(declared), d, is_pnml=self.is_pnml
+        )
 
     def declare(self, declaration: RawDeclaration) -> None:
         """Hand one declaration to the elaborator."""

@@ -214,6 +214,13 @@ SPACE_NAME = register(
     "value or colour set whose name these sources use keeps them from compiling: `Exception raised entering state "
     "space tool`. The simulator is not affected, and neither is pn2code.",
 )
+SPACE_FUSION = register(
+    "state-space-fusion",
+    "the only place of a fusion set is a socket",
+    "CPN Tools cannot enter its state-space tool (`Exception raised entering state space tool`) with a net in which "
+    "the only place instance of a fusion set is the socket of a substitution transition. The simulator is not "
+    "affected, and neither is pn2code.",
+)
 RESERVED_WORD = register(
     "reserved-word",
     "a reserved word of CPN Tools is declared",

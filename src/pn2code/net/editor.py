@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from pn2code.diagnostics import Diagnostics, Note
+from pn2code.net import lonely_fusions
 from pn2code.net.codes import NAME_NOT_UNIQUE, PORT_UNASSIGNED, SOCKET_ARCS, SOCKET_UNASSIGNED
 from pn2code.net.engine_names import sent_name
 from pn2code.net.linked import Page
@@ -35,6 +36,7 @@ def warn(document: Document, pages: Iterable[Page], d: Diagnostics) -> None:
             if t.substitution is not None:
                 _sockets(page, t, linked, document, d)
     _ports(document, linked, d)
+    lonely_fusions.warn(linked, d)
 
 
 def _names(

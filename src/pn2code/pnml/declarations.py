@@ -390,6 +390,15 @@ class Declarations:
         sort = self._sorts.get(owner.get("id"))
         return None if sort is None else (self._constants[identity], sort)
 
+    def members(self, identity: str) -> tuple[str, ...]:
+        """The constants in an element of a partition, as CPN ML; () if it is none, or one of them is not known."""
+        element = self._nodes.get(identity)
+        found = self.constant(identity)
+        if element is None or element.tag != "partitionelement" or found is None:
+            return ()
+        texts = [self.literal(member, found[1].parts[0]) for member in element.children]
+        return () if None in texts else tuple(t for t in texts if t is not None)
+
     def operator(self, identity: str) -> Node | None:
         """The declaration of an operator of the net's own."""
         node = self._nodes.get(identity)

@@ -4,7 +4,7 @@ Example: `<numberof><subterm><numberconstant value="2"/></subterm><subterm><vari
 </numberof>` becomes ``2`x``.
 
 Where a multi-set is wanted, a value stands for one of it. In a tuple, a component may be a multi-set (`all`): the tuple
-is then the multi-set of all combinations.
+is then the multi-set of all combinations. An element of a partition stands for all values in it, where such are wanted.
 """
 
 from __future__ import annotations
@@ -189,7 +189,8 @@ class Terms:
         identity = node.get("declaration")
         constant = self.declarations.constant(identity)
         if constant is not None:
-            return Term(((constant[0], node),), constant[1])
+            whole = self._whole_part(node, constant[1], sort)
+            return whole if whole is not None else Term(((constant[0], node),), constant[1])
         operator = self.declarations.operator(identity)
         if operator is None:
             if not self.declarations.is_broken(identity):
@@ -218,6 +219,17 @@ class Terms:
         finally:
             self._given = before
             self._calls -= 1
+
+    def _whole_part(self, node: Node, of: Sort, wanted: Sort | None) -> Term | None:
+        """An element of a partition where a value of the divided sort is wanted: all values in it, once each."""
+        if of.kind is not SortKind.PARTITION or wanted is None or not wanted.fits(of.parts[0]):
+            return None
+        members = self.declarations.members(node.get("declaration"))
+        if not members:
+            return None
+        return Term(
+            _joined(" ++ ", [((f"1`{m}", node),) for m in members], node), wanted, True, False
+        )
 
     def _dot(self, node: Node, sort: Sort | None) -> Term:
         found = sort if sort is not None and sort.kind is SortKind.DOT else DOT

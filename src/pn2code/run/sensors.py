@@ -11,13 +11,13 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from pn2code.cell.codes import CELL_FILE, CELL_MISSING, CELL_VALUE
 from pn2code.cell.config import CellConfig, SensorConfig
 from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
-from pn2code.channels.scalars import Malformed, format_scalars, parse_scalars
+from pn2code.channels.scalars import Malformed, format_scalars, parse_scalars, quote
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.net.flat import FlatNet
 from pn2code.os_reason import os_reason
@@ -148,7 +148,15 @@ def _parsed(scalars: tuple[Scalar, ...], text: str) -> tuple[Value, ...] | Malfo
     word = text.strip()
     if scalars[0].kind is ScalarKind.BOOL and word in ("true", "false"):
         return (word == "true",)
-    return parse_scalars(scalars, text)
+    found = parse_scalars(scalars, text)
+    if (
+        scalars[0].kind is ScalarKind.BOOL
+        and isinstance(found, Malformed)
+        and not found.wrong_count
+    ):
+        says = f"{quote(word)} is neither `true` (or `1`) nor `false` (or `0`)"
+        return replace(found, text=says)
+    return found
 
 
 def _default(
