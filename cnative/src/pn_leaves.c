@@ -6,7 +6,7 @@
 #include "pn/pn_type.h"
 #include "pn_type_impl.h"
 
-/* --- how many, and on which lines ---------------------------------------------------------------------------------- */
+/* --- how many, and on which lines --------------------------------------------------------------------------------- */
 
 /* Whether a value is one scalar. */
 static bool is_scalar(const pn_type_t *type)
@@ -45,7 +45,7 @@ uint32_t pn_line_leaves(const pn_type_t *type, uint32_t line)
     return (pn_line_count(type) > 1U) ? pn_leaf_count(type->field[line].type) : pn_leaf_count(type);
 }
 
-/* --- there and back ------------------------------------------------------------------------------------------------ */
+/* --- there and back ----------------------------------------------------------------------------------------------- */
 
 static bool push_leaf(pn_leaf_t *leaf, uint32_t capacity, uint32_t *used, pn_leaf_t value)
 {
@@ -86,16 +86,13 @@ static bool leaf_of(const pn_type_t *type, const void *value, pn_leaf_t *leaf, u
         one.integer = (int64_t)load_tag(value);
         one.text = type->name_of_value[load_tag(value)];
         return push_leaf(leaf, capacity, used, one);
-    case PN_KIND_UNIT:
-        return push_leaf(leaf, capacity, used, one);
-    case PN_KIND_RECORD:
-        return true; /* its parts have been taken */
+    case PN_KIND_UNIT: return push_leaf(leaf, capacity, used, one);
+    case PN_KIND_RECORD: return true; /* its parts have been taken */
     case PN_KIND_CHAR:
     case PN_KIND_LIST:
     case PN_KIND_UNION:
     case PN_KIND_REF:
-    default:
-        return false;
+    default: return false;
     }
 }
 
@@ -125,7 +122,8 @@ static bool enum_from_leaf(const pn_type_t *type, const pn_leaf_t *leaf, void *v
     return tag < type->count;
 }
 
-static bool part_from(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn_leaf_t *leaf, uint32_t leaves, uint32_t *used)
+static bool part_from(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn_leaf_t *leaf, uint32_t leaves,
+                      uint32_t *used)
 {
     if (type->kind == PN_KIND_RECORD) {
         return true; /* its parts are there */
@@ -142,9 +140,7 @@ static bool part_from(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn
         (void)memcpy(value, &flag, sizeof flag);
         return one->kind == PN_LEAF_BOOL;
     }
-    case PN_KIND_INT:
-        (void)memcpy(value, &one->integer, sizeof one->integer);
-        return is_integer;
+    case PN_KIND_INT: (void)memcpy(value, &one->integer, sizeof one->integer); return is_integer;
     case PN_KIND_BIG: {
         const pn_big_t number = PN_BIG(one->integer);
         (void)memcpy(value, &number, sizeof number);
@@ -163,18 +159,14 @@ static bool part_from(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn
         (void)memcpy(value, &text, sizeof text);
         return true;
     }
-    case PN_KIND_ENUM:
-        return (one->kind == PN_LEAF_ENUM) && enum_from_leaf(type, one, value);
-    case PN_KIND_UNIT:
-        (void)memset(value, 0, type->size);
-        return one->kind == PN_LEAF_ENUM;
+    case PN_KIND_ENUM: return (one->kind == PN_LEAF_ENUM) && enum_from_leaf(type, one, value);
+    case PN_KIND_UNIT: (void)memset(value, 0, type->size); return one->kind == PN_LEAF_ENUM;
     case PN_KIND_CHAR:
     case PN_KIND_RECORD:
     case PN_KIND_LIST:
     case PN_KIND_UNION:
     case PN_KIND_REF:
-    default:
-        return false;
+    default: return false;
     }
 }
 

@@ -55,7 +55,7 @@ bool pn_real_is_normal(double x)
     return isnormal(x) != 0;
 }
 
-/* --- texts --------------------------------------------------------------------------------------------------------- */
+/* --- texts -------------------------------------------------------------------------------------------------------- */
 
 double pn_real_read(pn_string_t text)
 {
@@ -85,8 +85,8 @@ static pn_string_t in_sml(pn_ctx_t *cx, char *text)
     return pn_string_make(cx, text, n);
 }
 
-/* General notation as SML/NJ has it: so many significant digits without trailing zeros, but for one behind the point; with an
- * exponent of two digits at least when that is below -4 or not below the number of digits. */
+/* General notation as SML/NJ has it: so many significant digits without trailing zeros, but for one behind the point;
+ * with an exponent of two digits at least when that is below -4 or not below the number of digits. */
 static pn_string_t general(pn_ctx_t *cx, int64_t digits, double x, char *text, size_t size)
 {
     (void)snprintf(text, size, "%.*e", (int)digits - 1, x);
@@ -149,21 +149,16 @@ pn_string_t pn_real_styled(pn_ctx_t *cx, int64_t style, int64_t digits, double x
     if (isinf(x)) {
         return (x < 0.0) ? PN_STRING("~inf") : PN_STRING("inf");
     }
-    char text[1600]; /* the largest number has 309 digits in front of the point */
+    char text[1600];           /* the largest number has 309 digits in front of the point */
     const int64_t most = 1100; /* all further ones are zeros: Real.sml appends them */
     const int places = (int)((digits > most) ? most : digits);
     if (pn_real_equal(x, 0.0)) {
         x = 0.0; /* zero has no sign */
     }
     switch (style) {
-    case 0:
-        (void)snprintf(text, sizeof text, "%.*e", places, x);
-        return in_sml(cx, text);
-    case 1:
-        (void)snprintf(text, sizeof text, "%.*f", places, x);
-        return in_sml(cx, text);
-    case 2:
-        return general(cx, places, x, text, sizeof text);
+    case 0: (void)snprintf(text, sizeof text, "%.*e", places, x); return in_sml(cx, text);
+    case 1: (void)snprintf(text, sizeof text, "%.*f", places, x); return in_sml(cx, text);
+    case 2: return general(cx, places, x, text, sizeof text);
     default:
         if (pn_real_equal(x, 0.0)) {
             return PN_STRING("0.0");

@@ -93,8 +93,7 @@ pn_string_t pn_string_of_char(pn_ctx_t *cx, uint8_t c)
 
 bool pn_string_is_prefix(pn_string_t part, pn_string_t s)
 {
-    return (part.length == 0U)
-           || ((part.length <= s.length) && (memcmp(part.bytes, s.bytes, part.length) == 0));
+    return (part.length == 0U) || ((part.length <= s.length) && (memcmp(part.bytes, s.bytes, part.length) == 0));
 }
 
 bool pn_string_is_suffix(pn_string_t part, pn_string_t s)

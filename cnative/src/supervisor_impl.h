@@ -7,7 +7,8 @@
  *   supervisor_cell.c   the cell: channels, peers, real time and lock-step
  *   supervisor_monitor.c  with -DPN_MONITOR: each step checked against the rules of the net
  *   supervisor_alone.c  the whole net in memory: --dry-run, and nets without a cell
- *   supervisor_trace.c  with -DPN_TRACE: `--trace`, `--dry-run`, and colours as JSON. The deployed program has none of it
+ *   supervisor_trace.c  with -DPN_TRACE: `--trace`, `--dry-run`, and colours as JSON. The deployed program has none of
+ * it
  */
 #ifndef SUPERVISOR_IMPL_H
 #define SUPERVISOR_IMPL_H
@@ -25,11 +26,11 @@
 /* Exit codes; docs/protocol.md and --help list them. */
 typedef enum sup_exit {
     SUP_EXIT_FINISHED = 0,
-    SUP_EXIT_MODEL = 1,       /* overflow, a value out of its colour set, no end of firing, deadlock */
-    SUP_EXIT_USAGE = 2,       /* command line, input file */
-    SUP_EXIT_PEER = 3,        /* a robot stopped, died or fell silent */
-    SUP_EXIT_CHANNEL = 4,     /* refused message, overrun */
-    SUP_EXIT_IO = 5,          /* directory missing, read-only, full; trace cannot be written */
+    SUP_EXIT_MODEL = 1,   /* overflow, a value out of its colour set, no end of firing, deadlock */
+    SUP_EXIT_USAGE = 2,   /* command line, input file */
+    SUP_EXIT_PEER = 3,    /* a robot stopped, died or fell silent */
+    SUP_EXIT_CHANNEL = 4, /* refused message, overrun */
+    SUP_EXIT_IO = 5,      /* directory missing, read-only, full; trace cannot be written */
     SUP_EXIT_INTERNAL = 70,
     SUP_EXIT_INTERRUPTED = 130
 } sup_exit_t;
@@ -39,16 +40,16 @@ typedef struct sup_options {
     const char *input;
     const char *files; /* folder for the net's files; NULL: none */
 #ifdef PN_TRACE
-    const char *trace;        /* NULL: none */
+    const char *trace; /* NULL: none */
 #endif
-    bool dry_run;             /* with PN_TRACE only */
+    bool dry_run; /* with PN_TRACE only */
     bool lockstep;
-    bool paced;               /* --time-scale was given */
-    double time_scale;        /* model time units per second */
-    uint64_t poll_ns;         /* 0: use notices */
+    bool paced;        /* --time-scale was given */
+    double time_scale; /* model time units per second */
+    uint64_t poll_ns;  /* 0: use notices */
     double reply_timeout_s;
-    uint64_t max_firings;     /* in one cycle; of a net without a cell: in all */
-    int verbosity;            /* 0 quiet, 1, 2 */
+    uint64_t max_firings; /* in one cycle; of a net without a cell: in all */
+    int verbosity;        /* 0 quiet, 1, 2 */
 } sup_options_t;
 
 typedef struct sup {
@@ -58,16 +59,16 @@ typedef struct sup {
     pn_ctx_t cx;
     pn_arena_t arena;
     void *marking;
-    void *binding;            /* the binding that is fired */
+    void *binding; /* the binding that is fired */
 #ifdef PN_TRACE
     pn_trace_t trace;
 #endif
-    double t;                 /* seconds since the start */
+    double t; /* seconds since the start */
     uint64_t fired;
-    uint64_t *fired_of;       /* per transition */
+    uint64_t *fired_of; /* per transition */
     bool stopped;
     sup_exit_t exit_code;
-    char reason[1024];        /* why it stopped */
+    char reason[1024]; /* why it stopped */
 } sup_t;
 
 /* Records why the program stops; the first reason counts. Always false, for `return`. */
@@ -86,8 +87,8 @@ bool sup_stop_error(sup_t *sup, const char *doing);
 
 typedef void (*sup_fired_t)(sup_t *sup, void *user, uint32_t transition);
 
-/* Fires the first enabled transition of the owner (-1: of anybody) in the documented order. Returns 1 when one fired, 0 when
- * none is enabled, -1 when the program has to stop. */
+/* Fires the first enabled transition of the owner (-1: of anybody) in the documented order. Returns 1 when one fired, 0
+ * when none is enabled, -1 when the program has to stop. */
 int sup_fire_one(sup_t *sup, int32_t owner, uint32_t *transition);
 
 /* Fires until none is enabled. False when the program has to stop. `fired` (may be NULL) is told of each. */
@@ -125,10 +126,10 @@ bool sup_monitor_step(sup_t *sup, uint32_t transition);
 /* Messages in that direction have been exchanged. */
 bool sup_monitor_messages(sup_t *sup, pn_channel_direction_t direction);
 #else
-#define sup_monitor_start(sup) (true)
+#define sup_monitor_start(sup)                     (true)
 #define sup_monitor_choice(sup, owner, transition) (true)
-#define sup_monitor_step(sup, transition) (true)
-#define sup_monitor_messages(sup, direction) (true)
+#define sup_monitor_step(sup, transition)          (true)
+#define sup_monitor_messages(sup, direction)       (true)
 #endif
 
 /* --- supervisor_trace.c --- */
@@ -146,10 +147,11 @@ void sup_trace_end(sup_t *sup);
 void sup_trace_marking(const sup_t *sup);
 #else
 #define sup_trace_start(sup) (true)
-#define sup_trace_occurrence(sup, fired) sup_say((sup), 2, "%10.3f s  %s", (sup)->t, (sup)->net->transition[(fired)].name)
+#define sup_trace_occurrence(sup, fired) \
+    sup_say((sup), 2, "%10.3f s  %s", (sup)->t, (sup)->net->transition[(fired)].name)
 #define sup_trace_is_written(sup) (true)
-#define sup_trace_end(sup) ((void)0)
-#define sup_trace_marking(sup) ((void)0)
+#define sup_trace_end(sup)        ((void)0)
+#define sup_trace_marking(sup)    ((void)0)
 #endif
 
 /* supervisor_cell.c and supervisor_alone.c have sup_run_cell and sup_run_alone: see pn_cell.h. */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * supervisor_input.c - markings that come from files (cell.toml, `[[input]]`).
  *
- * A file holds one token: one line for each top-level component of its colour set, values separated by blanks. Empty lines
- * and lines that begin with `#` are passed over. Mistakes are reported as file:line:column.
+ * A file holds one token: one line for each top-level component of its colour set, values separated by blanks. Empty
+ * lines and lines that begin with `#` are passed over. Mistakes are reported as file:line:column.
  */
 #include "supervisor_impl.h"
 
@@ -20,9 +20,9 @@ typedef struct input_text {
     char path[1024];
     char bytes[INPUT_MAX];
     size_t length;
-    size_t at;      /* of the next line */
-    uint32_t line;  /* number of the last line taken */
-    char columns[256]; /* "x y z rx ry rz": what a line should hold */
+    size_t at;                            /* of the next line */
+    uint32_t line;                        /* number of the last line taken */
+    char columns[256];                    /* "x y z rx ry rz": what a line should hold */
     uint32_t line_of[PN_CHANNEL_SCALARS]; /* of each value */
 } input_text_t;
 
@@ -40,8 +40,8 @@ static bool read_file(sup_t *sup, const pn_cell_input_t *input, input_text_t *te
     text->line = 0U;
     if (error != 0) {
         return sup_stop(sup, SUP_EXIT_USAGE,
-                        "%s: cannot read the input file of place `%s`: %s; give its directory with --input DIR", text->path,
-                        input->place_name, strerror(error));
+                        "%s: cannot read the input file of place `%s`: %s; give its directory with --input DIR",
+                        text->path, input->place_name, strerror(error));
     }
     if (text->length == sizeof text->bytes) {
         return sup_stop(sup, SUP_EXIT_USAGE, "%s: longer than the %u bytes that an input file may have", text->path,
@@ -102,15 +102,15 @@ static bool parse(sup_t *sup, const pn_cell_input_t *input, input_text_t *text, 
         (void)labels(scalar, wanted, text->columns, sizeof text->columns);
         if (!take_line(text, &line, &length)) {
             return sup_stop(sup, SUP_EXIT_USAGE,
-                            "%s:%" PRIu32 ":1: the file ends where line %" PRIu32 " of %" PRIu32 " is expected: %" PRIu32
-                            " value%s (%s)",
+                            "%s:%" PRIu32 ":1: the file ends where line %" PRIu32 " of %" PRIu32
+                            " is expected: %" PRIu32 " value%s (%s)",
                             text->path, text->line + 1U, i + 1U, lines, wanted, (wanted == 1U) ? "" : "s",
                             text->columns);
         }
         if (!pn_scalars_parse(scalar, wanted, line, length, token)) {
-            return sup_stop(sup, SUP_EXIT_USAGE, "%s:%" PRIu32 ":%" PRIu32 ": %s (this line holds %" PRIu32 " value%s: %s)",
-                            text->path, text->line, token->column, token->report, wanted, (wanted == 1U) ? "" : "s",
-                            text->columns);
+            return sup_stop(sup, SUP_EXIT_USAGE,
+                            "%s:%" PRIu32 ":%" PRIu32 ": %s (this line holds %" PRIu32 " value%s: %s)", text->path,
+                            text->line, token->column, token->report, wanted, (wanted == 1U) ? "" : "s", text->columns);
         }
         for (uint32_t k = 0U; (k < wanted) && (done < PN_CHANNEL_SCALARS); k++) {
             text->line_of[done] = text->line;
@@ -119,27 +119,33 @@ static bool parse(sup_t *sup, const pn_cell_input_t *input, input_text_t *text, 
     }
     if (take_line(text, &line, &length)) {
         char shown[160];
-        return sup_stop(sup, SUP_EXIT_USAGE, "%s:%" PRIu32 ":1: found %s after the %" PRIu32 " line%s that belong%s here",
-                        text->path, text->line, pn_quote(line, length, shown, sizeof shown), lines, (lines == 1U) ? "" : "s",
+        return sup_stop(sup, SUP_EXIT_USAGE,
+                        "%s:%" PRIu32 ":1: found %s after the %" PRIu32 " line%s that belong%s here", text->path,
+                        text->line, pn_quote(line, length, shown, sizeof shown), lines, (lines == 1U) ? "" : "s",
                         (lines == 1U) ? "s" : "");
     }
     return true;
 }
 
 /* The values are right one by one, but the place does not take the token: says which of them may be the reason. */
-static bool stop_for_colour(sup_t *sup, const pn_cell_input_t *input, const input_text_t *text, const pn_message_t *token)
+static bool stop_for_colour(sup_t *sup, const pn_cell_input_t *input, const input_text_t *text,
+                            const pn_message_t *token)
 {
     const pn_place_t *const place = &sup->net->place[input->place];
     for (uint32_t i = 0U; i < token->count; i++) {
         if ((token->leaf[i].kind == PN_LEAF_REAL) && (fabs(token->leaf[i].real) > (double)FLT_MAX)) {
             return sup_stop(sup, SUP_EXIT_USAGE,
-                            "%s:%" PRIu32 ":%" PRIu32 ": %g is too large for `%s` of colour set `%s`, which is stored in single "
-                            "precision", text->path, text->line_of[i], token->column_of[i], token->leaf[i].real,
+                            "%s:%" PRIu32 ":%" PRIu32
+                            ": %g is too large for `%s` of colour set `%s`, which is stored in single "
+                            "precision",
+                            text->path, text->line_of[i], token->column_of[i], token->leaf[i].real,
                             input->scalar[i].label, input->scalar[i].colset);
         }
     }
-    return sup_stop(sup, SUP_EXIT_USAGE, "%s:%" PRIu32 ":%" PRIu32 ": the token that begins here is not in the colour set `%s` of "
-                    "place `%s`", text->path, (token->count > 0U) ? text->line_of[0] : 1U,
+    return sup_stop(sup, SUP_EXIT_USAGE,
+                    "%s:%" PRIu32 ":%" PRIu32 ": the token that begins here is not in the colour set `%s` of "
+                    "place `%s`",
+                    text->path, (token->count > 0U) ? text->line_of[0] : 1U,
                     (token->count > 0U) ? token->column_of[0] : 1U, place->colset, place->name);
 }
 

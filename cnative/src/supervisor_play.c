@@ -76,7 +76,8 @@ static bool keeps_bounds(sup_t *sup, const pn_transition_t *fired)
         if (tokens > (uint64_t)place->bound) {
             return sup_stop(sup, SUP_EXIT_MODEL,
                             "place `%s` is full: it would hold %" PRIu64 " tokens after `%s`, and its bound is %" PRIu32
-                            " (the head of net.c says why)", place->name, tokens, fired->name, place->bound);
+                            " (the head of net.c says why)",
+                            place->name, tokens, fired->name, place->bound);
         }
     }
     return true;
@@ -100,7 +101,7 @@ int sup_fire_one(sup_t *sup, int32_t owner, uint32_t *transition)
 {
     const pn_net_t *const net = sup->net;
     char doing[512];
-    first_binding_t first = {sup->binding, 0U, false};
+    first_binding_t first = { sup->binding, 0U, false };
     uint32_t i = 0U;
     uint32_t index = 0U;
     while ((i < net->order_count) && !first.found) {
@@ -240,9 +241,10 @@ void sup_final_places(const sup_t *sup, pn_text_t *text)
 const char *sup_token_text(const sup_t *sup, const pn_cell_channel_t *channel, char *out, size_t capacity)
 {
     pn_leaf_t leaf[PN_CHANNEL_SCALARS];
-    const uint32_t count = pn_bag_token(sup->net->place[channel->place].bag, sup->marking, 0U, leaf, PN_CHANNEL_SCALARS);
-    if ((count != channel->scalar_count) ||
-        (pn_scalars_format(channel->scalar, channel->scalar_count, leaf, out, capacity) == 0U)) {
+    const uint32_t count =
+        pn_bag_token(sup->net->place[channel->place].bag, sup->marking, 0U, leaf, PN_CHANNEL_SCALARS);
+    if ((count != channel->scalar_count)
+        || (pn_scalars_format(channel->scalar, channel->scalar_count, leaf, out, capacity) == 0U)) {
         (void)snprintf(out, capacity, "?");
     }
     return out;

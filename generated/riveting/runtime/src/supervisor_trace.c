@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * supervisor_trace.c - what the deployed program does without (-DPN_TRACE): the trace of a run (docs/trace.md), and colours as JSON.
+ * supervisor_trace.c - what the deployed program does without (-DPN_TRACE): the trace of a run (docs/trace.md), and
+ * colours as JSON.
  */
 #ifdef PN_TRACE
 
