@@ -28,6 +28,7 @@ from pn2code.tdl.interpret import Request
 SECONDS = 10.0
 """A mutant that takes longer for one answer does not come to rest."""
 FLAGS = (c_flags.STANDARD, "-O0", "-w", *c_flags.FLOATS)
+MONITOR = "-DPN_MONITOR"
 SURVIVED = "survived"
 NONE = "no mutant"
 
@@ -52,7 +53,10 @@ def judge_of(cell: Path, *flags: str) -> Iterator[Judge]:
     made = generate(cell, d)
     assert made is not None, [str(i) for i in d]
     with tempfile.TemporaryDirectory(prefix="pn2code-") as room:
-        yield Judge(cell, made, Path(room), (*FLAGS, *HOST.flags, *HOST.net, *flags))
+        own = (
+            () if MONITOR in flags else HOST.net
+        )  # the monitored program has the net.o of all transitions
+        yield Judge(cell, made, Path(room), (*FLAGS, *HOST.flags, *own, *flags))
 
 
 class Judge:
