@@ -55,114 +55,73 @@ bool pn_real_is_normal(double x)
     return isnormal(x) != 0;
 }
 
-/* --- texts -------------------------------------------------------------------------------------------------------- */
+/* --- texts --------------------------------------------------------------------------------------------------------- */
 
 double pn_real_read(pn_string_t text)
 {
     return strtod(text.bytes, NULL); /* arena strings and literals end with a zero */
 }
 
-/* A number as printf writes it in the notation of CPN ML: ~ for minus, E without plus sign and leading zeros. */
-static pn_string_t in_sml(pn_ctx_t *cx, char *text)
+/* So many characters at the end of a text. */
+static size_t filled(char *text, size_t length, char c, int64_t count)
 {
-    size_t n = 0U;
-    for (const char *at = text; *at != '\0'; at++) {
-        if (*at == '-') {
-            text[n++] = '~';
-        } else if (*at == 'e') {
-            text[n++] = 'E';
-            at++;
-            if (*at == '-') {
-                text[n++] = '~';
-            }
-            while ((at[1] == '0') && (at[2] != '\0')) {
-                at++;
-            }
-        } else {
-            text[n++] = *at;
-        }
+    for (int64_t n = 0; n < count; n++) {
+        text[length++] = c;
     }
-    return pn_string_make(cx, text, n);
+    return length;
 }
 
-/* General notation as SML/NJ has it: so many significant digits without trailing zeros, but for one behind the point;
- * with an exponent of two digits at least when that is below -4 or not below the number of digits. */
-static pn_string_t general(pn_ctx_t *cx, int64_t digits, double x, char *text, size_t size)
+/* So many digits behind the point; zeros behind those that SML/NJ finds. */
+static size_t fixed(char *text, size_t length, double x, int64_t places)
 {
-    (void)snprintf(text, size, "%.*e", (int)digits - 1, x);
-    char *e = strchr(text, 'e');
-    const int64_t exponent = (e != NULL) ? strtol(e + 1, NULL, 10) : 0;
-    const bool is_scientific = (exponent < -4) || (exponent >= digits);
-    if (is_scientific && (e != NULL)) {
-        *e = '\0';
-    } else {
-        (void)snprintf(text, size, "%.*f", (int)(digits - 1 - exponent), x);
-    }
-    size_t end = strlen(text);
-    if (memchr(text, '.', end) != NULL) {
-        while (text[end - 1U] == '0') {
-            end--;
+    char digit[PN_REAL_DIGITS + 2] = "0";
+    int exponent = 0;
+    const int count = pn_real_equal(x, 0.0) ? 1 : pn_real_digits(x, places, true, digit, &exponent);
+    const int before = (exponent < 0) ? -exponent : 0; /* zeros in front of the digits */
+    const int64_t whole = (exponent > 0) ? (exponent + 1) : 1;
+    for (int64_t n = 0; n < (whole + places); n++) {
+        if (n == whole) {
+            text[length++] = '.';
         }
-        if (text[end - 1U] == '.') {
-            end--;
-        }
-        text[end] = '\0';
+        text[length++] = ((n >= before) && ((n - before) < count)) ? digit[n - before] : '0';
     }
-    if (is_scientific) {
-        (void)snprintf(&text[end], size - end, "E%s%02d", (exponent < 0) ? "~" : "", abs((int)exponent));
-    } else if (memchr(text, '.', end) == NULL) {
-        (void)snprintf(&text[end], size - end, ".0");
-    }
-    return in_sml(cx, text);
+    return length;
 }
 
-/* 0.d1d2...E<exponent>, the shortest digits that give the number back. */
-static pn_string_t exact(pn_ctx_t *cx, double x, char *text, size_t size)
+/* So many digits behind the point and an exponent; SML/NJ loses some of the zeros behind the last of 15 digits. */
+static size_t scientific(char *text, size_t length, double x, int64_t places, size_t size)
 {
-    char digits[32] = "0";
-    for (int precision = 0; precision < 17; precision++) {
-        (void)snprintf(digits, sizeof digits, "%.*e", precision, fabs(x));
-        if (pn_real_equal(strtod(digits, NULL), fabs(x))) {
-            break;
-        }
+    char digit[PN_REAL_DIGITS + 2] = "0";
+    int exponent = 0;
+    const bool is_zero = pn_real_equal(x, 0.0);
+    const int count = is_zero ? 1 : pn_real_digits(x, places + 1, false, digit, &exponent);
+    const int64_t more = ((count - 1) < places) ? (count - 1) : places;
+    text[length++] = digit[0];
+    if (places > 0) {
+        text[length++] = '.';
     }
-    const char *e = strchr(digits, 'e');
-    const long exponent = strtol(e + 1, NULL, 10) + 1;
-    size_t n = (size_t)snprintf(text, size, "%s0.", signbit(x) ? "~" : "");
-    for (const char *at = digits; *at != 'e'; at++) {
-        if (*at != '.') {
-            text[n++] = *at;
-        }
-    }
-    text[n] = '\0';
-    if (exponent != 0) {
-        (void)snprintf(&text[n], size - n, "E%s%ld", (exponent < 0) ? "~" : "", labs(exponent));
-    }
-    return pn_string_make(cx, text, strlen(text));
+    (void)memcpy(&text[length], &digit[1], (size_t)more);
+    length += (size_t)more;
+    length = filled(text, length, '0', (places - more) - (is_zero ? 0 : (2 + more)));
+    return length + (size_t)snprintf(&text[length], size - length, "E%s%d", (exponent < 0) ? "~" : "", abs(exponent));
 }
 
 pn_string_t pn_real_styled(pn_ctx_t *cx, int64_t style, int64_t digits, double x)
 {
-    if (isnan(x)) {
-        return PN_STRING("nan");
-    }
-    if (isinf(x)) {
-        return (x < 0.0) ? PN_STRING("~inf") : PN_STRING("inf");
-    }
     char text[1600];           /* the largest number has 309 digits in front of the point */
     const int64_t most = 1100; /* all further ones are zeros: Real.sml appends them */
-    const int places = (int)((digits > most) ? most : digits);
-    if (pn_real_equal(x, 0.0)) {
-        x = 0.0; /* zero has no sign */
+    if (!isfinite(x) || (style == 2)) {
+        return pn_string_make(cx, text, pn_real_general(text, sizeof text, x, digits));
     }
-    switch (style) {
-    case 0: (void)snprintf(text, sizeof text, "%.*e", places, x); return in_sml(cx, text);
-    case 1: (void)snprintf(text, sizeof text, "%.*f", places, x); return in_sml(cx, text);
-    case 2: return general(cx, places, x, text, sizeof text);
-    default:
-        if (pn_real_equal(x, 0.0)) {
-            return PN_STRING("0.0");
-        }
-        return exact(cx, x, text, sizeof text);
+    const int64_t places = (digits > most) ? most : digits;
+    size_t length = 0U;
+    if (x < 0.0) { /* zero has no sign */
+        text[length++] = '~';
     }
+    if (style == 0) {
+        length = scientific(text, length, fabs(x), places, sizeof text);
+    } else {
+        length = fixed(text, length, fabs(x), places);
+    }
+    return pn_string_make(cx, text, length);
 }

@@ -34,6 +34,7 @@ from pn2code.lowering import robot as lower_robot
 from pn2code.net import front
 from pn2code.net.flat import FlatNet
 from pn2code.net.reached import unused_functions
+from pn2code.semantics.constants import compute
 from pn2code.verify import arena
 from pn2code.verify.proofs import prove
 from pn2code.verify.rooms import Room, with_rooms
@@ -84,7 +85,7 @@ def generate(
     net_path, config = found
     replaced = {**(config.values if config else {}), **(values or {})}
 
-    net = front.load(net_path, d, replaced, int_bits=int_bits)
+    net = front.load(net_path, d, replaced, int_bits=int_bits, compute=compute)
     _refuse_unsupported(d, net)
     if net is None or d.has_errors:
         return None

@@ -17,7 +17,7 @@ from pn2code.channels import SharedDirectory, specs_of
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.write import write
 from pn2code.robot import scene
-from pn2code.robot.backend import open_backend
+from pn2code.robot.choose_backend import open_backend
 from pn2code.robot.commands import Command, Wait
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion import Still

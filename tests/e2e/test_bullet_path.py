@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from helpers.robot_cells import RIVETS, riveting_cell, riveting_path
-from pn2code.robot.backend import Camera, open_backend
+from pn2code.robot.backend import Camera
+from pn2code.robot.choose_backend import open_backend
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.render import Film, cameras, picture, save, soften

@@ -15,6 +15,7 @@ from helpers.netbuilder import cpn
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
 from pn2code.net.front import load
+from pn2code.semantics.constants import compute
 from pn2code.semantics.game import Game
 from pn2code.semantics.recording import recording
 from pn2code.semantics.replay_recording import follow
@@ -37,7 +38,7 @@ def answer(root: Path, name: str) -> dict[str, Any]:
 def flat(root: Path, kept: dict[str, Any]) -> FlatNet:
     """The net, about which nothing is to be said."""
     d = Diagnostics()
-    net = load(root / kept["net"], d)
+    net = load(root / kept["net"], d, compute=compute)
     assert net is not None and kept["accepted"] and not d.items
     return net
 

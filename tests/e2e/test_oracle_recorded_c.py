@@ -1,4 +1,4 @@
-"""What the engine of CPN Tools said of the functions of colour sets: compiled nets say the same, too."""
+"""What the engine of CPN Tools said of texts of reals and of functions of colour sets: compiled nets say the same."""
 
 from __future__ import annotations
 
@@ -29,7 +29,8 @@ IN_A_PLACE = 40
 def cases() -> list[tuple[str, str]]:
     """An expression of type string, and its value; a text for an exception. One in four, without `make thorough`."""
     found = []
-    for expression, answer in rows("colsets")[:: 1 if THOROUGH else 4]:
+    reals = [row for row in rows("numbers") if row[0].startswith(("Real.fmt", "Real.toString"))]
+    for expression, answer in reals + rows("colsets")[:: 1 if THOROUGH else 4]:
         value = re.fullmatch(r"value: (.*) : (\w+)", answer)
         if value:
             text = value[1]
@@ -87,12 +88,16 @@ net Library
   var n: INT;
   val known = List.foldl Names.insert' Names.empty [("b", 2), ("a", 1), ("c", 3)];
   val day = Date.date {year = 2024, month = Date.Feb, day = 30, hour = 25, minute = 2, second = 3, offset = NONE};
+  fun empty_table () = HashTable.mkTable (HashString.hashString, op =) (4, Fail "none");
+  fun count t k = HashTable.insert t (k, getOpt (HashTable.find t k, 0) + 1);
+  fun counted l = let val t = empty_table () in (List.app (count t) l; HashTable.listItemsi t) end;
   place P : INT = 1`1++1`2++1`3
   place Q : STRING
   trans T
     in P : n
     out Q : String.concat (List.map (fn (k, x) => k ^ Int.toString (x * n)) (Names.listItemsi known))
     out Q : String.concat (Texts.listItems (Texts.fromList ["z", "y", Int.toString n]))
+    out Q : String.concat (map (fn (k, x) => k ^ Int.toString (x * n)) (counted ["z", "ab", "z", "q"]))
     out Q : Date.toString day ^ Int.toString (Date.yearDay day + n)
     out Q : ListFormat.listToString Int.toString (ListMergeSort.sort Int.> [3, n, 2])
     out Q : IntInf.toString (RealToIntInf n 3.14159) ^ Real.toString (IntInfToReal n 314)
@@ -110,19 +115,26 @@ def test_the_utility_library_is_compiled(fast_workshop: Workshop, tmp_path: Path
     game = Game(net)
     game.fire(game.enabled()[0])
     [found] = [game.marking_text(p.name) for p in net.places if p.short == "Q"]
-    wanted = ('"1yz"', '"3131.4"', '"Sat Mar 02 01:02:03 202462"', '"[1,2,3]"', '"a1b2c3"')
+    wanted = (
+        '"q1ab1z2"',
+        '"1yz"',
+        '"3131.4"',
+        '"Sat Mar 02 01:02:03 202462"',
+        '"[1,2,3]"',
+        '"a1b2c3"',
+    )
     assert all(f"1`{text}" in found for text in wanted), found
     assert '2`"1"' in found
 
 
 def test_what_is_not_there_is_named() -> None:
     net, d = load(
-        "net N\n  standard\n  val t = fn () => HashTable.mkTable ();\n  place P : INT = 1`1"
+        "net N\n  standard\n  val t = fn () => SMLofNJ.Cont.callcc ();\n  place P : INT = 1`1"
     )
     assert net is not None
     assert [(w.code, w.message) for w in d] == [
         (
             "unsupported-function",
-            "`HashTable.mkTable` is not available here: pn2code does not have this part of the library",
+            "`SMLofNJ.Cont.callcc` is not available here: pn2code does not have this part of the library",
         )
     ]

@@ -190,8 +190,7 @@ def test_nothing_goes_on_after_a_script_has_stopped(tmp_path: Path) -> None:
     found = said(folder, "--no-medium", holds=("ctl AF tokens(Finished) = 1",))
     assert (blocking(found)["answer"], blocking(found)["why"]) == ("no", "stopped")
     (ends,) = found["properties"]
-    assert ends["answer"] == "inconclusive" and "stops at" in ends["why"]
-    assert ends["net"]["answer"] == "yes"
+    assert ends["answer"] == "no" and ends["net"]["answer"] == "yes"
 
 
 def test_an_exception_of_the_supervisor_alone(tmp_path: Path) -> None:
@@ -209,10 +208,22 @@ def test_an_exception_of_the_supervisor_alone(tmp_path: Path) -> None:
 
 
 def test_an_exception_in_what_a_script_waits_for(tmp_path: Path) -> None:
-    """B has not come to its guard: only the model has, so nothing is known."""
+    """B has not come to its guard: only the model has. What does not rest on its going on is known all the same."""
+    ending = UNDIVIDED.replace("if m = 1 then 1`() else empty", "()")
+    folder = write(tmp_path / "cell", ending, toml(["A"], OF_B))
+    found = said(folder, "--no-medium", holds=("always tokens(Finished) <= 1",))
+    row = blocking(found)
+    answers = {c["check"]: c["answer"] for c in found["controller"]}
+    assert (row["answer"], row["why"]) == ("unknown", "error")
+    assert all(answers[c] == "yes" for c in ("finite-response", "bounded-response", "channels"))
+    assert found["cell"]["complete"] and found["properties"][0]["answer"] == "yes"
+
+
+def test_a_deadlock_beside_an_exception_of_the_model_alone(tmp_path: Path) -> None:
+    """Where nothing is left the supervisor never finishes, whatever B does."""
     folder = write(tmp_path / "cell", UNDIVIDED, toml(["A"], OF_B))
     row = blocking(said(folder, "--no-medium"))
-    assert (row["answer"], row["why"]) == ("unknown", "error")
+    assert (row["answer"], row["why"]) == ("no", "deadlock")
 
 
 def test_whoever_is_told_nothing_speaks_once(tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ from tests.forgery.forgeries import Forgery
 
 from pn2code.cli.nets import open_net
 from pn2code.cli.options import DEFAULT_INT_BITS, Format
-from pn2code.cli.replay import claims
+from pn2code.cli.replay_claims import claims
 from pn2code.semantics.files import Files
 from pn2code.semantics.marking import Marking
 from pn2code.semantics.parties import RUN

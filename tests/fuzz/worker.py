@@ -26,6 +26,7 @@ from pn2code.ml.dump import dump_program
 from pn2code.monitors import kinds
 from pn2code.net import front
 from pn2code.semantics import report
+from pn2code.semantics.constants import compute
 from pn2code.semantics.evaluate import Limits
 from pn2code.semantics.game import Game, GameError
 
@@ -35,7 +36,7 @@ LIMITS = Limits(steps=50_000, depth=20_000)
 def whole_way(path: Path) -> bool:
     """Everything that pn2code does with a net; whether it was accepted. Any exception is a bug."""
     d = Diagnostics()
-    examined = front.examine(path, d)
+    examined = front.examine(path, d, compute=compute)
     _say(d)
     if examined.document is not None:
         for page in examined.document.pages[:3]:

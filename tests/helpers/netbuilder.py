@@ -98,12 +98,13 @@ def load(text: str, values: Mapping[str, str] | None = None) -> tuple[FlatNet | 
     """Flat net or None, and the diagnostics. The file is `<net name>.cpn` in a temporary folder."""
     from pn2code.diagnostics import Diagnostics
     from pn2code.net.front import load as load_file
+    from pn2code.semantics.constants import compute
 
     d = Diagnostics()
     with tempfile.TemporaryDirectory() as folder:
         first = re.match(r"\s*net\s+(\w+)", text)
         path = write(text, Path(folder) / f"{first.group(1) if first else 'net'}.cpn")
-        return load_file(path, d, values or {}), d
+        return load_file(path, d, values or {}, compute=compute), d
 
 
 @dataclass

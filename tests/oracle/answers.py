@@ -17,6 +17,7 @@ from pn2code.ml import core
 from pn2code.ml.colsets import Colset
 from pn2code.ml.types import TCon, TFun, TRecord, TVar, Type
 from pn2code.net.front import examine
+from pn2code.semantics.constants import compute
 from pn2code.semantics.evaluate import Evaluator, Limits
 from pn2code.semantics.values import MlException, MlLimit, MlUnavailable, real_text
 
@@ -288,7 +289,7 @@ class Here:
 
     def __init__(self, net: Path, steps: int = 200_000) -> None:
         d = Diagnostics()
-        typed = examine(net, d).typed
+        typed = examine(net, d, compute=compute).typed
         assert typed is not None, [e.message for e in d.errors]
         self.elaborator = typed.elaborator
         self.program = typed.program

@@ -21,6 +21,7 @@ from pn2code.conformance.graphs import Arc, Node, engine_arcs, engine_nodes, our
 from pn2code.diagnostics import Diagnostics, Severity
 from pn2code.net import front
 from pn2code.net.flat import ArcKind
+from pn2code.semantics.constants import compute
 from pn2code.semantics.effects import Effects, outside
 from pn2code.semantics.game import Game, GameError
 from pn2code.semantics.graph import StateSpace, state_space
@@ -102,7 +103,7 @@ class Seen:
 
     def __init__(self, path: Path) -> None:
         self.d = Diagnostics()
-        self.net = front.load(path, self.d)
+        self.net = front.load(path, self.d, compute=compute)
         self.codes = {x.code for x in self.d.items}
         self.loose = any(
             x.code == "port-unassigned" and x.severity is Severity.WARNING for x in self.d.items

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from helpers.netbuilder import diagnose
+from helpers.netbuilder import diagnose, flat
 
 NET = """
     net Form
@@ -64,3 +64,28 @@ def test_refused(code: str) -> None:
 def test_a_space_that_does_not_break_is_no_space() -> None:
     text = NET.replace("trans T", "trans T guard [n\u00a0< 3]").format(out="", code="action ()")
     assert "lexical-error" in [x.code for x in diagnose(text).items]
+
+
+@pytest.mark.parametrize(
+    "action",
+    ["(n + 1) * 2", "((n) + 1) * (n)", "(f) (n)", "(n) handle _ => (2)", "(n > 1) andalso (n < 3)"],
+)
+def test_the_action_is_quoted_with_its_parentheses(action: str) -> None:
+    """In the comment of the generated C; the operands have spans without theirs."""
+    net = flat(
+        f"""
+        net Form
+          standard
+          var n: INT;  var m: {"BOOL" if "andalso" in action else "INT"};
+          fun f x = x + 1;
+          place A : INT = 1`1
+          place B : {"BOOL" if "andalso" in action else "INT"}
+          trans T
+            in A : n
+            out B : m
+            code input (n); output (m); action {action}
+        """
+    )
+    code = net.transitions[0].code
+    assert code is not None
+    assert code.action.span.text == action

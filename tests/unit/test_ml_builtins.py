@@ -6,6 +6,7 @@ from __future__ import annotations
 import pytest
 
 from helpers.ml import Ml
+from helpers.netbuilder import diagnose
 from pn2code.ml import builtins as b
 from pn2code.ml.types import INTINF, REAL, TFun
 
@@ -69,6 +70,8 @@ def test_every_name_can_be_used(name: str) -> None:
         assert messages.pop().startswith(
             f"unsupported-function | `{name}` is not available here: {unsupported}"
         )
+    if name == "null":
+        assert messages.pop().startswith("null-is-time | ")
     assert not messages
     assert not m.d.has_errors
 
@@ -107,3 +110,14 @@ def test_types_and_constructors_of_structures(text: str, ok: bool) -> None:
     m = Ml()
     m.ml(text)
     assert m.d.has_errors != ok, m.messages()
+
+
+def test_null_is_the_time_0_in_cpn_tools() -> None:
+    net = "net N\n  standard\n  fun f l = {};\n  place P : BOOL = 1`(f [1])"
+    assert [x.code for x in diagnose(net.format("null l orelse null (tl l)")).items] == [
+        "null-is-time"
+    ]
+    assert not diagnose(net.format("List.null l")).items
+    assert not diagnose(
+        net.replace("  fun", "  fun null (x : int list) = true;\n  fun").format("null l")
+    ).items

@@ -13,9 +13,9 @@ from pn2code.pipeline import generate
 NET = """
 net Reached
   standard
-  fun far x = HashTable.mkTable x;
+  fun far x = SMLofNJ.Cont.callcc x;
   fun near x = if x > 5 then far x else x;
-  val kept = fn x => HashTable.mkTable x;
+  val kept = fn x => SMLofNJ.Cont.callcc x;
   fun open_it () = TextIO.openIn "a.txt";
   var n: INT;
   place P : INT = 1`1
@@ -45,7 +45,7 @@ def test_what_nothing_uses_is_no_obstacle(tmp_path: Path) -> None:
         ("guard [kept n = n]", "n", ""),
         ("code output (); action (ignore (far 3))", "n", ""),
         ("", "n", "  val early = near 3;\n"),
-        ("", "(HashTable.mkTable n : int)", ""),
+        ("", "(SMLofNJ.Cont.callcc n : int)", ""),
     ],
 )
 def test_what_a_run_comes_to_is_refused(tmp_path: Path, guard: str, out: str, more: str) -> None:

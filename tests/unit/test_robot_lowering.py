@@ -541,7 +541,7 @@ REFUSED = {
     "source": (
         "place A = 1\ntrans T\n  both A\ntrans U\n  in x : n",
         ("x in INT",),
-        "error[robot-not-sequential] transition `U` does not take the token that tells where the program is",
+        "error[robot-not-sequential] transition `U` does not take the control token",
     ),
     "two tokens": (
         "place A = 2\nplace B\ntrans T\n  in A\n  out B\ntrans U\n  in B\n  out A",
@@ -551,7 +551,7 @@ REFUSED = {
     "lost": (
         "place A = 1\nplace B : INT = 1`1\ntrans T\n  in A\n  both B : n\n  out x : n",
         ("x out INT",),
-        "error[robot-not-sequential] transition `T` does not pass on the token that tells where the program is",
+        "error[robot-not-sequential] transition `T` does not pass on the control token",
     ),
     "inhibitor": (
         "place A = 1\nplace B : INT = 1`1\ntrans T\n  both A\n  inhibit B\ntrans U\n  both A\n  both B : n",

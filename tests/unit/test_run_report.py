@@ -59,7 +59,7 @@ def test_activities_that_overlap_and_repeat_are_totalled(record: RunRecord) -> N
 
 
 def test_the_summary_has_an_activity_once(record: RunRecord) -> None:
-    found = json.loads(json.dumps(summarise(record, ReportConfig(), ROBOTS)))
+    found = json.loads(json.dumps(summarise(record, ReportConfig(), ROBOTS, {})))
     assert [(a["name"], a["times"], a["seconds"]) for a in found["activities"]] == [
         ("Load", 2, 15.0),
         ("Mill", 2, 9.0),
@@ -69,6 +69,12 @@ def test_the_summary_has_an_activity_once(record: RunRecord) -> None:
         "arm": (7.0, 0.35),
         "mill": (9.0, 0.45),
     }
+
+
+def test_occurrences_of_a_path_are_not_those_of_longer_paths(record: RunRecord) -> None:
+    record.events += [{"transition": "A.T"}, {"transition": "B.A.T"}, {"transition": "B.A.T"}]
+    counts = summarise(record, ReportConfig(), ROBOTS, {"one": ["A.T"], "all": ["A.T", "B.A.T"]})
+    assert (counts["one"], counts["all"]) == (1, 3)
 
 
 @pytest.fixture

@@ -21,6 +21,9 @@ def said(declarations: str) -> list[str]:
         ("colset IX = index item with 1..3;", "the constant `item`"),
         ("exception key", "the exception `key`"),
         ("colset Date = int;", "the colour set `Date`"),
+        ("colset TI = with ta | tb;", "the colour set `TI`"),
+        ("colset Mark = INT;", "the colour set `Mark`"),
+        ("colset Inst = product INT * INT;", "the colour set `Inst`"),
         ("val length = 7", "the value `length`"),
         ("fun rev (a : int, b : int) = a", "the function `rev`"),
         ("globref map = 3;", "the value `map`"),
@@ -36,8 +39,12 @@ def test_a_name_that_the_tool_uses(declarations: str, what: str) -> None:
     [
         "colset ANSWER = with asks | gone | parked;",
         "var left: INT;",
+        "colset Net = INT;",
+        "colset SCC = with sa | sb;",
         "val left = 7",
         "fun left (x : int) = let val length = x in length end",
+        "structure S = struct fun map x = x + 1 val length = 7 end;",
+        "fun f t = HashTable.map (fn x => x + 1) t",
         "colset R = record left: INT * item: INT;",
     ],
 )

@@ -35,6 +35,15 @@ def check_names(net: FlatNet, config: CellConfig, d: Diagnostics) -> None:
     _occurrences(net, config, d)
 
 
+def counted(net: FlatNet, config: CellConfig) -> dict[str, tuple[str, ...]]:
+    """Of each label of `[report] occurrences` the paths of the transitions that are counted together."""
+    finder = Finder.of_transitions(net)
+    return {
+        label: tuple(net.transitions[i].name for i in finder.ending(name))
+        for label, name in config.report.occurrences
+    }
+
+
 def _occurrences(net: FlatNet, config: CellConfig, d: Diagnostics) -> None:
     """All instances of a transition are counted together, but not those of several transitions."""
     finder = Finder.of_transitions(net)

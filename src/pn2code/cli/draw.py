@@ -27,6 +27,7 @@ from pn2code.drawing.codes import DRAW_ARRANGED, DRAW_OUTPUT, DRAW_PAGE, DRAW_TR
 from pn2code.net import front
 from pn2code.os_reason import os_reason
 from pn2code.reading.document import Document, RawPage
+from pn2code.semantics.constants import compute
 from pn2code.whole_file import whole_file
 
 if TYPE_CHECKING:
@@ -106,7 +107,7 @@ def draw(
         stop(d, form)
     path, config = found
     values = {**(config.values if config else {}), **parse_values(settings)}
-    examined = front.examine(path, d, values, drawn=True)
+    examined = front.examine(path, d, values, drawn=True, compute=compute)
     document = examined.document
     if document is None or not document.pages:
         stop(d, form)

@@ -64,6 +64,7 @@ def stage_text(
     from pn2code.net.link import link
     from pn2code.net.source import read
     from pn2code.pipeline import divided
+    from pn2code.semantics.constants import compute
 
     found = locate(path, d)
     if found is None:
@@ -75,7 +76,7 @@ def stage_text(
             return None if document is None else dump_document(document)
         linked = link(document, d)
         return None if linked is None else dump_net(linked)
-    flat = front.load(net_path, d, {**(config.values if config else {}), **values})
+    flat = front.load(net_path, d, {**(config.values if config else {}), **values}, compute=compute)
     if flat is None:
         return None
     if stage is Stage.DECLARATIONS:

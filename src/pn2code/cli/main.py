@@ -34,6 +34,7 @@ VERBS = (
     "robot",
     "draw",
     "convert",
+    "contest",
     "dump",
     "explain",
 )

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, NoReturn
+from typing import Annotated, Any
 
 import typer
 
@@ -24,13 +22,11 @@ from pn2code.cli.options import (
     JsonOption,
     SetOption,
     parse_values,
-    stop,
 )
-from pn2code.diagnostics import Diagnostics
+from pn2code.cli.replay_claims import Claims, claims, refuse
 from pn2code.semantics import replay as own
 from pn2code.semantics.files import Files
 from pn2code.semantics.json_text import BadJson, parse_json
-from pn2code.semantics.parties import Parties
 from pn2code.semantics.recording import NotARecording, Recording, recording
 from pn2code.semantics.replay_recording import follow
 from pn2code.semantics.report import places, time_text
@@ -138,12 +134,6 @@ def _is_header(line: str) -> bool:
     return isinstance(data, dict) and not {"trace", "transition", "event"}.isdisjoint(data)
 
 
-def refuse(message: str) -> NoReturn:
-    """Leaves: a file is not what it should be."""
-    typer.echo(f"pn2code: {message}", err=True)
-    raise typer.Exit(Exit.USAGE)
-
-
 def _recording(
     run: Recording, opened: OpenNet, files: Path | None, engine: Engine, form: Format
 ) -> dict[str, Any]:
@@ -172,50 +162,6 @@ def _recording(
 _NOT_COMPILED = (
     "the compiled net cannot repeat what was drawn, so only the token game repeated the run"
 )
-
-
-@dataclass(frozen=True, slots=True)
-class Claims:
-    """What the claims of a trace are compared with; see `semantics.replay.replay`."""
-
-    parties: Parties
-    check_digest: bool
-    may_fail_outside: bool
-    notes: own.Notes | None = None
-
-
-def claims(
-    opened: OpenNet,
-    values: Mapping[str, str],
-    int_bits: int,
-    *,
-    any_digest: bool,
-    form: Format = Format.FULL,
-) -> Claims:
-    """Who runs what, and which digests the traces of these programs have."""
-    from pn2code.cell.divide import divide
-    from pn2code.conform.notes import RunNotes
-    from pn2code.pipeline import program_digest
-    from pn2code.simulate.choose import monitors_of
-
-    d = Diagnostics()
-    config = opened.config
-    replaced = {**(config.values if config else {}), **values}
-    digests = frozenset({program_digest(opened.flat, config, replaced, int_bits)})
-    may_fail = monitors_of(opened.examined, d) is not None
-    if config is None:
-        return Claims(Parties.one(opened.flat, digests), not any_digest, may_fail)
-    partition = divide(opened.flat, config, d)
-    if partition is None:
-        stop(d, form)
-    parties = Parties(
-        names=tuple(o.name for o in partition.owners),
-        owner=partition.transition_owner,
-        messages=frozenset(c.place for c in partition.channels),
-        final=partition.final_places,
-        digests=digests,
-    )
-    return Claims(parties, not any_digest, may_fail, RunNotes(config, partition))
 
 
 def _own(trace: Path, opened: OpenNet, files: Path | None, claims: Claims) -> dict[str, Any]:

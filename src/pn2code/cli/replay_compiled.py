@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from pn2code.cli.options import DEFAULT_SEED, Engine, Format, stop
-from pn2code.cli.replay import Claims, refuse
+from pn2code.cli.replay_claims import Claims, refuse
 from pn2code.diagnostics import Diagnostics
 from pn2code.semantics.game import NotEnabled
 from pn2code.semantics.json_text import BadJson, parse_json

@@ -23,6 +23,7 @@ from pn2code.os_reason import os_reason
 from pn2code.robot.commands import Command
 from pn2code.run.robot import Arm, InstantArm, RobotPlayer, script_specs
 from pn2code.run.sensors import Sensors
+from pn2code.semantics.constants import compute
 from pn2code.tdl import flow
 from pn2code.tdl import tree as t
 from pn2code.tdl.check import CheckedProgram, check
@@ -190,7 +191,7 @@ def _in_cell(
     if name not in {r.name for r in config.programs}:
         known = ", ".join(f"`{r.name}`" for r in config.programs)
         _usage(f"the cell has no robot `{name}`; choose one of {known} with --name")
-    flat = front.load(path, d, config.values)
+    flat = front.load(path, d, config.values, compute=compute)
     partition = divide(flat, config, d) if flat is not None else None
     loaded = scene.load(config.geometry, config.folder, config.locator.origin, d)
     if partition is None or loaded is None or d.has_errors:

@@ -168,7 +168,13 @@ def verify(
         ),
     ] = None,
     most_traces: Annotated[
-        int, typer.Option("--most-traces", metavar="N", min=0, help="Traces at most.")
+        int,
+        typer.Option(
+            "--most-traces",
+            metavar="N",
+            min=0,
+            help="The most runs to dead markings that are written as traces; 0: no traces of them.",
+        ),
     ] = 1,
     graph: Annotated[
         bool,

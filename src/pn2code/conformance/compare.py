@@ -17,6 +17,7 @@ from pn2code.conformance.finding import AGREES, NOTHING, Finding, State, differs
 from pn2code.diagnostics import Diagnostic, Diagnostics
 from pn2code.net import front
 from pn2code.net.flat import FlatNet
+from pn2code.semantics.constants import compute
 from pn2code.semantics.effects import Effects, outside
 from pn2code.semantics.enabling import GameError
 from pn2code.semantics.game import Game
@@ -70,7 +71,7 @@ def compare(corpus: Path, path: str, *, max_nodes: int) -> Compared:
     """Compares one net; state spaces up to that many nodes."""
     expected = json.loads((corpus / "expected" / f"{path}.json").read_text(encoding="utf-8"))
     d = Diagnostics()
-    net = front.load(corpus / "nets" / path, d)
+    net = front.load(corpus / "nets" / path, d, compute=compute)
     rejected = list(_rejected(expected))
     accepted = not rejected
     missing = _missing_files(d)

@@ -15,7 +15,11 @@ Inscriptions and expressions also differ in the following, each on purpose:
 * **`Math.pow`, `exp`, `sinh`, `cosh`, `tanh`** are exact to some ten digits in SML/NJ (`Math.pow (3.0, ~1.0)` is 0.333333333353), and are not numbers
   outside the range of the processor (`Math.tanh 1E10`, `Math.sin 1E300`); here they are those of C. So are `Real.rem` of numbers of very different size,
   `Real.toManExp` and `fromManExp` of zero and of non-finite numbers, and `Real.toLargeInt` of zero.
-* **`null`** tests a list; in the engine it is the time 0, which hides the test.
+* **`null`** tests a list, with a warning; in the engine it is the time 0, which hides the test.
+* **Initial markings that change references** are evaluated once each, in the order of the file; the engine evaluates them when it checks the net
+  and again at the start, in an order of its own. `check` warns of them.
+* **A subset's list that is computed** (`subset INT with values`) is refused by the engine; here it is accepted, with a warning.
+* **The values of an `intinf` with bounds** are listed from the lowest by `CS.all ()`; the engine lists them from the highest.
 * **`Vector.update`** notices an index beyond the end; `IntInf.div` and similar functions raise `Div` for 0 by 0; `IntInf.pow (1, ~1)` is 1, in the engine 0.
 * **Undetermined type variables** after the value restriction (`val f = rev o rev`) become `unit`; in SML/NJ each becomes a new type.
 * **`ListMergeSort.sort`** keeps the order of equal elements; the engine's may exchange them.

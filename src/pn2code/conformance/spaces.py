@@ -17,6 +17,7 @@ from pathlib import Path
 from pn2code.conformance.finding import NOTHING, Finding, State, differs
 from pn2code.diagnostics import Diagnostics
 from pn2code.net import front
+from pn2code.semantics.constants import compute
 from pn2code.semantics.effects import Effects, outside
 from pn2code.semantics.enabling import GameError
 from pn2code.verify.explore import explore
@@ -38,7 +39,7 @@ def explored(corpus: Path, path: str) -> Finding:
     if not expected["state_space"] or not expected.get("report"):
         return NOTHING
     d = Diagnostics()
-    net = front.load(corpus / "nets" / path, d)
+    net = front.load(corpus / "nets" / path, d, compute=compute)
     if net is None:
         return NOTHING
     try:

@@ -10,6 +10,7 @@ from pn2code.conformance.finding import AGREES, Finding, State, differs
 from pn2code.conformance.graphs import engine_arcs, engine_nodes, our_arcs, our_nodes
 from pn2code.diagnostics import Diagnostics
 from pn2code.net import front
+from pn2code.semantics.constants import compute
 from pn2code.semantics.effects import Effects, outside
 from pn2code.semantics.enabling import GameError
 from pn2code.semantics.game import Game
@@ -43,7 +44,7 @@ def compare_graph(suite: Path, name: str) -> Finding:
 def _compare(suite: Path, name: str) -> Finding:
     recorded: dict[str, Any] = json.loads((suite / f"{name}.json").read_text(encoding="utf-8"))
     d = Diagnostics()
-    net = front.load(suite / f"{name}.cpn", d)
+    net = front.load(suite / f"{name}.cpn", d, compute=compute)
     if net is None or not recorded["accepted"]:
         if (net is not None) == recorded["accepted"]:
             return AGREES

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from pn2code.emission.c_places import staying_pairs
 from pn2code.lowering import ir
 from pn2code.lowering.calls import called, ir_nodes
-from pn2code.lowering.functions import is_impure_builtin
 from pn2code.lowering.ir import Rep
+from pn2code.lowering.purity import is_impure_builtin
 
 _EXAMINED = (
     ir.ForTokens, ir.TokenValue, ir.UnlessAvailable, ir.UnlessHeld, ir.UnlessEmpty, ir.Take, ir.TakeAll,

@@ -7,7 +7,7 @@ from pathlib import Path
 from pn2code.emission.output import OutputFile
 from pn2code.resources import cnative_folder
 
-HOSTS = ("simulate", "supervisor", "explore", "conform", "messages")
+HOSTS = ("simulate", "supervisor", "explore", "conform", "messages", "tables")
 """What a net can be linked with: the sources of a host begin with its name; all others are common to them."""
 
 

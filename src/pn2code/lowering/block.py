@@ -117,6 +117,18 @@ class Block(TypeSource):
         assert not isinstance(value, LocalReference)
         return value
 
+    def components(self, value: Val, n: int) -> list[Val]:
+        """The components of a tuple of n, which C code is taken apart for."""
+        if isinstance(value, RecordVal):
+            return [value.fields[str(i)] for i in range(1, n + 1)]
+        if n == 0:
+            return []
+        code = self.atomic(self.code(value), "pair")
+        definition = self.program.types.definition(code.type)
+        assert isinstance(definition, ir.StructDef)
+        types = dict(definition.fields)
+        return [ir.Member(code, str(i), types[str(i)]) for i in range(1, n + 1)]
+
     def tag_of(self, constructor: Constructor, argument: IrType | None) -> int:
         """See `TypeSource`."""
         if constructor.data_type == "exn":

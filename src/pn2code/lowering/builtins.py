@@ -24,11 +24,11 @@ from pn2code.lowering.codes import (
     UNSUPPORTED_BUILTIN,
     UnsupportedError,
 )
-from pn2code.lowering.functions import is_impure_builtin
 from pn2code.lowering.ir import Ir, IrType, Rep
 from pn2code.lowering.matching import negation
 from pn2code.lowering.prelude import representation
-from pn2code.lowering.values import BuiltinFunction, Polymorphic, RecordVal, Val
+from pn2code.lowering.purity import is_impure_builtin
+from pn2code.lowering.values import BuiltinFunction, Polymorphic, Val
 from pn2code.ml.builtins import BUILTINS
 from pn2code.ml.types import TCon, TFun, TRecord, TVar, Type
 
@@ -215,7 +215,7 @@ class Builtins:
             assert isinstance(scheme, TFun)
             t, scheme = scheme.argument, scheme.result
             if isinstance(t, TRecord):
-                operands.extend(body.code(v) for v in components(body, argument, len(t.fields)))
+                operands.extend(body.code(v) for v in body.components(argument, len(t.fields)))
             else:
                 operands.append(body.code(argument))
         return operands
@@ -239,14 +239,14 @@ class Builtins:
         if name in colset_functions.LISTED and not types.is_small(table) and name != "base":
             return colset_functions.ColsetFunctions(body, colset, at).listed(name, arguments)
         if name == "read":
-            text, position = (body.code(v) for v in components(body, arguments[0], 2))
+            text, position = (body.code(v) for v in body.components(arguments[0], 2))
             local = body.local("read", t)
             body.emit(ir.Declare(local))
             body.emit(ir.Fill(local, "input", table, (text, position)))
             return ir.Use(local)
         if name in ("lt", "cmp"):
             a, b = (
-                body.addressable(body.code(v), "side") for v in components(body, arguments[0], 2)
+                body.addressable(body.code(v), "side") for v in body.components(arguments[0], 2)
             )
             if name == "cmp" and a.type.rep is Rep.REAL:
                 return ir.Op("Real.compare", (a, b), t)
@@ -319,7 +319,7 @@ def _combinations(body: Body, multisets: Val, t: IrType, declared: tuple[str, ..
     definition = body.program.types.definition(element)
     assert isinstance(definition, ir.StructDef)
     order = list(declared) or [label for label, _ in definition.fields]
-    parts = components(body, multisets, len(order))
+    parts = body.components(multisets, len(order))
     lists = {
         label: body.atomic(body.code(part), "items")
         for label, part in zip(order, parts, strict=True)
@@ -336,19 +336,6 @@ def _combinations(body: Body, multisets: Val, t: IrType, declared: tuple[str, ..
         )
 
     return higher_order.collect(body, t, lambda keep: combine(order, {}, keep))
-
-
-def components(body: Body, value: Val, n: int) -> list[Val]:
-    """The components of a tuple of n, which C code is taken apart for."""
-    if isinstance(value, RecordVal):
-        return [value.fields[str(i)] for i in range(1, n + 1)]
-    if n == 0:
-        return []
-    code = body.atomic(body.code(value), "pair")
-    definition = body.program.types.definition(code.type)
-    assert isinstance(definition, ir.StructDef)
-    types = dict(definition.fields)
-    return [ir.Member(code, str(i), types[str(i)]) for i in range(1, n + 1)]
 
 
 # --- functions with a few lines of their own ---------------------------------------------------
@@ -372,7 +359,7 @@ def same(body: Body, a: Ir, b: Ir) -> Ir:
 
 
 def _equality(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
-    a, b = (body.code(v, at) for v in components(body, arguments[0], 2))
+    a, b = (body.code(v, at) for v in body.components(arguments[0], 2))
     return equal(body, a, b)
 
 
@@ -385,7 +372,7 @@ def _now(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
 
 
 def _compose(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
-    f, g = components(body, arguments[0], 2)
+    f, g = body.components(arguments[0], 2)
     middle = TVar(
         0
     )  # only the representation of results that are C code matters, and `apply` knows it
@@ -408,7 +395,7 @@ def _result_of(body: Body, function: Val, default: Type) -> Type:
 
 
 def _before(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
-    value, after = components(body, arguments[0], 2)
+    value, after = body.components(arguments[0], 2)
     body.discard(after)
     return value
 
@@ -431,7 +418,7 @@ def _cell(
     """Functions that find a cell of a list and give its head."""
 
     def find(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
-        values = components(body, arguments[0], 2) if tupled else list(arguments)
+        values = body.components(arguments[0], 2) if tupled else list(arguments)
         operands = tuple(body.code(v, at) for v in values)
         found = ir.Op(op, operands, operands[0].type)
         return found if rest else head_or(body, found)
@@ -440,7 +427,7 @@ def _cell(
 
 
 def _copies(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
-    n, value = (body.code(v, at) for v in components(body, arguments[0], 2))
+    n, value = (body.code(v, at) for v in body.components(arguments[0], 2))
     value = body.addressable(value, "value")
     t = body.program.types.lower(result)
     if isinstance(n, ir.Const) and n.value == 1:
@@ -451,7 +438,7 @@ def _copies(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> V
 
 def _if_all(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
     """`[b1, ...] % x` and `[b1, ...] // ms`."""
-    conditions, value = components(body, arguments[0], 2)
+    conditions, value = body.components(arguments[0], 2)
     operand = body.code(value, at)
     t = body.program.types.lower(result)
     flags = body.code(conditions, at)
@@ -503,7 +490,7 @@ def _is_some(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> 
 
 
 def _value_or(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
-    option, default = (body.code(v, at) for v in components(body, arguments[0], 2))
+    option, default = (body.code(v, at) for v in body.components(arguments[0], 2))
     option = body.atomic(option, "option")
     return ir.Select(
         ir.IsTag(option, 1), ir.Argument(option, 1, default.type), default, default.type
@@ -514,7 +501,7 @@ def _stamped(*, delayed: bool) -> Callable[[Body, tuple[Val, ...], Type, Span], 
     """`v @ t` and one token `v @+ d`: the stamp itself, or now plus the delay."""
 
     def make(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
-        value, time = (body.code(v, at) for v in components(body, arguments[0], 2))
+        value, time = (body.code(v, at) for v in body.components(arguments[0], 2))
         t = body.program.types.lower(result)
         make_stamp = clock.after_now if delayed else clock.in_clock
         stamp = make_stamp(body.program.real_time, time)
@@ -525,7 +512,7 @@ def _stamped(*, delayed: bool) -> Callable[[Body, tuple[Val, ...], Type, Span], 
 
 def _with_stamps(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
     """`ms @+ d`."""
-    multiset, delay = (body.code(v, at) for v in components(body, arguments[0], 2))
+    multiset, delay = (body.code(v, at) for v in body.components(arguments[0], 2))
     t = body.program.types.lower(result)
     stamp = body.atomic(clock.after_now(body.program.real_time, delay), "stamp")
     timed = body.element(t)
@@ -544,7 +531,7 @@ def _without_stamps(body: Body, arguments: tuple[Val, ...], result: Type, at: Sp
 
 
 def _sum_timed(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
-    a, b = (body.code(v, at) for v in components(body, arguments[0], 2))
+    a, b = (body.code(v, at) for v in body.components(arguments[0], 2))
     return ir.Op("List.@", (a, b), a.type, body.program.types.plain(a.type))
 
 

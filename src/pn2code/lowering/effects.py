@@ -8,8 +8,8 @@ from __future__ import annotations
 
 from pn2code.lowering import ir
 from pn2code.lowering.calls import ir_nodes
-from pn2code.lowering.functions import is_impure_builtin
 from pn2code.lowering.ir import Ir, Stmt
+from pn2code.lowering.purity import is_impure_builtin
 from pn2code.lowering.values import Partial, RecordVal, Val, is_static
 
 _TOTAL_NAMES = """

@@ -30,6 +30,7 @@ from pn2code.lowering.parameters import (
     parameters_of,
     split_parameters,
 )
+from pn2code.lowering.purity import is_impure_builtin
 from pn2code.lowering.types import Types, substitute
 from pn2code.lowering.types import has_function as type_has_function
 from pn2code.lowering.values import (
@@ -40,6 +41,7 @@ from pn2code.lowering.values import (
     Polymorphic,
     RecordVal,
     Reference,
+    TypeEnv,
     Val,
     capture,
     children,
@@ -60,31 +62,27 @@ if TYPE_CHECKING:
 _MAX_COPIES = 60
 """Of a function for different functions that are passed to it; from then on they are passed as values."""
 
-IMPURE = frozenset(
-    [f"Ref.{op}" for op in ("!", ":=", "+=", "-=", "*=", "::=", "inc", "dec")]
-    + ["TextIO.print", "Ms.random", "Colset.ran"]
-)
-"""Built-in functions whose order of evaluation matters."""
-
-IMPURE_PREFIXES = ("Random.", "TextIO.", "prim.do_")
-"""And whole families of them."""
-
-
-def is_impure_builtin(name: str) -> bool:
-    """Whether the built-in function reads or changes something."""
-    return name in IMPURE or name.startswith(IMPURE_PREFIXES)
-
 
 class Program:
-    """All that is asked for of the declarations. One per net."""
+    """All that is asked for of the declarations. One per net.
+
+    Args:
+        new_body: makes the body of a function with these types for its type variables, and its key (`Body` itself).
+    """
 
     def __init__(
-        self, program: core.Program, types: Types, builtins: Builtins, real_time: bool
+        self,
+        program: core.Program,
+        types: Types,
+        builtins: Builtins,
+        real_time: bool,
+        new_body: Callable[[Program, TypeEnv, str], Body],
     ) -> None:
         self.core = program
         self.types = types
         self.builtins = builtins
         self.real_time = real_time
+        self._new_body = new_body
         self.position = Origin("")
         self.lists_are_functions = False
         self._functions: dict[Hashable, str] = {}
@@ -216,13 +214,9 @@ class Program:
 
     def body(self) -> Body:
         """A body of a function that no ML function is."""
-        from pn2code.lowering.expressions import Body
-
-        return Body(self)
+        return self._new_body(self, {}, "")
 
     def _make_globals(self, position: int, dec: core.ValBind, inst: Mapping[int, Type]) -> None:
-        from pn2code.lowering.expressions import Body
-
         value = dec.value
         is_reference = False
         if (
@@ -231,7 +225,7 @@ class Program:
             and _is_builtin(value.function, "Ref.ref")
         ):
             value, is_reference = value.argument, True
-        body = Body(self, inst)
+        body = self._new_body(self, inst, "")
         made: list[ir.Global] = []
         names: dict[int, str] = {}
         for symbol in pattern_symbols(dec.pattern):
@@ -435,12 +429,10 @@ class Program:
         rebuilt: tuple[Binding, ...],
         parameters: list[Local],
     ) -> ir.Function:
-        from pn2code.lowering.expressions import Body
-
         head, *slots = rebuilt
         assert isinstance(head, NamedFunction)
         self.position = function.function.span.origin
-        body = Body(self, head.types, key)
+        body = self._new_body(self, head.types, key)
         env = dict(self.group_env(head))
         at = 0
         remaining: core.Exp = function.function

@@ -231,9 +231,7 @@ def _folding(*, right: bool) -> Special:
 
 
 def _tabulate(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
-    from pn2code.lowering.builtins import components
-
-    count, f = components(body, arguments[0], 2)
+    count, f = body.components(arguments[0], 2)
     n = body.atomic(body.code(count, at), "count")
     t = body.program.types.lower(result)
     is_negative = ir.Op("Int.<", (n, ir.Const(0, ir.INT)), ir.BOOL)

@@ -8,7 +8,6 @@ by element.
 from __future__ import annotations
 
 from pn2code.lowering import arc_lists, ir
-from pn2code.lowering.builtins import components
 from pn2code.lowering.clock import after_now, clock, in_clock, plus
 from pn2code.lowering.expressions import Body
 from pn2code.lowering.ir import Ir
@@ -131,7 +130,7 @@ class Putter:
                 and isinstance(v.function, core.Builtin)
                 and v.function.name == "Time.@"
             ):
-                value, time = components(body, body.exp(v.argument, env), 2)
+                value, time = body.components(body.exp(v.argument, env), 2)
                 count = body.ir(n, env)
                 stamp = in_clock(body.program.real_time, body.code(time))
                 self._token(count, body.code(value), self._shifted(stamp))

@@ -83,7 +83,7 @@ class _Lowering:
         self._digest = digest or self._net.sha256
         self._types = Types(self._net.program, storage)
         builtins = Builtins(self._net.real_time)
-        self._program = Program(self._net.program, self._types, builtins, self._net.real_time)
+        self._program = Program(self._net.program, self._types, builtins, self._net.real_time, Body)
         self._program.lists_are_functions = packing is not None
         self._failed = False
 

@@ -56,13 +56,11 @@ def _read(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val
 
 def _assigning(op: str) -> Special:
     def assign(body: Body, arguments: tuple[Val, ...], result: Type, at: Span) -> Val:
-        from pn2code.lowering.builtins import components
-
         value: Ir = ir.Const(1, ir.INT)
         if op in ("inc", "dec"):
             reference = arguments[0]
         else:
-            reference, operand = components(body, arguments[0], 2)
+            reference, operand = body.components(arguments[0], 2)
             value = body.addressable(body.code(operand, at), "value")
         code, t = _target(body, reference)
         old = _contents(reference, code, t)

@@ -347,7 +347,7 @@ class _Analyser:
                     notes=[
                         f"control stands at {', '.join(f'`{net.places[c].short}`' for c in control)}"
                     ],
-                    hint="in a script only the token that tells where the program is can wait for time: "
+                    hint="in a script only the control token can wait for time: "
                     "make the colour set of this place untimed",
                 )
                 return None
@@ -425,13 +425,13 @@ class _Analyser:
             if not any(_taken(s, p) for p in fixed):
                 self.error(
                     t,
-                    f"transition `{t.short}` does not take the token that tells where the program is",
+                    f"transition `{t.short}` does not take the control token",
                 )
                 return
             if any(not any(_put(o, p) for p in fixed) for o in s.outcomes):
                 self.error(
                     t,
-                    f"transition `{t.short}` does not pass on the token that tells where the program is",
+                    f"transition `{t.short}` does not pass on the control token",
                 )
                 return
         t = steps[0].transition

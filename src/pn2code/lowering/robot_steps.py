@@ -393,7 +393,7 @@ class StepTranslator:
         return [*(w for _, w in writes), *waits, *self._assign(assignments, situation)]
 
     def _wait(self, situation: Situation, outcome: Outcome, env: Env) -> list[Node]:
-        """The delay of the token that tells where the program is. Model time is in seconds."""
+        """The delay of the control token. Model time is in seconds."""
         place = self.machine.target(outcome)
         transition = situation.step.transition
         flat = self.machine.net.places[place]

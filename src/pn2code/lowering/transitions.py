@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pn2code.lowering import arc_lists, colset_functions, ir
-from pn2code.lowering.builtins import components, same
+from pn2code.lowering.builtins import same
 from pn2code.lowering.clock import accepted, clock, in_clock, plus
 from pn2code.lowering.codes import UNSUPPORTED_COLSET, UnsupportedError
 from pn2code.lowering.expressions import Body
@@ -518,6 +518,6 @@ def _code_segment(body: Body, t: FlatTransition, env: dict[int, Binding]) -> Non
         body.effect(code.action, env)
         return
     value = body.exp(code.action, env)
-    parts = [value] if len(code.outputs) == 1 else components(body, value, len(code.outputs))
+    parts = [value] if len(code.outputs) == 1 else body.components(value, len(code.outputs))
     for symbol, part in zip(code.outputs, parts, strict=True):
         body.emit(ir.Bind(index[symbol.uid], body.code(part)))

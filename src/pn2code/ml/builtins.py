@@ -196,12 +196,9 @@ def internal_function(name: str) -> str | None:
     What these structures have is not known here, so any member is taken for a function that is not available.
     """
     structure = name.split(".")[0]
-    if structure in _INTERNAL:
-        reason = "it belongs to the inner parts of CPN Tools"
-    elif structure in _UTILITIES:
-        reason = "pn2code does not have this part of the library"
-    else:
+    if structure not in _INTERNAL:
         return None
+    reason = "it belongs to the inner parts of CPN Tools"
     return BUILTINS.setdefault(name, BuiltinInfo(name, "'a -> 'b", "is not there", reason)).name
 
 
@@ -400,10 +397,10 @@ LargeWord SMLofNJ StringCvt Unix Posix Socket Word32 Word64 Word8Array Word8Vect
 Replications Comms CPN'Sim CPN'NetCapture CPN'Monitors CPN'Env CPN'Settings CPN'StreamIO Cpn
 """
 
-_UTILITIES = frozenset(
+UTILITIES = frozenset(
     {
         "ArrayQSort", "AtomTable", "Base64", "BitArray", "CharMap", "DynamicArray", "Format", "GetOpt",
-        "HashTable", "IOUtil", "IntHashTable", "ParserComb", "PathUtil", "PrimeSizes", "PropList", "Rand",
+        "IOUtil", "IntHashTable", "ParserComb", "PathUtil", "PrimeSizes", "PropList", "Rand",
         "RealOrderStats", "Scan", "SplayTree", "TimeLimit", "URef", "UnivariateStats", "WordHashTable",
     }
 )  # fmt: skip
@@ -412,7 +409,7 @@ _UTILITIES = frozenset(
 STRUCTURES: frozenset[str] = frozenset(
     {
         *_OTHER_STRUCTURES.split(),
-        *_UTILITIES,
+        *UTILITIES,
         *STRUCTURE_ALIASES,
         *(name.split(".")[0] for name in BUILTINS if "." in name and name not in HIDDEN),
         "General",

@@ -141,6 +141,18 @@ COLSET_DEFINITION = register(
     "A definition lacks a part that its kind needs, or has one too many: an enumeration needs values, and a product "
     "needs components.",
 )
+NULL = register(
+    "null-is-time",
+    "`null` is no function of lists in CPN Tools",
+    "The engine of CPN Tools opens its structure of model time at top level, in which `null` is the time 0. It refuses "
+    "`null l` for a list: `operator is not a function`. Write `List.null l` or `l = []`. pn2code accepts both.",
+)
+SUBSET_LIST = register(
+    "subset-list-computed",
+    "the list of a subset is not written element by element",
+    "CPN Tools reads the values of `subset INT with [1, 2]` one by one, and takes a text without brackets (`values`, "
+    "`a ^^ b`) for a single element, which then has the wrong type. pn2code accepts such a list.",
+)
 SUBSET_BARE_FN = register(
     "subset-bare-fn",
     "the predicate of a subset is a `fn` without parentheses",

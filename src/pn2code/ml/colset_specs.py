@@ -10,6 +10,7 @@ from pn2code.diagnostics import NOWHERE, Origin, SourceText
 from pn2code.ml import advice, codes, core
 from pn2code.ml.builtins import FALSE, TRUE
 from pn2code.ml.colsets import Colset, Kind
+from pn2code.ml.computing import Computed
 from pn2code.ml.constants import Constant
 from pn2code.ml.context import Context, suggestion
 from pn2code.ml.declarations import Declarations
@@ -25,7 +26,6 @@ from pn2code.ml.environment import (
 from pn2code.ml.inference import from_type
 from pn2code.ml.types import (
     BOOL,
-    CHAR,
     INT,
     INTINF,
     REAL,
@@ -39,6 +39,7 @@ from pn2code.ml.types import (
     tuple_of,
 )
 
+_BRACKETS = re.compile(r"\s*\[.*\]\s*", re.DOTALL)
 _BARE_FN = re.compile(r"\s*fn\b")
 
 
@@ -89,7 +90,7 @@ class Colsets:
         ctx: Context,
         declarations: Declarations,
         expression: TypedExpression,
-        fold: Callable[[core.Exp], Constant | None],
+        fold: Callable[[core.Exp], Computed],
     ) -> None:
         self._ctx = ctx
         self._declarations = declarations
@@ -187,14 +188,15 @@ class Colsets:
         typed = self._expression(text, types, what)
         if typed is None:
             return None
-        value = self._fold(typed[1])
-        if value is None:
+        computed = self._fold(typed[1])
+        if computed.value is None:
             self._ctx.error(
                 codes.COLSET_RANGE,
-                f"{what} is not a constant that can be computed here",
+                f"{what} {computed.why}",
                 text.span(),
                 hint="use a number, or a `val` declared before as a number",
             )
+        value: Constant | None = computed.value
         return value
 
     def _bounds(
@@ -257,7 +259,7 @@ class Colsets:
         return Colset(spec.name, kind, t, spec.timed, low=low, high=high, origin=spec.origin)
 
     def _string(self, spec: ColsetSpec) -> Colset | None:
-        bounds = self._optional_bounds(spec, spec.texts[:2], (STRING, CHAR))
+        bounds = self._optional_bounds(spec, spec.texts[:2], (STRING,))
         if bounds is None:
             return None
         low, high = bounds
@@ -445,6 +447,8 @@ class Colsets:
         typed = self._expression(spec.texts[0], (wanted,), what)
         if typed is None:
             return None
+        if not spec.by_predicate and not self._is_listed(spec, typed[1]):
+            return None
         return Colset(
             spec.name,
             Kind.SUBSET,
@@ -455,6 +459,21 @@ class Colsets:
             predicate=typed[1] if spec.by_predicate else None,
             origin=spec.origin,
         )
+
+    def _is_listed(self, spec: ColsetSpec, members: core.Exp) -> bool:
+        """Whether the list of a subset is one for CPN Tools, which wants the elements themselves, and at least one."""
+        text = spec.texts[0]
+        if isinstance(members, core.ListExp) and not members.items:
+            self._incomplete(spec, "is a subset without values")
+            return False
+        if not _BRACKETS.fullmatch(text.text):
+            self._ctx.d.warning(
+                codes.SUBSET_LIST,
+                f"the list of the subset `{spec.name}` is computed: CPN Tools takes the text for a single element",
+                text.span(),
+                hint="write the elements, `[a, b]`, or a predicate, `by (fn x => List.exists (fn y => y = x) values)`",
+            )
+        return True
 
     def _alias(self, spec: ColsetSpec) -> Colset | None:
         base = self._base(spec)

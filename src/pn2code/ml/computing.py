@@ -4,7 +4,8 @@
 
 What `constants.fold` cannot say is computed here: user functions, lists, tuples, patterns, multi-sets, the library
 functions that such expressions use. It is no evaluator of nets: no exceptions, references, loops or files; it gives
-up after some thousands of steps. Integers are those of CPN Tools; beyond them there is no value.
+up after some thousands of steps. Integers are those of CPN Tools; beyond them there is no value. What is beyond all
+this is asked of the evaluator, if the caller of the front end has one (`Compute`).
 """
 
 from __future__ import annotations
@@ -12,7 +13,8 @@ from __future__ import annotations
 import functools
 from collections import Counter
 from collections.abc import Callable, Mapping
-from typing import Any
+from dataclasses import dataclass
+from typing import Any, Protocol
 
 from pn2code.ml import core
 from pn2code.ml.constants import Constant, binary, fold, unary
@@ -21,6 +23,29 @@ MOST_STEPS = 100_000
 MOST_INT = 2**30
 MOST_TOKENS = 10_000
 _NAMES = {"length": "List.length", "rev": "List.rev", "size": "String.size"}
+
+
+@dataclass(frozen=True, slots=True)
+class Computed:
+    """What an evaluator says of an expression.
+
+    Args:
+        value: its value; None if there is none that the front end may use.
+        why: why there is none.
+    """
+
+    value: Any
+    why: str = ""
+
+
+class Compute(Protocol):
+    """An evaluator, lent to the front end."""
+
+    def __call__(
+        self, program: core.Program, exp: core.Exp, *, fixed: bool, real_time: bool
+    ) -> Computed:
+        """The value after the declarations of a program; `fixed`: it must never change."""
+
 
 Value = Any
 """Constant; tuple: a list; frozenset of (label, value): a record; (Constructor, argument) in `_Data`; a function."""

@@ -137,16 +137,21 @@ class Context:
 
     def warn_unsupported(self, name: str, reason: str, span: Span) -> None:
         """Says once per element that a function exists in CPN Tools but cannot run here."""
+        self.warn_once(
+            codes.UNSUPPORTED_BUILTIN,
+            name,
+            f"`{name}` is not available here: {reason}",
+            span,
+            "the net is accepted, but a run stops where this is applied",
+        )
+
+    def warn_once(self, code: str, name: str, message: str, span: Span, hint: str) -> None:
+        """Says something of a name once per element."""
         origin = span.source.origin
         key = (origin.element_id or str(origin), origin.part, name)
         if key not in self.warned:
             self.warned.add(key)
-            self.d.warning(
-                codes.UNSUPPORTED_BUILTIN,
-                f"`{name}` is not available here: {reason}",
-                span,
-                hint="the net is accepted, but a run stops where this is applied",
-            )
+            self.d.warning(code, message, span, hint=hint)
 
     # --- scopes and symbols
 

@@ -27,7 +27,7 @@ from pn2code.ml.annotations import Annotations
 from pn2code.ml.builtins import INFIX
 from pn2code.ml.colset_specs import Colsets, ColsetSpec
 from pn2code.ml.colsets import Colset
-from pn2code.ml.computing import Computing
+from pn2code.ml.computing import Compute, Computed, Computing
 from pn2code.ml.constants import Constant, fold
 from pn2code.ml.context import Context, TooDeepError, suggestion
 from pn2code.ml.core import Program, Symbol
@@ -91,6 +91,7 @@ class Elaborator:
         real_time: whether the clock is real (option `realtimestamp`); decides the type `time`.
         int_bits: width of `int`, 31 or 64.
         folder: the net's folder, where used files are; None: there are none.
+        compute: evaluates bounds and priorities that cannot be folded; None: such are refused.
     """
 
     def __init__(
@@ -101,8 +102,10 @@ class Elaborator:
         real_time: bool = False,
         int_bits: int = 31,
         folder: Path | None = None,
+        compute: Compute | None = None,
     ) -> None:
         self._d = d
+        self._compute = compute
         self._files = UsedFiles(folder)
         self._values = dict(values or {})
         self._replaced: set[str] = set()
@@ -120,7 +123,11 @@ class Elaborator:
         self._bodies: dict[int, core.Exp] = {}
         self._computing = Computing(self._constants, self._bodies)
         self._inscriptions = Inscriptions(
-            self._ctx, self._expressions, patterns, self._variable_scope, self._fold
+            self._ctx,
+            self._expressions,
+            patterns,
+            self._variable_scope,
+            partial(self._fold, fixed=True),
         )
         self._repeats = Repeats()
         self._library: set[str] = set()
@@ -353,11 +360,12 @@ class Elaborator:
         found = self._inscriptions.plain(written, (STRING,), "name of a file")
         if found is None:
             return
-        name = self._fold(found[1])
+        computed = self._fold(found[1])
+        name = computed.value
         if not isinstance(name, str):
             self._d.error(
                 codes.USED_FILE,
-                "the name of this file is not a constant that can be computed here",
+                f"the name of this file {computed.why}",
                 written.span,
                 hint='write it as a text: `use "functions.sml"`',
             )
@@ -559,8 +567,18 @@ class Elaborator:
 
         return self._border(text, work)
 
-    def _fold(self, exp: core.Exp) -> Constant | None:
-        return self._computing.value(exp)
+    def _fold(self, exp: core.Exp, *, fixed: bool = False) -> Computed:
+        """The value of an expression after the declarations so far; else the end of a sentence about it."""
+        value: object = self._computing.value(exp)
+        why = ""
+        if value is None and self._compute is not None:
+            real_time = self._ctx.real_time
+            computed = self._compute(self.program(), exp, fixed=fixed, real_time=real_time)
+            value, why = computed.value, computed.why
+        if isinstance(value, int | float | str):
+            return Computed(value)
+        what = "is not a constant that can be computed here"
+        return Computed(None, f"{what}: {why}" if why else what)
 
     def tokens(self, exp: core.Exp, is_token: bool) -> Counter[Any] | None:
         """The tokens of an initial marking, which is one of them or a multi-set; None when they cannot be said."""

@@ -23,6 +23,7 @@ from pn2code.ml.builtins import (
     TYPE_ABBREVIATIONS,
     TYPE_ARITY,
     UNSUPPORTED_NAMES,
+    UTILITIES,
     internal_function,
 )
 from pn2code.ml.colsets import Colset
@@ -320,7 +321,8 @@ def library_value(structure: str, member: str) -> Entry | None:
     base = _library().values.get(member)
     if isinstance(base, ConEntry | EmptyEntry) and member in _CONSTRUCTORS_OF.get(structure, ()):
         return base
-    if name in ABSENT_VALUES or name in ENGINE_MEMBERS or name.split(".")[0] in ENGINE_STRUCTURES:
+    first = name.split(".")[0]
+    if name in ABSENT_VALUES or name in ENGINE_MEMBERS or first in ENGINE_STRUCTURES | UTILITIES:
         return UnsupportedEntry(name)
     internal = internal_function(name)
     return None if internal is None else BuiltinEntry(internal)

@@ -449,6 +449,8 @@ class _Sequence:
         self._r = resolver
         self._items = flat.items
         self._at = 0
+        self._around: dict[int, Span] = {}
+        """Of operands in parentheses, by `id`: their spans with these."""
 
     def resolve(self) -> s.Exp:
         exp = self._orelse()
@@ -456,7 +458,7 @@ class _Sequence:
             item = self._items[self._at]
             if not isinstance(item, s.Handler):
                 raise self._r._error("this cannot follow `handle`", item.span)
-            exp = s.HandleExp(exp, self._r.rules(item.rules), exp.span.to(item.span))
+            exp = s.HandleExp(exp, self._r.rules(item.rules), self._span(exp).to(item.span))
             self._at += 1
         return exp
 
@@ -469,14 +471,14 @@ class _Sequence:
         while self._word() == "orelse":
             self._at += 1
             parts.append(self._andalso())
-        return _logic(False, parts)
+        return _logic(False, parts, self._span)
 
     def _andalso(self) -> s.Exp:
         parts = [self._typed()]
         while self._word() == "andalso":
             self._at += 1
             parts.append(self._typed())
-        return _logic(True, parts)
+        return _logic(True, parts, self._span)
 
     def _typed(self) -> s.Exp:
         exp = self._infix()
@@ -484,7 +486,7 @@ class _Sequence:
             item = self._items[self._at]
             if not isinstance(item, s.Constraint):
                 break
-            exp = s.TypedExp(exp, item.type, exp.span.to(item.span))
+            exp = s.TypedExp(exp, item.type, self._span(exp).to(item.span))
             self._at += 1
         if self._at < len(self._items) and not isinstance(
             self._items[self._at], s.Keyword | s.Handler
@@ -574,24 +576,30 @@ class _Sequence:
             ):
                 raise self._r.foreign(atom)
         exp = self._r.exp(atoms[0])
+        if len(atoms) == 1:
+            self._around[id(exp)] = atoms[0].span
         for atom in atoms[1:]:
-            exp = s.ApplyExp(exp, self._r.exp(atom), exp.span.to(atom.span))
+            exp = s.ApplyExp(exp, self._r.exp(atom), atoms[0].span.to(atom.span))
         return exp
 
-    @staticmethod
-    def _join(operator: s.Exp, left: s.Exp, right: s.Exp) -> s.Exp:
+    def _join(self, operator: s.Exp, left: s.Exp, right: s.Exp) -> s.Exp:
         assert isinstance(operator, s.NameExp)
-        return s.InfixExp(operator, left, right, left.span.to(right.span))
+        return s.InfixExp(operator, left, right, self._span(left).to(self._span(right)))
+
+    def _span(self, exp: s.Exp) -> Span:
+        """The span of a part of this sequence, with the parentheses around it."""
+        return self._around.get(id(exp), exp.span)
 
 
-def _logic(conjunction: bool, parts: Sequence[s.Exp]) -> s.Exp:
+def _logic(conjunction: bool, parts: Sequence[s.Exp], span_of: Callable[[s.Exp], Span]) -> s.Exp:
     if len(parts) > LONG_CHAIN:  # in which order does not matter
         middle = len(parts) // 2
-        left, right = _logic(conjunction, parts[:middle]), _logic(conjunction, parts[middle:])
-        return s.LogicExp(conjunction, left, right, left.span.to(right.span))
+        left = _logic(conjunction, parts[:middle], span_of)
+        right = _logic(conjunction, parts[middle:], span_of)
+        return s.LogicExp(conjunction, left, right, span_of(left).to(span_of(right)))
     exp = parts[-1]
     for part in reversed(parts[:-1]):
-        exp = s.LogicExp(conjunction, part, exp, part.span.to(exp.span))
+        exp = s.LogicExp(conjunction, part, exp, span_of(part).to(span_of(exp)))
     return exp
 
 

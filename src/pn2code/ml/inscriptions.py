@@ -12,7 +12,7 @@ from pn2code.ml import codes, core, type_advice
 from pn2code.ml import syntax as s
 from pn2code.ml.builtins import BUILTINS, FALSE, TRUE
 from pn2code.ml.colsets import definition
-from pn2code.ml.constants import Constant
+from pn2code.ml.computing import Computed
 from pn2code.ml.context import Context, Draft, conversion, label_notes
 from pn2code.ml.core import Symbol
 from pn2code.ml.environment import Binding, BrokenEntry, BuiltinEntry, Scope
@@ -65,7 +65,7 @@ class Inscriptions:
         expressions: Expressions,
         patterns: Patterns,
         variables: Scope,
-        computed: Callable[[core.Exp], Constant | None],
+        computed: Callable[[core.Exp], Computed],
     ) -> None:
         self._ctx = ctx
         self._expressions = expressions
@@ -447,11 +447,12 @@ class Inscriptions:
             built = self._finish(before, draft.build)
         if built is None:
             return None
-        value = self._computed(built)
+        computed = self._computed(built)
+        value = computed.value
         if not isinstance(value, int):
             self._ctx.error(
                 codes.PRIORITY,
-                "priority is not a constant that can be computed here",
+                f"priority {computed.why}",
                 exp.span,
                 hint="use a number, or a `val` such as `P_HIGH`; smaller numbers go first",
             )

@@ -85,6 +85,14 @@ class Names:
                 return self._variable(entry, span)
             case BuiltinEntry():
                 info = BUILTINS[entry.name]
+                if name == "null":
+                    self._ctx.warn_once(
+                        codes.NULL,
+                        name,
+                        "`null` is the time 0 in CPN Tools, which refuses it as a function of lists",
+                        span,
+                        "write `List.null`",
+                    )
                 t, generics = self._ctx.library_type(info.text)
                 if not generics:
                     return self._simple(entry.name, name, t, span)
@@ -123,7 +131,10 @@ class Names:
                 return BROKEN
             case UnsupportedEntry():
                 self._ctx.error(
-                    codes.UNSUPPORTED_BUILTIN, f"function `{name}` is not supported", span
+                    codes.UNSUPPORTED_BUILTIN,
+                    f"function `{name}` is not supported",
+                    span,
+                    hint="write a function of your own for it" if "." in name else "",
                 )
                 return BROKEN
 

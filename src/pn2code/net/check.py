@@ -13,11 +13,12 @@ from pathlib import Path
 from pn2code.diagnostics import Diagnostics, Note, Origin, SourceText
 from pn2code.diagnostics.near import did_you_mean
 from pn2code.ml.colsets import Colset, Kind
+from pn2code.ml.computing import Compute
 from pn2code.ml.core import Exp, Lit
 from pn2code.ml.elaborate import ColsetSpec, Elaborator, is_layered
 from pn2code.ml.parser import declared_names, odd_declaration
 from pn2code.ml.types import INT, Type, list_of, timed_of
-from pn2code.net import reserved_words, space_names
+from pn2code.net import initial_effects, reserved_words, space_names
 from pn2code.net.binding import Parts, Planner
 from pn2code.net.codes import (
     ARC_AS,
@@ -63,6 +64,7 @@ def check(
     *,
     partial: bool = False,
     int_bits: int = 31,
+    compute: Compute | None = None,
 ) -> TypedNet | None:
     """Type a net.
 
@@ -72,18 +74,24 @@ def check(
         values: replacements for `val` declarations: name -> CPN ML text.
         partial: give the typed net even after errors, without the elements that are wrong.
         int_bits: width of `int`, 31 or 64.
+        compute: evaluates bounds and priorities that cannot be folded.
 
     Returns:
         The typed net, or None if there were errors.
     """
     before = len(d.errors)
-    typed = _Checker(net, d, values or {}, int_bits).typed()
+    typed = _Checker(net, d, values or {}, int_bits, compute).typed()
     return None if len(d.errors) > before and not partial else typed
 
 
 class _Checker:
     def __init__(
-        self, net: Net, d: Diagnostics, values: Mapping[str, str], int_bits: int = 31
+        self,
+        net: Net,
+        d: Diagnostics,
+        values: Mapping[str, str],
+        int_bits: int,
+        compute: Compute | None,
     ) -> None:
         self.net = net
         self.d = d
@@ -93,6 +101,7 @@ class _Checker:
             real_time=net.real_time,
             int_bits=int_bits,
             folder=Path(net.document.file).parent,
+            compute=compute,
         )
         self.is_pnml = net.document.tool == "PNML"
         self.broken: set[str] = set()
@@ -194,6 +203,7 @@ class _Checker:
         if not self.is_pnml:
             colsets = {c.name: c.origin for c in self.net.declarations if isinstance(c, RawColset)}
             space_names.warn(self.program, colsets, self.d)
+            initial_effects.warn(self.program, pages, self.d)
         return TypedNet(
             net=self.net,
             program=replace(self.program, datatypes=self.elaborator.datatypes()),

@@ -207,6 +207,13 @@ ARCS_SHARE = register(
     "(c, b) it says `InternalError: insert_transvar`, whatever else binds the variables. pn2code accepts such a "
     "net: the shared variable has one value.",
 )
+INITIAL_EFFECT = register(
+    "initial-marking-effect",
+    "an initial marking changes a reference",
+    "CPN Tools evaluates initial markings when it checks a net and again when it makes the initial state, places in an "
+    "order of its own and those of fusion sets once more. A marking that counts in a reference, 1`(tick ()), is "
+    "different each time. pn2code evaluates every initial marking once, in the order of the file.",
+)
 SPACE_NAME = register(
     "state-space-name",
     "a name of the net hides one that the state-space tool of CPN Tools uses",

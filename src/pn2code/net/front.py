@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pn2code.diagnostics import Diagnostics, TooManyDiagnosticsError
+from pn2code.ml.computing import Compute
 from pn2code.net.check import check
 from pn2code.net.flat import FlatNet
 from pn2code.net.flatten import check_hierarchy, flatten
@@ -39,6 +40,7 @@ def examine(
     *,
     int_bits: int = 31,
     drawn: bool = False,
+    compute: Compute | None = None,
 ) -> Examined:
     """Read, link, check and flatten a `.cpn` file, going on after errors.
 
@@ -50,16 +52,23 @@ def examine(
         values: replacements for `val` declarations of the net: name -> CPN ML text.
         int_bits: width of `int`: 31, as in CPN Tools, or 64.
         drawn: whether the document will be drawn, that is, has its layout.
+        compute: evaluates bounds of colour sets and priorities that cannot be folded (`semantics.constants`); without
+            it nets that need it are refused.
     """
     try:
-        return _examine(path, d, values, int_bits, drawn)
+        return _examine(path, d, values, int_bits, drawn, compute)
     except TooManyDiagnosticsError:
         give_up(str(path), d)
         return Examined(None, None)
 
 
 def _examine(
-    path: Path, d: Diagnostics, values: Mapping[str, str] | None, int_bits: int, drawn: bool
+    path: Path,
+    d: Diagnostics,
+    values: Mapping[str, str] | None,
+    int_bits: int,
+    drawn: bool,
+    compute: Compute | None,
 ) -> Examined:
     before = len(d.errors)
     document = read(path, d, partial=True, drawn=drawn)
@@ -67,7 +76,7 @@ def _examine(
     if net is None:
         return Examined(document, None)
     linked = len(d.errors) == before
-    typed = check(net, d, values, partial=True, int_bits=int_bits)
+    typed = check(net, d, values, partial=True, int_bits=int_bits, compute=compute)
     if typed is None or not linked:
         return Examined(document, None)
     if len(d.errors) > before:
@@ -82,6 +91,7 @@ def load(
     values: Mapping[str, str] | None = None,
     *,
     int_bits: int = 31,
+    compute: Compute | None = None,
 ) -> FlatNet | None:
     """The flat net of a `.cpn` file; None if there were errors. See `examine`."""
-    return examine(path, d, values, int_bits=int_bits).flat
+    return examine(path, d, values, int_bits=int_bits, compute=compute).flat

@@ -75,7 +75,8 @@ use valOf
 VALUES = frozenset(_VALUES.split())
 """As values and functions, unless they can be used like those that they hide."""
 _STRUCTURES = """
-Char Date Int Int32 List ListUtils Misc OS Output String TMS TextIO Time
+Bind CalcStat Char Date Inst Int Int32 List ListUtils Mark Misc OGSet OS Output PI String TI TMS TextIO
+Time
 """
 STRUCTURES = frozenset(_STRUCTURES.split())
 """As colour sets, each of which is a structure."""
@@ -119,9 +120,9 @@ def _declared(program: Program, origins: Mapping[str, Origin]) -> Iterator[tuple
                     yield "exception", constructor.name, dec.span.origin
             case ValBind(pattern):
                 for symbol in pattern_variables(pattern):
-                    if symbol.name in VALUES:
+                    if symbol.name in VALUES and program.globals.get(symbol.name) == symbol:
                         yield "value", symbol.name, dec.span.origin
             case RecBind(bindings):
                 for symbol, _ in bindings:
-                    if symbol.name in VALUES:
+                    if symbol.name in VALUES and program.globals.get(symbol.name) == symbol:
                         yield "function", symbol.name, dec.span.origin

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -17,8 +18,20 @@ from pn2code.run.record import RunRecord, merged_rows, summary_counts
 KINDS = ("joint", "home", "linear", "tool", "measure", "wait")
 
 
-def summarise(record: RunRecord, report: ReportConfig, robots: tuple[str, ...]) -> dict[str, Any]:
-    """All the figures, as JSON-able data. Lengths in m, times in s, angles in degrees."""
+def summarise(
+    record: RunRecord,
+    report: ReportConfig,
+    robots: tuple[str, ...],
+    occurrences: Mapping[str, Collection[str]],
+) -> dict[str, Any]:
+    """All the figures, as JSON-able data. Lengths in m, times in s, angles in degrees.
+
+    Args:
+        record: the run.
+        report: what the cell wants to know of it.
+        robots: the names of robots and devices.
+        occurrences: label -> the whole paths of the transitions that `report.occurrences` means.
+    """
     totals = [
         {
             "name": activity.name,
@@ -59,7 +72,7 @@ def summarise(record: RunRecord, report: ReportConfig, robots: tuple[str, ...]) 
         "final": list(record.final),
         "cycle_seconds": round(record.time, 6),
         "rows": len(merged_rows(record.messages, report.rows)) if report.rows else 0,
-        **summary_counts(record, dict(report.count), dict(report.occurrences)),
+        **summary_counts(record, dict(report.count), occurrences),
         "activities": totals,
         "robots": per_robot,
         "clearances": _minima(record),

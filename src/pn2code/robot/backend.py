@@ -6,9 +6,6 @@ them. So every backend gives the same trajectories.
 
 from __future__ import annotations
 
-import importlib.util
-import os
-import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, Protocol, TypeAlias
@@ -16,7 +13,6 @@ from typing import Literal, Protocol, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from pn2code.robot.scene import RobotCell
 from pn2code.robot.transforms import Array
 
 ClearanceKind = Literal["robots", "scene", "self"]
@@ -90,33 +86,3 @@ class Backend(Protocol):
 
 class BackendUnavailableError(Exception):
     """A backend that cannot be had here; the message says why and what to do (a user's matter)."""
-
-
-def open_backend(
-    name: BackendName, cell: RobotCell, *, gui: bool = False, looks: bool = True
-) -> Backend:
-    """A backend for a cell. PyBullet is imported only when it is asked for.
-
-    Args:
-        gui: open its window.
-        looks: load what only pictures need (a second or so).
-
-    Raises BackendUnavailableError when there is no display for its window, or PyBullet is not installed.
-    """
-    if name == "fake":
-        from pn2code.robot.fake import FakeBackend
-
-        return FakeBackend(cell)
-    if gui and sys.platform.startswith("linux") and not os.environ.get("DISPLAY"):
-        # PyBullet would end the whole process here.
-        raise BackendUnavailableError(
-            "there is no display for PyBullet's window: leave out `--gui`, or set DISPLAY"
-        )
-    if importlib.util.find_spec("pybullet") is None:
-        raise BackendUnavailableError(
-            "PyBullet is not installed: `pip install 'pn2code[cell]'` brings it, with Python 3.11 at the latest. "
-            "`--backend fake` needs none: it moves the arms exactly, without measuring clearances"
-        )
-    from pn2code.robot.bullet import BulletBackend
-
-    return BulletBackend(cell, gui=gui, looks=looks or gui)

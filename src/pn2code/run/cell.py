@@ -23,6 +23,7 @@ from typing import Any
 from pn2code import pipeline
 from pn2code.cell.codes import CELL_MISSING
 from pn2code.cell.config import CellConfig
+from pn2code.cell.names import counted
 from pn2code.channels import GRACE_S, SharedDirectory, specs_of
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.diagnostics.codes import register
@@ -32,7 +33,8 @@ from pn2code.os_reason import os_reason
 from pn2code.report.rows import rows_tsv
 from pn2code.report.summary import summarise
 from pn2code.robot import scene
-from pn2code.robot.backend import Backend, BackendName, open_backend
+from pn2code.robot.backend import Backend, BackendName
+from pn2code.robot.choose_backend import open_backend
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor
 from pn2code.run.device import DeviceExecutor
@@ -207,7 +209,8 @@ def run_cell(
         record.header = _header(engine.supervisor_trace.header)
     record.wall = time.perf_counter() - started
     _warn(record, prepared.config)
-    summary = summarise(record, prepared.config.report, _names(prepared))
+    occurrences = counted(prepared.generated.partition.net, prepared.config)
+    summary = summarise(record, prepared.config.report, _names(prepared), occurrences)
     _write_results(record, summary, prepared, options.out)
     return RunResult(record, summary, prepared)
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections import Counter
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -164,11 +165,17 @@ def fixed4(value: float) -> str:
 
 
 def summary_counts(
-    record: RunRecord, count: Mapping[str, str], occurrences: Mapping[str, str]
+    record: RunRecord, count: Mapping[str, str], occurrences: Mapping[str, Collection[str]]
 ) -> dict[str, int]:
-    """How often each counted tool action was completed, and each counted transition occurred."""
-    names = [f".{e['transition']}" for e in record.events if "transition" in e]
+    """How often each counted tool action was completed, and each counted transition occurred.
+
+    Args:
+        record: the run.
+        count: label -> tool action.
+        occurrences: label -> the whole paths of the transitions that are counted together.
+    """
+    names = Counter(e["transition"] for e in record.events if "transition" in e)
     return {
         label: sum(a.kind == "tool" and a.label == action for a in record.actions)
         for label, action in count.items()
-    } | {label: sum(n.endswith(f".{t}") for n in names) for label, t in occurrences.items()}
+    } | {label: sum(names[path] for path in set(paths)) for label, paths in occurrences.items()}

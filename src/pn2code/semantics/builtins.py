@@ -38,6 +38,7 @@ from pn2code.semantics.colour_files import (
     read_value,
 )
 from pn2code.semantics.colours import ALIKE
+from pn2code.semantics.tasks import Tail, Task
 from pn2code.semantics.values import (
     UNIT,
     Data,
@@ -54,7 +55,7 @@ from pn2code.semantics.values import (
 )
 
 if TYPE_CHECKING:
-    from pn2code.semantics.evaluate import Evaluator, Task
+    from pn2code.semantics.evaluate import Evaluator
 
 Function = Callable[..., Any]
 
@@ -72,8 +73,6 @@ def _update(change: Callable[[Any, Any], int]) -> Function:
 
 
 def _compose(e: Evaluator, functions: tuple[Value, Value], argument: Value) -> Task:
-    from pn2code.semantics.evaluate import Tail
-
     inner = yield e.call(functions[1], argument)
     return Tail(e.call(functions[0], inner))
 

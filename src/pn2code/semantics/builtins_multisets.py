@@ -12,7 +12,8 @@ from pn2code.semantics.builtins_lists import keep, sort, without_all
 from pn2code.semantics.values import MlException, Value, equal, exception, fitting
 
 if TYPE_CHECKING:
-    from pn2code.semantics.evaluate import Evaluator, Task
+    from pn2code.semantics.evaluate import Evaluator
+    from pn2code.semantics.tasks import Task
 
 Function = Callable[..., Any]
 Items = tuple[Any, ...]

@@ -6,13 +6,11 @@ import math
 import re
 import sys
 from collections.abc import Callable
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from pn2code.semantics.builtins_scan import from_string, missing, scanner
 from pn2code.semantics.values import (
     MAX_BITS,
-    MOST_DIGITS,
     NONE,
     Data,
     MlException,
@@ -21,11 +19,13 @@ from pn2code.semantics.values import (
     exception,
     int_text,
     order,
+    real_digits,
     real_text,
 )
 
 if TYPE_CHECKING:
-    from pn2code.semantics.evaluate import Evaluator, Task
+    from pn2code.semantics.evaluate import Evaluator
+    from pn2code.semantics.tasks import Task
 
 Function = Callable[..., Any]
 
@@ -190,7 +190,9 @@ def _signed(w: int) -> int:
 
 
 def _read_word(e: Evaluator, text: str) -> tuple[int, int] | None:
-    found = re.match(r"[ \t\n\v\f\r]*(?:0?w?[xX](?=[0-9a-fA-F]))?([0-9a-fA-F]+)", text)
+    found = re.match(
+        r"[ \t\n\v\f\r]*(?:0w(?=[0-9a-fA-F])|0?w?[xX](?=[0-9a-fA-F]))?([0-9a-fA-F]+)", text
+    )
     if found is None:
         return None
     number = int(found[1], 16)
@@ -334,50 +336,46 @@ def _read_real(e: Evaluator, text: str) -> tuple[Value, int] | None:
     return (-number if found[1] in ("~", "-") else number), found.end()
 
 
-def format_real(how: Data, x: float) -> str:
+def format_real(e: Evaluator, how: Data, x: float) -> str:
     """`Real.fmt`.
 
     Raises:
-        MlException: Size, for a number of digits that is not possible.
+        MlException: Size, for a number of digits that is not possible; Overflow, for one that is too large; Fail, for
+            `EXACT`, which SML/NJ has not got.
     """
+    if how.name == "EXACT":
+        raise fail("Fail", "RealFormat: fmtReal: EXACT not supported")
     wanted: Any = how.argument
     digits: Any = wanted.argument if isinstance(wanted, Data) else None
     if digits is not None and digits < (1 if how.name == "GEN" else 0):
         raise fail("Size")
     if not math.isfinite(x) or how.name == "GEN":
         return real_text(x, 12 if digits is None else digits)
+    places = 6 if digits is None else digits
     sign = "~" if x < 0 else ""
-    x = abs(x)
-    if how.name == "FIX":
-        return f"{sign}{x:.{6 if digits is None else digits}f}"
-    if how.name == "SCI":
-        mantissa, exponent = f"{x:.{6 if digits is None else digits}e}".split("e")
-        return f"{sign}{mantissa}E{int_text(int(exponent))}"
-    mantissa, exponent = f"{x!r}e0".split("e")[:2] if "e" not in repr(x) else repr(x).split("e")
-    return sign + _exact(mantissa, int(exponent))
+    return sign + (_fixed if how.name == "FIX" else _scientific)(e, abs(x), places)
 
 
-def _formatted(e: Evaluator, how: Data, x: float) -> str:
-    """Of very many digits those behind the last that a real can have are zeros, before the exponent."""
-    wanted: Any = how.argument
-    digits: Any = wanted.argument if isinstance(wanted, Data) else None
-    if how.name == "GEN" or digits is None or digits <= MOST_DIGITS or not math.isfinite(x):
-        return format_real(how, x)
-    shorter = replace(how, argument=replace(wanted, argument=MOST_DIGITS))
-    mantissa, mark, exponent = format_real(shorter, x).partition("E")
-    width = len(mantissa) + digits - MOST_DIGITS
-    return mantissa + missing(e, "0", checked(e, width), mantissa) + mark + exponent
+def _fixed(e: Evaluator, x: float, places: int) -> str:
+    """So many digits behind the point; zeros behind those that SML/NJ finds."""
+    digits, exponent = real_digits(x, places, behind=True) if x else ("0", 0)
+    digits = "0" * -exponent + digits
+    size = max(exponent, 0) + 1  # of the whole part
+    text = digits[:size].ljust(size, "0")
+    if not places:
+        return text
+    text += "." + digits[size : size + places]
+    return text + missing(e, "0", checked(e, size + 1 + places), text)
 
 
-def _exact(mantissa: str, exponent: int) -> str:
-    """All digits behind the point: `0.15E1`."""
-    whole, _, fraction = mantissa.partition(".")
-    digits = (whole + fraction).rstrip("0")
-    leading = len(digits) - len(digits.lstrip("0"))
-    if not digits.strip("0"):
-        return "0.0"
-    exponent += len(whole) - leading
-    return f"0.{digits[leading:]}" + (f"E{int_text(exponent)}" if exponent else "")
+def _scientific(e: Evaluator, x: float, places: int) -> str:
+    """So many digits behind the point and an exponent; SML/NJ loses some of the zeros behind the last of 15 digits."""
+    checked(e, places + 1)
+    digits, exponent = real_digits(x, places + 1) if x else ("0", 0)
+    text = digits[:1] + "." * bool(places) + digits[1 : places + 1]
+    zeros = places - len(digits) + 1
+    zeros -= len(text) if x else 0
+    return text + missing(e, "0", len(text) + max(zeros, 0), text) + f"E{int_text(exponent)}"
 
 
 _MODES: dict[str, Callable[[float], int]] = {
@@ -412,7 +410,7 @@ def _from_mantissa(p: tuple[int, float]) -> float:
 def _parts(x: float) -> tuple[float, float]:
     """`Real.split`, a record in the order frac, whole."""
     if math.isinf(x):
-        return math.copysign(0.0, x), x
+        return math.nan, x  # the engine takes the one from the other
     return math.modf(x)
 
 
@@ -559,7 +557,7 @@ FUNCTIONS: dict[str, tuple[int, Function]] = {
     "Real.toInt": (2, lambda e, mode, x: checked(e, _MODES[mode.name](_whole(x)))),
     "Real.toLargeInt": (2, lambda e, mode, x: _MODES[mode.name](_whole(x))),
     "Real.fromLarge": (2, lambda e, mode, x: x),
-    "Real.fmt": (2, lambda e, how, x: _formatted(e, how, x)),
+    "Real.fmt": (2, format_real),
     "Real.scan": (2, scanner(_read_real, lambda c: c in "0123456789.~+-eEinfatyINFATY \t\n\v\f\r")),
     **{f"Math.{name}": (1, one_nan(f)) for name, f in MATHEMATICS.items()},
 }

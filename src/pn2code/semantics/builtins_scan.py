@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Any
 from pn2code.semantics.values import MAX_STRING, NONE, Data, MlException, Value, exception, some
 
 if TYPE_CHECKING:
-    from pn2code.semantics.evaluate import Evaluator, Task
+    from pn2code.semantics.evaluate import Evaluator
+    from pn2code.semantics.tasks import Task
 
 Function = Callable[..., Any]
 Read = Callable[["Evaluator", str], tuple[Value, int] | None]

@@ -21,7 +21,8 @@ from pn2code.semantics.values import (
 )
 
 if TYPE_CHECKING:
-    from pn2code.semantics.evaluate import Evaluator, Task
+    from pn2code.semantics.evaluate import Evaluator
+    from pn2code.semantics.tasks import Task
 
 Function = Callable[..., Any]
 

@@ -10,7 +10,8 @@ from pn2code.semantics.builtins_numbers import checked
 from pn2code.semantics.values import UNIT, Array, MlException, Value, exception
 
 if TYPE_CHECKING:
-    from pn2code.semantics.evaluate import Evaluator, Task
+    from pn2code.semantics.evaluate import Evaluator
+    from pn2code.semantics.tasks import Task
 
 Function = Callable[..., Any]
 Items = tuple[Any, ...]

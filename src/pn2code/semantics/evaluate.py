@@ -16,7 +16,7 @@ expression has seen it.
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Generator, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from types import GeneratorType
 from typing import Any, assert_never
@@ -30,6 +30,7 @@ from pn2code.semantics.builtins import builtin, colset_builtin
 from pn2code.semantics.colours import Colours
 from pn2code.semantics.files import Files
 from pn2code.semantics.random import RandomStream
+from pn2code.semantics.tasks import Step, Tail, Task
 from pn2code.semantics.values import (
     MAX_BITS,
     MAX_ITEMS,
@@ -44,17 +45,6 @@ from pn2code.semantics.values import (
 )
 
 Environment = Mapping[int, Value]
-Task = Generator[Any, Any, Any]
-"""Yields steps, is sent their values, returns a value or a `Tail`."""
-Step = Any
-"""A value, or a task that finds it."""
-
-
-@dataclass(slots=True, eq=False)
-class Tail:
-    """What a task returns to be replaced by another step."""
-
-    step: Step
 
 
 @dataclass(frozen=True, slots=True)

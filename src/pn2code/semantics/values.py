@@ -264,8 +264,44 @@ def int_text(i: int) -> str:
     return f"~{-i}" if i < 0 else str(i)
 
 
-MOST_DIGITS = 1100
-"""No real has more, whatever is asked for."""
+MOST_DIGITS = 15
+"""SML/NJ finds no more of a real number, whatever is asked for."""
+
+
+def real_digits(x: float, count: int, *, behind: bool = False) -> tuple[str, int]:
+    """The decimal digits of a positive finite number as SML/NJ finds them, and the exponent of the first.
+
+    It multiplies by ten with rounded arithmetic, so these are not always the digits of the nearest decimal number:
+    770.285 has 770.29 with two places. A last digit that is just in the middle becomes even.
+
+    Args:
+        x: the number.
+        count: how many digits; one more if they are rounded up to a power of ten.
+        behind: `count` is the number of digits behind the point.
+    """
+    exponent = 0
+    while x < 1.0:
+        x, exponent = 10.0 * x, exponent - 1
+    while x >= 10.0:
+        x, exponent = 0.1 * x, exponent + 1
+    if behind:
+        count += exponent + 1
+    digits: list[int] = []
+    for _ in range(max(0, min(count, MOST_DIGITS))):
+        digits.append(int(x))
+        x = 10.0 * (x - digits[-1])
+    is_odd = bool(digits) and digits[-1] % 2 == 1
+    if x > 5.0 or (x == 5.0 and is_odd):
+        at = len(digits) - 1
+        while at >= 0 and digits[at] == 9:
+            digits[at] = 0
+            at -= 1
+        if at >= 0:
+            digits[at] += 1
+        else:
+            digits.insert(0, 1)
+            exponent += 1
+    return "".join(map(str, digits)), exponent
 
 
 def real_text(x: float, precision: int = 12) -> str:
@@ -280,8 +316,8 @@ def real_text(x: float, precision: int = 12) -> str:
     if x == 0:
         return "0.0"  # also of minus zero
     sign = "~" if x < 0 else ""
-    mantissa, exponent_text = f"{abs(x):.{min(precision - 1, MOST_DIGITS)}e}".split("e")
-    digits, exponent = mantissa.replace(".", "").rstrip("0"), int(exponent_text)
+    digits, exponent = real_digits(abs(x), precision)
+    digits = digits.rstrip("0")
     if exponent < -4 or exponent >= precision:
         # SML/NJ writes a two-digit exponent at least only for small numbers: 1E~05, but 1E20.
         fraction = "." + digits[1:] if len(digits) > 1 else ""

@@ -20,7 +20,8 @@ from pn2code.lowering.robot_ir import Chain, Line, Node, Region, Repeat, RobotIR
 from pn2code.ml.colsets import Colset
 from pn2code.os_reason import os_reason
 from pn2code.robot import codes, scene
-from pn2code.robot.backend import BackendUnavailableError, open_backend
+from pn2code.robot.backend import BackendUnavailableError
+from pn2code.robot.choose_backend import open_backend
 from pn2code.robot.commands import Pose
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor

@@ -15,6 +15,7 @@ from pn2code.cell.locate import locate
 from pn2code.diagnostics import Diagnostics
 from pn2code.net import front
 from pn2code.net.front import Examined
+from pn2code.semantics.constants import compute
 
 if TYPE_CHECKING:
     from pn2code.cell.config import CellConfig
@@ -49,7 +50,7 @@ def check(path: Path, values: Mapping[str, str], d: Diagnostics, *, int_bits: in
         return Checked(path, Examined(None, None), is_fine=False)
     file, config = found
     replaced = {**(config.values if config else {}), **values}
-    result = front.examine(file, d, replaced, int_bits=int_bits)
+    result = front.examine(file, d, replaced, int_bits=int_bits, compute=compute)
     if config is not None:
         examine_cell(file, config, result, d)
     else:

@@ -11,6 +11,7 @@ from pn2code.cell.locate import locate
 from pn2code.diagnostics import Diagnostics
 from pn2code.net import front
 from pn2code.net.flat import FlatNet
+from pn2code.semantics.constants import compute
 from pn2code.semantics.files import Files
 from pn2code.semantics.game import Game
 
@@ -53,7 +54,7 @@ def read(
         return None
     net_path, config = found
     replaced = {**(config.values if config else {}), **values}
-    examined = front.examine(net_path, d, replaced, int_bits=int_bits)
+    examined = front.examine(net_path, d, replaced, int_bits=int_bits, compute=compute)
     if examined.flat is None or d.has_errors:
         return None
     return OpenNet(examined.flat, config, examined)

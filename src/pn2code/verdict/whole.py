@@ -24,6 +24,7 @@ from pn2code.verify.control_types import Control
 from pn2code.verify.explore import Wishes, explore
 from pn2code.verify.limits import Limits
 from pn2code.verify.programs import Sizes
+from pn2code.verify.reasons import raised
 from pn2code.verify.result import Exploration
 from pn2code.verify.result import row as exploration_row
 
@@ -256,7 +257,7 @@ def _tell_error(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
         notes.append(f"{trace.steps} steps lead to that marking: {trace.file}")
     d.error(
         STATE_ERROR,
-        f"{where} raises `{error['message']}` in a reachable marking",
+        f"{where} raises {raised(error['message'])} in a reachable marking",
         t.origin if t is not None else Origin(opened.flat.file),
         notes=notes,
         hint="`pn2code simulate` can reach it, too; guard the inscription, or handle the exception",

@@ -57,6 +57,11 @@ from pn2code.verify.programs import Sizes
 from pn2code.verify.result import Exploration
 from pn2code.verify.running import NotModelledError, Running, Silence
 
+DOUBT = (
+    "a condition of a script that waits for a message raises an exception in a state of the cell, and whether the "
+    "script comes to it is not known"
+)
+
 # --- questions -----------------------------------------------------------------------------------
 
 
@@ -75,6 +80,7 @@ def of_cell(running: Running, plan: Plan) -> str:
         *(f"? invariant {_kept_silence(asked, s, running.resting)}" for s in running.silences),
         *(f"? bound {c.place} 0 1" for c in running.partition.channels),
         *(f"? bound {place} 0 {most}" for place, most in plan.capacities.items()),
+        *([] if running.unsure is None else [f"? bound {running.unsure} 0 0"]),
     ]
     return "".join(f"{line}\n" for line in running.lines(first=True)) + asked.text()
 
@@ -172,9 +178,14 @@ def examine(
             return None
         keep = Keeper(plan, running)
         asked = orders.answers if orders is not found else ()
+        said = found.answers[count:]
+        doubt = ""
+        if running.unsure is not None and said:
+            said, last = said[:-1], said[-1]
+            doubt = DOUBT if last["answer"] == "no" else ""
         checks = (
             *order_answers(partition, orders, asked, plan, keep),
-            *cell_answers(partition, found, found.answers[count:], plan, keep, closed),
+            *cell_answers(partition, found, said, plan, keep, closed),
             *formats(partition, found, plan, d),
             memory(found),
             ownership(partition),
@@ -186,9 +197,9 @@ def examine(
             checks = tuple(refused if c.name == BLOCKING else c for c in checks)
         if chance.draws(partition.net):
             checks = tuple(drawn(c) for c in checks)
-        late = plan.premises.replies.late or silent(running, found.answers[count:])
+        late = plan.premises.replies.late or silent(running, said)
         control = Control(checks, found, running, answers=found.answers[:count], closed=closed)
-        return settled(replace(control, late=late, premises=plan.premises))
+        return settled(replace(control, late=late, doubt=doubt, premises=plan.premises))
 
 
 # --- the net itself ------------------------------------------------------------------------------

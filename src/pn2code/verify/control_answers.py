@@ -22,7 +22,7 @@ from pn2code.verify.control_types import (
     Evidence,
     Plan,
 )
-from pn2code.verify.reasons import clause
+from pn2code.verify.reasons import clause, raised
 from pn2code.verify.result import Exploration
 from pn2code.verify.running import OWING, Running
 from pn2code.whole_file import whole_file
@@ -129,7 +129,7 @@ def settled(control: Control) -> Control:
     checks = []
     for check in control.checks:
         if check.name == BLOCKING and check.answer == "yes" and control.stops:
-            why = "late" if control.stops == control.late else "stops"
+            why = {control.late: "late", control.doubt: "error"}.get(control.stops, "stops")
             check = replace(check, answer="unknown", why=why, says=f"not known: {control.stops}")
         assumes = control.premises.of_check(check.name, check.answer)
         checks.append(replace(check, assumes=assumes))
@@ -163,7 +163,7 @@ def refusal(partition: Partition, found: Exploration, keep: Keeper) -> Check | N
     after = f", {_steps(evidence[0].steps)} after the start" if evidence else ""
     where = f"`{partition.net.transitions[index].name}`{after}"
     if owner.kind is OwnerKind.SUPERVISOR:
-        says = f"the supervisor stops in {where}: `{found.error.get('message')}` is raised there"
+        says = f"the supervisor stops in {where}: {raised(str(found.error.get('message')))} is raised there"
     else:
         says = (
             f"the script of {owner.phrase} stops in {where}: an exception, or what no robot can carry out (a time "

@@ -179,6 +179,7 @@ class Control:
         answers: what the explorer says of each property.
         closed: the state space of the closed net, if it is known.
         late: why somebody may owe an answer for too long; "": that is not known of anybody.
+        doubt: why a script may stop with an exception; "": none does, as far as is known.
         premises: what answers rest on besides.
     """
 
@@ -189,6 +190,7 @@ class Control:
     answers: tuple[Mapping[str, Any], ...] = ()
     closed: Exploration | None = None
     late: str = ""
+    doubt: str = ""
     premises: Premises = Premises()
 
     @property
@@ -196,7 +198,7 @@ class Control:
         """Why the supervisor may stop where the model of the cell goes on; "": that is not known."""
         broken = (c for c in self.checks if c.name in STOPPING and c.answer == "no")
         found = next((f"the supervisor stops (`{c.name}`: {c.says})" for c in broken), self.late)
-        return found or next((c.says for c in self.checks if _is_script(c)), "")
+        return found or next((c.says for c in self.checks if _is_script(c)), self.doubt)
 
     @property
     def failed(self) -> tuple[Check, ...]:

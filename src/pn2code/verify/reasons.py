@@ -27,3 +27,8 @@ _CLAUSES = {
 def clause(why: str) -> str:
     """For a sentence; what is no such word stays as it is."""
     return _CLAUSES.get(why, why)
+
+
+def raised(message: str) -> str:
+    """An exception as it stands in a sentence: in back-ticks, unless its text has some of its own."""
+    return message if "`" in message else f"`{message}`"

@@ -18,7 +18,7 @@ from pn2code.net.flat import FlatNet, FlatPlace
 from pn2code.verify import basis, control_text, properties_text
 from pn2code.verify.answers import Answer
 from pn2code.verify.control_types import Control
-from pn2code.verify.reasons import clause
+from pn2code.verify.reasons import clause, raised
 from pn2code.verify.result import Exploration, Graph, cut, multiset_text
 
 _RULE = "-" * 72
@@ -69,7 +69,7 @@ def error_text(net: FlatNet, found: Exploration) -> str:
     what = f"`{net.transitions[index].name}`" if index is not None else error["where"]
     if binding:
         what += f" with {', '.join(f'{k} = {v}' for k, v in binding.items())}"
-    return f"{what} raises `{error['message']}`"
+    return f"{what} raises {raised(error['message'])}"
 
 
 def _section(title: str) -> list[str]:

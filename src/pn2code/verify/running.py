@@ -19,6 +19,8 @@ taken. Added are flags of which others know nothing:
   several readers, its messages are *out* one after the other: the first reader may act before the next is written to.
 * When the supervisor has finished, a robot ends where it notices that (docs/protocol.md, I9): as likely before its next
   message as after it. One step ends them all, since any of them may have been slow until then.
+* Where a script stops, the cell stops: nothing happens after the step that says so. What others do until they hear of
+  it comes before this step, which may come late: the supervisor ends its cycle, and looks at the robots between two.
 * Emptying a file is no step: whoever writes a second message without having heard that the first one was taken may do
   so before it is taken, too; then the place holds two.
 * Time: a step of the clock may come whenever something is waited for, whether or not something else is enabled: the
@@ -41,13 +43,14 @@ from pn2code.frozen import frozen
 from pn2code.lowering.robot_machine import Machine, Step
 from pn2code.ml import core
 from pn2code.net.builder import Arc, Builder
-from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatTransition
+from pn2code.net.flat import ArcKind, BindEquation, FlatArc, FlatNet, FlatTransition
 from pn2code.net.predicate import Predicate
 from pn2code.semantics.parties import VERIFY
 from pn2code.verify import time_reduction
 from pn2code.verify.commands import Commands, seconds
 from pn2code.verify.refusals import refusing
 from pn2code.verify.stops import MOST_MESSAGES, NoProgramError, machine, waits
+from pn2code.verify.unsure import Conditions
 from pn2code.whole_file import whole_file
 
 MOST_OWNERS = 250
@@ -110,6 +113,8 @@ class Running:
     resting: int
     """the place of a supervisor that rests"""
     silences: tuple[Silence, ...] = ()
+    unsure: int | None = None
+    """the place that is marked where a condition of a script that waits has raised an exception; None: none can"""
 
     @staticmethod
     def of(partition: Partition, predicates: Sequence[Predicate] = ()) -> Running:
@@ -291,6 +296,9 @@ class _Composer:
         self.over = b.place("cell.supervisor.over", b.unit)
         self.news = b.place("cell.supervisor.news", b.unit)
         self.stopped = b.place("cell.stopped", b.unit)
+        self.unsure: int | None = None
+        truth = {c.name: c for c, _ in partition.net.program.datatypes["bool"].constructors}
+        self.conditions = Conditions(truth["true"], truth["false"])
         self.going: int | None = None
         if partition.final_places and len(partition.owners) > 1:
             self.going = b.place("cell.robots.go on", b.unit)
@@ -325,6 +333,7 @@ class _Composer:
             names=frozenset(t.name for t in self.partition.net.transitions),
             resting=self.idle,
             silences=tuple(self._silences()),
+            unsure=self.unsure,
         )
 
     def _step(
@@ -335,6 +344,7 @@ class _Composer:
         *arcs: Arc,
         guards: Sequence[core.Exp] = (),
     ) -> int:
+        arcs = (*arcs, self.b.absent(self.stopped))
         self.b.transition(f"cell.{name}", arcs, priority=priority, guards=guards)
         self.step_owner.append(owner)
         return len(self.partition.net.transitions) + len(self.step_owner) - 1
@@ -361,6 +371,7 @@ class _Composer:
         taken = [a.place for a in t.arcs if a.kind is ArcKind.INPUT]
         arcs = [self._off(own[place]) for place in taken for own in flags if place in own]
         arcs += [self._has(self.calm)] if owner == SUPERVISOR else self._goes_on()
+        arcs.append(self.b.absent(self.stopped))
         self.b.add_arcs(t.index, arcs, {})
 
     def _owing(self) -> Iterator[tuple[int, int]]:
@@ -444,24 +455,29 @@ class _Composer:
         """A robot whose script finds no transition that fits, and none that waits, stops; or ends owing an answer."""
         program = self.machines[owner]
         name = self.partition.owners[owner].name
-        halted = self.b.place(f"cell.{name}.stopped", self.b.unit)
         for step in program.steps:
             t = step.transition
             if sum(p in program.channels for p, *_ in step.takes) > MOST_MESSAGES:
                 raise NotModelledError(f"`{t.name}` takes more than {MOST_MESSAGES} messages")
             for arcs, guards in waits(self.partition, t, self._is_there, self._is_missing):
-                made = self._step(owner, f"{name} waits", self.after, *arcs, guards=guards)
+                binding = {x.guard for x in t.plan if isinstance(x, BindEquation)}
+                bound = [t.guards[i] for i in binding]
+                asked = [g for g in guards if g not in bound]
+                kept = [g for g in guards if g in bound]
+                held = [*kept, *self.conditions.held(asked)]
+                made = self._step(owner, f"{name} waits", self.after, *arcs, guards=held)
                 self.probes.append(made)
+                self._doubt(owner, f"{name} may raise", arcs, kept, asked)
         for place in program.control:
             if program.steps_from(place):
                 short = self.partition.net.places[place].short
-                arcs = [self._any(place), self.b.absent(halted), self._on(halted)]
-                arcs += [self._on(self.stopped), *self._goes_on()]
-                self._step(owner, f"{name} stops at {short}", self.after + 1, *arcs)
+                arcs = [self._any(place), self._on(self.stopped), *self._goes_on()]
+                for between in (self.idle, self.over):
+                    here = self._has(between)
+                    self._step(owner, f"{name} stops at {short}", self.after + 1, *arcs, here)
             elif owner in self.owes:
-                arcs = [self._any(place), self._has(self.owes[owner]), self.b.absent(halted)]
-                arcs += [self.b.absent(self.calm), self.b.absent(self.over)]
-                arcs += [self._on(halted), self._on(self.stopped)]
+                arcs = [self._any(place), self._has(self.owes[owner]), self._has(self.idle)]
+                arcs += [self._on(self.stopped)]
                 self._step(owner, f"{name} {OWING}", self.after + 3, *arcs)
         can_end = not all(map(program.steps_from, program.control))
         for c in self.looked if owner in self.owes and can_end else ():
@@ -469,6 +485,29 @@ class _Composer:
                 arcs = [self._any(c.place), self.b.absent(self.seen[c.place])]
                 made = self._step(owner, f"{name} has answered", self.after + 2, *arcs)
                 self.probes.append(made)
+
+    def _doubt(
+        self,
+        owner: int,
+        name: str,
+        arcs: Sequence[Arc],
+        kept: Sequence[core.Exp],
+        asked: Sequence[core.Exp],
+    ) -> None:
+        """A step that marks, before anything else of its owner, that a probe's condition raises an exception."""
+        guards = self.conditions.unsure(asked)
+        if guards is None:
+            return
+        if self.unsure is None:
+            self.unsure = self.b.place("cell.unsure", self.b.unit)
+        first = min([t.priority for t in self.partition.net.transitions] or [0])
+        # A probe's arcs only take, as it never occurs: this one gives everything back.
+        tests = [
+            Arc(ArcKind.BOTH, a.place, a.value, a.form) if a.kind is ArcKind.INPUT else a
+            for a in arcs
+        ]
+        here = [*tests, self.b.absent(self.unsure), self._on(self.unsure)]
+        self._step(owner, name, first - len(self.staged) - 1, *here, guards=[*kept, *guards])
 
     def _is_there(self, place: int) -> list[Arc]:
         return [self._has(self.out[place])] if place in self.out else []

@@ -29,7 +29,7 @@ Real.fromString "+.25"
 Real.fromString "1e"
 Real.fromString "e5"
 Real.fromString "-3"
-Real.fmt (StringCvt.FIX (SOME 3)) ~0.0005
+Real.fmt (StringCvt.FIX (SOME 3)) ~0.0006
 Real.fmt (StringCvt.FIX (SOME 1)) 123456.789
 Real.fmt (StringCvt.SCI (SOME 0)) 12345.0
 Real.fmt (StringCvt.SCI (SOME 2)) ~0.00012345

@@ -170,8 +170,44 @@ size_t pn_int_sml(char *out, size_t capacity, int64_t value)
     return (size_t)snprintf(out, capacity, "%s%llu", (value < 0) ? "~" : "", (unsigned long long)magnitude);
 }
 
-/* SML/NJ's Real.toString: 12 significant digits, at least one decimal, E notation outside 1E~04 .. 1E12. */
-size_t pn_real_sml(char *out, size_t capacity, double value)
+int pn_real_digits(double value, int64_t wanted, bool behind, char *digit, int *exponent)
+{
+    double rest = value;
+    int power = 0;
+    for (; rest < 1.0; power--) {
+        rest = 10.0 * rest;
+    }
+    for (; rest >= 10.0; power++) {
+        rest = 0.1 * rest;
+    }
+    const int64_t most = behind ? (wanted + power + 1) : wanted;
+    int count = 0;
+    for (; (count < most) && (count < PN_REAL_DIGITS); count++) {
+        const int next = (int)rest;
+        digit[count] = (char)('0' + next);
+        rest = 10.0 * (rest - (double)next);
+    }
+    const bool is_odd = (count > 0) && (((digit[count - 1] - '0') % 2) == 1);
+    if ((rest > 5.0) || ((rest >= 5.0) && is_odd)) {
+        int at = count - 1;
+        for (; (at >= 0) && (digit[at] == '9'); at--) {
+            digit[at] = '0';
+        }
+        if (at >= 0) {
+            digit[at]++;
+        } else {
+            (void)memmove(&digit[1], digit, (size_t)count);
+            digit[0] = '1';
+            count++;
+            power++;
+        }
+    }
+    digit[count] = '\0';
+    *exponent = power;
+    return count;
+}
+
+size_t pn_real_general(char *out, size_t capacity, double value, int64_t digits)
 {
     const char *sign = (value < 0.0) ? "~" : ""; /* zero has none */
     if (isnan(value)) {
@@ -180,32 +216,34 @@ size_t pn_real_sml(char *out, size_t capacity, double value)
     if (isinf(value)) {
         return (size_t)snprintf(out, capacity, "%sinf", sign);
     }
-    char scientific[32];
-    (void)snprintf(scientific, sizeof scientific, "%.11e", fabs(value));
-    char digit[16];
-    int count = 0;
-    const char *at = scientific;
-    for (; *at != 'e'; at++) {
-        if (*at != '.') {
-            digit[count++] = *at;
-        }
-    }
+    char digit[PN_REAL_DIGITS + 2] = "0";
+    int exponent = 0;
+    int count = (pn_real_equal(value, 0.0)) ? 1 : pn_real_digits(fabs(value), digits, false, digit, &exponent);
     while ((count > 1) && (digit[count - 1] == '0')) {
         count--;
     }
     digit[count] = '\0';
-    const int exponent = (int)strtol(at + 1, NULL, 10);
-    if ((exponent < -4) || (exponent >= 12)) {
+    if ((exponent < -4) || (exponent >= digits)) {
         return (size_t)snprintf(out, capacity, "%s%c%s%sE%s%02d", sign, digit[0], (count > 1) ? "." : "", &digit[1],
                                 (exponent < 0) ? "~" : "", abs(exponent));
     }
     if (exponent < 0) {
         return (size_t)snprintf(out, capacity, "%s0.%.*s%s", sign, -exponent - 1, "0000", digit);
     }
-    if (count <= (exponent + 1)) {
-        return (size_t)snprintf(out, capacity, "%s%s%.*s.0", sign, digit, exponent + 1 - count, "000000000000");
+    if (count > (exponent + 1)) {
+        return (size_t)snprintf(out, capacity, "%s%.*s.%s", sign, exponent + 1, digit, &digit[exponent + 1]);
     }
-    return (size_t)snprintf(out, capacity, "%s%.*s.%s", sign, exponent + 1, digit, &digit[exponent + 1]);
+    const int length = snprintf(out, capacity, "%s%s", sign, digit);
+    const size_t zeros = (size_t)(exponent + 1 - count);
+    (void)memset(&out[length], '0', zeros);
+    return (size_t)length + zeros
+           + (size_t)snprintf(&out[(size_t)length + zeros], capacity - (size_t)length - zeros, ".0");
+}
+
+/* SML/NJ's Real.toString: 12 significant digits, at least one decimal, E notation outside 1E~04 .. 1E12. */
+size_t pn_real_sml(char *out, size_t capacity, double value)
+{
+    return pn_real_general(out, capacity, value, 12);
 }
 
 pn_string_t pn_string_of_int(pn_ctx_t *cx, int64_t value)

@@ -43,7 +43,7 @@ fun Colour_illegal_string (legal, mkstr) (x, letters, low, high) =
             val first = "\"" ^ String.substring (letters, 0, if letters = "" then 0 else 1) ^ "\""
             val last = if letters = "" then "" else "\"" ^ String.substring (letters, 1, 1) ^ "\""
             val range =
-                if null bad then ""
+                if List.null bad then ""
                 else " Range " ^ first ^ ".." ^ last ^ " does not contain ["
                      ^ String.concatWith "," (List.map (fn c => "\"" ^ Char.toString c ^ "\"") bad) ^ "]."
         in "Illegal color: " ^ mkstr x ^ "." ^ range
@@ -53,7 +53,7 @@ fun Colour_illegal_string (legal, mkstr) (x, letters, low, high) =
 fun Colour_illegal_list (legal, mkstr) (items, low, high) =
     let val bad = List.filter (fn x => not (legal x)) items
         val values =
-            if null bad then "" else " Illegal values in list: " ^ String.concatWith "," (List.map mkstr bad) ^ "."
+            if List.null bad then "" else " Illegal values in list: " ^ String.concatWith "," (List.map mkstr bad) ^ "."
         val size = if high < 0 then "" else of_length (" List", "of ", length items, low, high)
     in if values = "" andalso size = "" then "" else "Illegal color." ^ values ^ size end
 
@@ -165,7 +165,7 @@ fun Colour_in_range (i, size) = if i < 0 orelse i >= size then out_of_range () e
 
 fun Colour_col (values, i) = if i < 0 orelse i >= length values then out_of_range () else List.nth (values, i)
 
-fun Colour_ran values = if null values then out_of_range () else random values
+fun Colour_ran values = if List.null values then out_of_range () else random values
 
 (* All lists with `low` to `high` items, the shorter ones first, the first item fastest. *)
 fun Colour_sequences (items, low, high) =

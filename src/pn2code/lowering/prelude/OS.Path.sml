@@ -30,7 +30,7 @@ fun OS_Path_splitDirFile path =
     let val all = arcs path
         val absolute = OS_Path_isAbsolute path
     in
-        if null all then {dir = joined (all, absolute), file = ""}
+        if List.null all then {dir = joined (all, absolute), file = ""}
         else {dir = joined (front all, absolute), file = List.last all}
     end
 
@@ -39,7 +39,7 @@ fun OS_Path_joinDirFile {dir, file} =
         val absolute = OS_Path_isAbsolute dir
     in
         if String.isSubstring "/" file then raise OS.Path.InvalidArc
-        else if null all andalso not absolute andalso file = "" then ""
+        else if List.null all andalso not absolute andalso file = "" then ""
         else joined (all ^^ [file], absolute)
     end
 
@@ -74,7 +74,7 @@ fun OS_Path_mkCanonical path =
                    | nil => clean (rest, if absolute then nil else [arc]))
             else clean (rest, arc :: kept)
         val kept = clean (arcs path, nil)
-    in if null kept andalso not absolute then "." else joined (kept, absolute) end
+    in if List.null kept andalso not absolute then "." else joined (kept, absolute) end
 
 fun OS_Path_isCanonical path = path = OS_Path_mkCanonical path
 
@@ -82,7 +82,7 @@ fun OS_Path_getParent path =
     let val all = arcs path
         val absolute = OS_Path_isAbsolute path
     in
-        if null all then (if absolute then "/" else "..")
+        if List.null all then (if absolute then "/" else "..")
         else
             let val last = List.last all
             in
@@ -97,7 +97,7 @@ fun OS_Path_concat (a, b) =
     if OS_Path_isAbsolute b then raise OS.Path.Path
     else
         let val first = arcs a
-            val first = if not (null first) andalso List.last first = "" then front first else first
+            val first = if not (List.null first) andalso List.last first = "" then front first else first
         in joined (first ^^ arcs b, OS_Path_isAbsolute a) end
 
 fun OS_Path_mkAbsolute {path, relativeTo} =
@@ -113,7 +113,7 @@ fun OS_Path_mkRelative {path, relativeTo} =
               | strip (xs, ys) = (xs, ys)
             val (to, base) = strip (arcs (OS_Path_mkCanonical path), arcs (OS_Path_mkCanonical relativeTo))
             val all = List.map (fn _ => "..") base ^^ to
-        in if null all then "." else joined (all, false) end
+        in if List.null all then "." else joined (all, false) end
 
 fun OS_Path_fromUnixPath (path : string) = path
 fun OS_Path_toUnixPath (path : string) = path

@@ -33,7 +33,7 @@ fun Real_split x =
         let val whole = Real.realTrunc x
         in {whole = whole, frac = prim_real_copy_sign (x - whole, x)} end
     else if Real.isNan x then {whole = x, frac = x}
-    else {whole = x, frac = prim_real_copy_sign (0.0, x)}
+    else {whole = x, frac = x - x}
 
 fun Real_realMod x = #frac (Real_split x)
 
@@ -81,7 +81,7 @@ fun Real_fmt (StringCvt.SCI n) x = format (0, places (n, 6), x)
   | Real_fmt (StringCvt.FIX n) x = format (1, places (n, 6), x)
   | Real_fmt (StringCvt.GEN n) x =
     (case places (n, 12) of 0 => raise Size | k => prim_real_format (2, k, x))
-  | Real_fmt StringCvt.EXACT x = prim_real_format (3, 17, x)
+  | Real_fmt StringCvt.EXACT x = raise Fail "RealFormat: fmtReal: EXACT not supported"
 
 (* Digits of a stream in front of `out`, which is in reverse. *)
 fun digits (getc, stream, out) =
@@ -103,7 +103,7 @@ fun exponent (getc, stream, out) =
                       | SOME (#"+", rest) => (nil, rest)
                       | _ => (nil, after)
                 val (more, rest) = digits (getc, after, nil)
-            in if null more then (out, stream) else (checked more; (more ^^ sign ^^ (#"e" :: out), rest)) end
+            in if List.null more then (out, stream) else (checked more; (more ^^ sign ^^ (#"e" :: out), rest)) end
         else (out, stream)
       | NONE => (out, stream)
 
@@ -113,10 +113,10 @@ fun number (getc, stream) =
             case getc rest of
                 SOME (#".", point) =>
                 let val (part, behind) = digits (getc, point, nil)
-                in if null part then (whole, rest) else (part ^^ (#"." :: whole), behind) end
+                in if List.null part then (whole, rest) else (part ^^ (#"." :: whole), behind) end
               | _ => (whole, rest)
     in
-        if null all then NONE
+        if List.null all then NONE
         else
             let val (all, after) = exponent (getc, after, all)
             in SOME (prim_real_read (implode (rev all)), after) end

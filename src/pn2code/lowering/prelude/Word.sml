@@ -52,6 +52,7 @@ fun Word_fromString s =
         val from =
             if (begins "0wx" orelse begins "0wX") andalso digit_at (start + 3) then start + 3
             else if (begins "0x" orelse begins "0X") andalso digit_at (start + 2) then start + 2
+            else if begins "0w" andalso digit_at (start + 2) then start + 2
             else start
         val text = StringCvt.takel is_hex getc from
     in

@@ -4,7 +4,7 @@ functor ListMapFn (K : ORD_KEY) = struct
     datatype 'a map = MAP of (K.ord_key * 'a) list
 
     val empty = MAP nil
-    fun isEmpty (MAP items) = null items
+    fun isEmpty (MAP items) = List.null items
     fun singleton (k, x) = MAP [(k, x)]
     fun insert (MAP items, k, x) =
         let fun put nil = [(k, x)]

@@ -5,7 +5,7 @@ functor ListSetFn (K : ORD_KEY) = struct
     datatype set = SET of K.ord_key list
 
     val empty = SET nil
-    fun isEmpty (SET items) = null items
+    fun isEmpty (SET items) = List.null items
     fun singleton x = SET [x]
     fun add (SET items, x) =
         let fun put nil = [x]

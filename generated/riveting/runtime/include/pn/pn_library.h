@@ -22,7 +22,7 @@ bool pn_real_is_normal(double x);
 
 /* The number that a text of digits, point and exponent (as C writes them) is. */
 double pn_real_read(pn_string_t text);
-/* Real.fmt: style 0 SCI, 1 FIX, 2 GEN with so many digits; 3 EXACT. */
+/* Real.fmt: style 0 SCI, 1 FIX, 2 GEN with so many digits. */
 pn_string_t pn_real_styled(pn_ctx_t *cx, int64_t style, int64_t digits, double x);
 
 #endif /* PN_LIBRARY_H */

@@ -1,0 +1,65 @@
+"""What the claims of a trace are compared with, and how `replay` refuses a file."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NoReturn
+
+import typer
+
+from pn2code.cli.options import Exit, Format, stop
+from pn2code.diagnostics import Diagnostics
+from pn2code.semantics import replay as own
+from pn2code.semantics.parties import Parties
+from pn2code.verdict.opened import OpenNet
+
+
+def refuse(message: str) -> NoReturn:
+    """Leaves: a file is not what it should be."""
+    typer.echo(f"pn2code: {message}", err=True)
+    raise typer.Exit(Exit.USAGE)
+
+
+@dataclass(frozen=True, slots=True)
+class Claims:
+    """What the claims of a trace are compared with; see `semantics.replay.replay`."""
+
+    parties: Parties
+    check_digest: bool
+    may_fail_outside: bool
+    notes: own.Notes | None = None
+
+
+def claims(
+    opened: OpenNet,
+    values: Mapping[str, str],
+    int_bits: int,
+    *,
+    any_digest: bool,
+    form: Format = Format.FULL,
+) -> Claims:
+    """Who runs what, and which digests the traces of these programs have."""
+    from pn2code.cell.divide import divide
+    from pn2code.conform.notes import RunNotes
+    from pn2code.pipeline import program_digest
+    from pn2code.simulate.choose import monitors_of
+
+    d = Diagnostics()
+    config = opened.config
+    replaced = {**(config.values if config else {}), **values}
+    digests = frozenset({program_digest(opened.flat, config, replaced, int_bits)})
+    may_fail = monitors_of(opened.examined, d) is not None
+    if config is None:
+        return Claims(Parties.one(opened.flat, digests), not any_digest, may_fail)
+    partition = divide(opened.flat, config, d)
+    if partition is None:
+        stop(d, form)
+    parties = Parties(
+        names=tuple(o.name for o in partition.owners),
+        owner=partition.transition_owner,
+        messages=frozenset(c.place for c in partition.channels),
+        final=partition.final_places,
+        digests=digests,
+    )
+    return Claims(parties, not any_digest, may_fail, RunNotes(config, partition))

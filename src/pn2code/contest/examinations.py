@@ -1,0 +1,164 @@
+"""The examinations of the contest: what each asks of a net, as questions for the engine.
+
+    asked(tables, "ReachabilityDeadlock", folder) -> [Asked("ReachabilityDeadlock", ...)]
+
+Some are questions about every place or transition. They become one question where "one of them" is asked for, and
+several where all of them are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from pn2code.contest import linear
+from pn2code.contest.formulas import Formula, FormulaError, Op, Tokens, read
+from pn2code.contest.tables import Tables
+from pn2code.properties.ltl import TooLargeError
+
+FORMULAS = (
+    "ReachabilityCardinality", "ReachabilityFireability", "UpperBounds", "CTLCardinality", "CTLFireability",
+    "LTLCardinality", "LTLFireability",
+)  # fmt: skip
+GLOBAL = ("ReachabilityDeadlock", "OneSafe", "QuasiLiveness", "Liveness", "StableMarking")
+SPACE = "StateSpace"
+ALL = (SPACE, *GLOBAL, *FORMULAS)
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """One question for the engine.
+
+    Args:
+        kind: "reach", "bound", "ctl" or "ltl": which methods can answer it.
+        text: the question, after its number.
+    """
+
+    kind: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Asked:
+    """One line of the result.
+
+    Args:
+        name: in the contest's words.
+        parts: questions for the engine.
+        decides: the answer of a part that decides at once; None: the answer is that of the only part.
+        value: the value of the whole when a part decides; else it is the opposite.
+        is_turned: with one part: whether the whole is the opposite of it.
+        why_not: it cannot be asked; why.
+    """
+
+    name: str
+    parts: tuple[Part, ...] = ()
+    decides: bool | None = None
+    value: bool = True
+    is_turned: bool = False
+    why_not: str = ""
+
+
+def asked(tables: Tables, examination: str, folder: Path) -> list[Asked]:
+    """What an examination asks.
+
+    Args:
+        tables: the net.
+        examination: its name.
+        folder: with the XML files.
+
+    Raises:
+        FormulaError: a file cannot be read.
+        KeyError: there is no such examination.
+    """
+    if examination in GLOBAL:
+        return [_GLOBAL[examination](tables)]
+    if examination not in FORMULAS:
+        raise KeyError(examination)
+    found = []
+    for question in read(folder / f"{examination}.xml"):
+        try:
+            found.append(_of_formula(tables, examination, question.name, question.formula))
+        except (FormulaError, TooLargeError) as error:
+            found.append(Asked(question.name, why_not=str(error) or "its automaton is too large"))
+    return found
+
+
+def _of_formula(tables: Tables, examination: str, name: str, f: Formula) -> Asked:
+    if isinstance(f, Tokens):
+        return Asked(name, (_part("bound", tables.bound(0, f)),))
+    if examination.startswith("LTL"):
+        return Asked(name, (_part("ltl", linear.question(tables, 0, f)),), is_turned=True)
+    return _branching(tables, name, f)
+
+
+def _branching(tables: Tables, name: str, f: Formula) -> Asked:
+    """EF p and AG p with p about one marking are questions of reachability, whatever file they are in."""
+    match f:
+        case Op("not", (part,)):
+            inner = _branching(tables, name, part)
+            return Asked(name, inner.parts, is_turned=not inner.is_turned)
+        case Op("E", (Op("F", (p,)),)) if _is_plain(p):
+            return Asked(name, (_part("reach", tables.reach(0, p)),))
+        case Op("A", (Op("G", (p,)),)) if _is_plain(p):
+            return Asked(name, (_part("reach", tables.reach(0, Op("not", (p,)))),), is_turned=True)
+    return Asked(name, (_part("ctl", tables.ctl(0, f)),))
+
+
+def _is_plain(f: Formula) -> bool:
+    return not isinstance(f, Op) or (f.operator not in "AEXFGU" and all(map(_is_plain, f.parts)))
+
+
+def _part(kind: str, question: str) -> Part:
+    return Part(kind, question.split(" ", 1)[1])
+
+
+def _deadlock(tables: Tables) -> Asked:
+    return Asked("ReachabilityDeadlock", (Part("reach", "reach dead"),))
+
+
+def _one_safe(tables: Tables) -> Asked:
+    """No place ever holds two tokens."""
+    several = [f"not {tables.sum(dict.fromkeys(p, 1), 1)}" for p in tables.places.values() if p]
+    return Asked("OneSafe", (_any(several),), is_turned=True)
+
+
+def _quasi_live(tables: Tables) -> Asked:
+    """Each transition can occur."""
+    parts = tuple(Part("reach", f"reach {_enabled(t)}") for t in tables.transitions.values())
+    return Asked("QuasiLiveness", parts, decides=False, value=False)
+
+
+def _live(tables: Tables) -> Asked:
+    """Each transition can occur again and again."""
+    parts = tuple(Part("ctl", f"ctl AG EF {_enabled(t)}") for t in tables.transitions.values())
+    return Asked("Liveness", parts, decides=False, value=False)
+
+
+def _stable(tables: Tables) -> Asked:
+    """One place holds as many tokens in all markings."""
+    parts = []
+    for places in tables.places.values():
+        total = sum(tables.initial[p] for p in places)
+        factors = dict.fromkeys(places, 1)
+        same = f"and 2 {tables.sum(factors, total)} not {tables.sum(factors, total - 1)}"
+        parts.append(Part("reach", f"reach not {same}"))
+    return Asked("StableMarking", tuple(parts), decides=False, value=True)
+
+
+_GLOBAL: dict[str, Callable[[Tables], Asked]] = {
+    "ReachabilityDeadlock": _deadlock,
+    "OneSafe": _one_safe,
+    "QuasiLiveness": _quasi_live,
+    "Liveness": _live,
+    "StableMarking": _stable,
+}
+
+
+def _any(formulas: Sequence[str]) -> Part:
+    return Part("reach", f"reach or {len(formulas)} {' '.join(formulas)}".rstrip())
+
+
+def _enabled(transitions: Sequence[int]) -> str:
+    return f"enabled {len(transitions)} {' '.join(map(str, transitions))}".rstrip()

@@ -1,0 +1,130 @@
+"""A net and questions about it, as the text that the engine for place/transition nets reads (`cnative`: tables_read.c).
+
+    tables = Tables.of(unfolding)
+    tables.text([Reach(0, formula), ...])
+
+Formulas of the contest speak of ids; here they become formulas about numbers of places and transitions. A coloured
+place is the sum of its colours, a coloured transition is enabled if one of its bindings is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+
+from pn2code.contest.formulas import AtMost, Constant, Fireable, Formula, FormulaError, Op, Tokens
+from pn2code.unfold.net import Unfolding
+
+
+@dataclass(frozen=True, slots=True)
+class Tables:
+    """A place/transition net.
+
+    Args:
+        initial: tokens by place.
+        pre: by transition, what it takes: place -> tokens.
+        post: by transition, what it puts.
+        places: id of a place in the file -> its places here.
+        transitions: id of a transition in the file -> its transitions here.
+    """
+
+    initial: tuple[int, ...]
+    pre: tuple[Mapping[int, int], ...]
+    post: tuple[Mapping[int, int], ...]
+    places: Mapping[str, tuple[int, ...]]
+    transitions: Mapping[str, tuple[int, ...]]
+
+    @staticmethod
+    def of(unfolding: Unfolding) -> Tables:
+        """The tables of an unfolded net.
+
+        Raises:
+            ValueError: it has inhibitor or reset arcs, or priorities.
+        """
+        if unfolding.has_priorities or any(t.inhibitors or t.resets for t in unfolding.transitions):
+            raise ValueError("inhibitor arcs, reset arcs and priorities are not in the tables")
+        places = {
+            identity: unfolding.of_place[p.index]
+            for p in unfolding.net.places
+            for identity, _ in p.member_ids
+        }
+        of: dict[int, list[int]] = {t.index: [] for t in unfolding.net.transitions}
+        for t in unfolding.transitions:
+            of[t.transition].append(t.index)
+        return Tables(
+            unfolding.initial,
+            tuple(t.pre for t in unfolding.transitions),
+            tuple(t.post for t in unfolding.transitions),
+            places,
+            {t.id: tuple(of[t.index]) for t in unfolding.net.transitions},
+        )
+
+    def text(self, questions: Sequence[str]) -> str:
+        """The net with questions in the engine's own words."""
+        lines = [f"{len(self.initial)} {len(self.pre)}", " ".join(map(str, self.initial))]
+        for pre, post in zip(self.pre, self.post, strict=True):
+            lines.append(f"{_arcs(pre)} {_arcs(post)}")
+        lines.append(str(len(questions)))
+        return "\n".join([*lines, *questions]) + "\n"
+
+    def reach(self, number: int, formula: Formula) -> str:
+        """The question whether a marking is reachable in which a formula without operators of time is true."""
+        return f"{number} reach {self.formula(formula)}"
+
+    def ctl(self, number: int, formula: Formula) -> str:
+        """The question whether a formula of CTL holds in the initial marking."""
+        return f"{number} ctl {self.formula(formula)}"
+
+    def bound(self, number: int, tokens: Tokens) -> str:
+        """The question for the most tokens that places hold together."""
+        return f"{number} bound {self.sum(dict.fromkeys(self._places(tokens), 1), 0)}"
+
+    def formula(self, f: Formula) -> str:
+        """A formula of CTL in the engine's own words.
+
+        Raises:
+            FormulaError: it is of another kind, or names a place or transition that the net does not have.
+        """
+        match f:
+            case AtMost(left, right):
+                return self._comparison(left, right)
+            case Fireable(names):
+                found = sorted({t for name in names for t in self._of(self.transitions, name)})
+                return f"enabled {len(found)} {' '.join(map(str, found))}".rstrip()
+            case Op("not", (part,)):
+                return f"not {self.formula(part)}"
+            case Op("and" | "or" as operator, parts):
+                return f"{operator} {len(parts)} {' '.join(map(self.formula, parts))}"
+            case Op("A" | "E" as path, (Op("X" | "F" | "G" | "U" as operator, parts),)):
+                return f"{path}{operator} {' '.join(map(self.formula, parts))}"
+        raise FormulaError(f"{f} is not a formula of CTL")
+
+    def _comparison(self, left: Constant | Tokens, right: Constant | Tokens) -> str:
+        factors: dict[int, int] = {}
+        limit = 0
+        for side, sign in ((left, 1), (right, -1)):
+            if isinstance(side, Constant):
+                limit -= sign * side.value
+            else:
+                for p in self._places(side):
+                    factors[p] = factors.get(p, 0) + sign
+        return self.sum(factors, limit)
+
+    @staticmethod
+    def sum(factors: Mapping[int, int], limit: int) -> str:
+        """The comparison `sum of factor * tokens <= limit`; `factors` by place."""
+        terms = [f"{p} {n}" for p, n in sorted(factors.items()) if n]
+        return f"sum {len(terms)} {' '.join(terms)} {limit}".replace("  ", " ")
+
+    def _places(self, tokens: Tokens) -> Iterable[int]:
+        return (p for name in tokens.places for p in self._of(self.places, name))
+
+    @staticmethod
+    def _of(known: Mapping[str, tuple[int, ...]], name: str) -> tuple[int, ...]:
+        if name not in known:
+            raise FormulaError(f"the net has no `{name}`")
+        return known[name]
+
+
+def _arcs(tokens: Mapping[int, int]) -> str:
+    return " ".join([str(len(tokens)), *(f"{p} {n}" for p, n in tokens.items())])

@@ -1,0 +1,165 @@
+"""`pn2code contest` as the contest calls it: its words, its limits, its errors."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from helpers.pnml_nets import arc, net, place, transition
+from pn2code.cli.main import app
+
+FORMULAS = """<?xml version="1.0"?>
+<property-set xmlns="http://mcc.lip6.fr/">{}</property-set>
+"""
+PROPERTY = "<property><id>{}</id><description>d</description><formula>{}</formula></property>"
+ONE_IN_Q = (
+    "<integer-le><integer-constant>1</integer-constant>"
+    "<tokens-count><place>q</place></tokens-count></integer-le>"
+)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """Two tokens go from p to q, from where one of them can come back."""
+    text = net(
+        place("p", "", "2"),
+        place("q"),
+        place("home", "", "1"),
+        transition("go"),
+        transition("back"),
+        arc("p", "go"),
+        arc("go", "q"),
+        arc("q", "back", "1"),
+        arc("home", "back"),
+        arc("back", "p"),
+        kind="ptnet",
+    )
+    (tmp_path / "model.pnml").write_text(text)
+    return tmp_path
+
+
+def said(folder: Path, examination: str, *options: str) -> list[str]:
+    """The lines that are printed."""
+    done = CliRunner().invoke(app, ["contest", str(folder), examination, *options])
+    assert done.exit_code == 0, done.output
+    return done.stdout.splitlines()
+
+
+def values(lines: list[str]) -> dict[str, str]:
+    """Formula -> what is said of it."""
+    return {line.split()[1]: line.split()[2] for line in lines}
+
+
+def write(folder: Path, examination: str, *formulas: str) -> None:
+    """A file of formulas, named a, b, .."""
+    named = [PROPERTY.format("abcdefgh"[i], f) for i, f in enumerate(formulas)]
+    (folder / f"{examination}.xml").write_text(FORMULAS.format("".join(named)))
+
+
+def test_state_space(folder: Path) -> None:
+    assert said(folder, "StateSpace") == [
+        "STATE_SPACE STATES 6 TECHNIQUES EXPLICIT",
+        "STATE_SPACE TRANSITIONS 6 TECHNIQUES EXPLICIT",
+        "STATE_SPACE MAX_TOKEN_IN_PLACE 2 TECHNIQUES EXPLICIT",
+        "STATE_SPACE MAX_TOKEN_PER_MARKING 3 TECHNIQUES EXPLICIT",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("examination", "value"),
+    [
+        ("ReachabilityDeadlock", "TRUE"),
+        ("OneSafe", "FALSE"),
+        ("QuasiLiveness", "TRUE"),
+        ("Liveness", "FALSE"),
+        ("StableMarking", "FALSE"),
+    ],
+)
+def test_examinations_of_the_whole_net(folder: Path, examination: str, value: str) -> None:
+    assert values(said(folder, examination)) == {examination: value}
+
+
+def test_reachability(folder: Path) -> None:
+    write(
+        folder,
+        "ReachabilityCardinality",
+        f"<exists-path><finally>{ONE_IN_Q}</finally></exists-path>",
+        f"<all-paths><globally>{ONE_IN_Q}</globally></all-paths>",
+        f"<all-paths><globally><negation>{ONE_IN_Q}</negation></globally></all-paths>",
+    )
+    assert values(said(folder, "ReachabilityCardinality")) == {
+        "a": "TRUE",
+        "b": "FALSE",
+        "c": "FALSE",
+    }
+
+
+def test_bounds(folder: Path) -> None:
+    bounds = [
+        f"<place-bound>{p}</place-bound>"
+        for p in ("<place>q</place>", "<place>p</place><place>home</place>")
+    ]
+    write(folder, "UpperBounds", *bounds)
+    assert values(said(folder, "UpperBounds")) == {"a": "2", "b": "3"}
+
+
+def test_paths(folder: Path) -> None:
+    """A dead marking goes on for ever; a formula of CTL that asks for reachability is one."""
+    write(
+        folder,
+        "CTLCardinality",
+        f"<all-paths><finally>{ONE_IN_Q}</finally></all-paths>",
+        f"<all-paths><globally><exists-path><finally>{ONE_IN_Q}</finally></exists-path></globally></all-paths>",
+        f"<exists-path><globally><negation>{ONE_IN_Q}</negation></globally></exists-path>",
+        f"<negation><exists-path><finally>{ONE_IN_Q}</finally></exists-path></negation>",
+    )
+    assert values(said(folder, "CTLCardinality")) == {
+        "a": "TRUE",
+        "b": "TRUE",
+        "c": "FALSE",
+        "d": "FALSE",
+    }
+    write(
+        folder,
+        "LTLCardinality",
+        f"<all-paths><finally><globally>{ONE_IN_Q}</globally></finally></all-paths>",
+        f"<all-paths><next><next>{ONE_IN_Q}</next></next></all-paths>",
+    )
+    assert values(said(folder, "LTLCardinality")) == {"a": "TRUE", "b": "FALSE"}
+
+
+def test_a_method_alone(folder: Path) -> None:
+    """What it cannot answer is not known."""
+    assert said(folder, "ReachabilityDeadlock", "--only", "reach") == [
+        "FORMULA ReachabilityDeadlock TRUE TECHNIQUES STUBBORN_SETS"
+    ]
+    assert said(folder, "Liveness", "--only", "walk", "--max-seconds", "5") == [
+        "FORMULA Liveness CANNOT_COMPUTE"
+    ]
+
+
+def test_no_time(folder: Path) -> None:
+    assert said(folder, "StateSpace", "--max-seconds", "0") == ["CANNOT_COMPUTE"]
+
+
+def test_wrong_inputs(folder: Path, tmp_path: Path) -> None:
+    """Each is said where it is."""
+    runner = CliRunner()
+    missing = runner.invoke(app, ["contest", str(folder), "CTLCardinality"])
+    assert missing.exit_code == 1 and "CTLCardinality.xml: No such file" in missing.output
+    write(folder, "CTLCardinality", "<all-paths><sometimes/></all-paths>")
+    unknown = runner.invoke(app, ["contest", str(folder), "CTLCardinality"])
+    assert unknown.exit_code == 1 and "line 2: `sometimes` is not known" in unknown.output
+    write(
+        folder,
+        "CTLFireability",
+        "<all-paths><globally><is-fireable><transition>no</transition></is-fireable></globally></all-paths>",
+    )
+    stranger = runner.invoke(app, ["contest", str(folder), "CTLFireability"])
+    assert stranger.exit_code == 0 and "a: the net has no `no`" in stranger.output
+    assert "FORMULA a CANNOT_COMPUTE" in stranger.output
+    (folder / "model.pnml").write_text("<pnml>")
+    assert runner.invoke(app, ["contest", str(folder), "StateSpace"]).exit_code == 1
+    assert runner.invoke(app, ["contest", str(folder), "Everything"]).exit_code == 2

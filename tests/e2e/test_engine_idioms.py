@@ -1,0 +1,75 @@
+"""Small nets with the idioms of published models beside the recorded answers of the engine of CPN Tools.
+
+Verdict, initial marking, a run of the engine followed here, and the size of the state space by the token game; of some
+nets that of the compiled explorer, too. `./dev oracle --idioms` asks the engine again.
+"""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+from tests.oracle.compare import Seen, has_ties
+from tests.oracle.idioms import answers, digest, nets
+
+from helpers.netbuilder import cpn
+from helpers.thorough import THOROUGH
+from pn2code.semantics.graph import state_space
+
+NETS = nets()
+KEPT = answers()
+STATES = {"agrees", "random", ""}
+COMPILED = sorted(name for name in NETS if "space" in KEPT[name])[:: 1 if THOROUGH else 12]
+ENGINE_FAILS = {"LetInArc"}
+"""The engine ends with an internal error, of which `check` warns."""
+
+
+def test_every_net_has_an_answer() -> None:
+    assert len(NETS) >= 60
+    assert {name: digest(text) for name, text in NETS.items()} == {
+        name: kept["digest"] for name, kept in KEPT.items()
+    }, "the nets have changed: ./dev oracle --idioms asks the engine again"
+    assert sum(kept["accepted"] for kept in KEPT.values()) >= 55
+
+
+@pytest.fixture
+def seen(name: str, tmp_path: Path) -> Seen:
+    """A net as pn2code sees it."""
+    path = tmp_path / f"{name}.cpn"
+    path.write_bytes(cpn(NETS[name]))
+    return Seen(path)
+
+
+@pytest.mark.parametrize("name", NETS)
+def test_what_the_engine_says(name: str, seen: Seen) -> None:
+    kept = KEPT[name]
+    verdict = seen.verdict(kept)
+    if name in ENGINE_FAILS:
+        assert verdict.state == "engine" and seen.d.items
+        return
+    assert verdict.state == "agrees", verdict.note
+    assert (seen.net is not None) == kept["accepted"]
+    if "run" in kept:
+        assert seen.marking(kept).state in STATES, seen.marking(kept).note
+        run = seen.run(kept["run"])
+        assert run.state in STATES, run.note
+
+
+@pytest.mark.parametrize("name", [name for name in NETS if "space" in KEPT[name]])
+def test_the_size_of_the_state_space(name: str, seen: Seen) -> None:
+    kept = KEPT[name]["space"]
+    assert seen.net is not None and seen.game is not None
+    space = state_space(seen.game, max_nodes=2 * kept["nodes"] + 1)
+    if seen.net.timed and has_ties(space):
+        return  # the engine chooses among equal tokens with different stamps
+    found = (len(space.nodes), len(space.arcs), len(space.dead))
+    assert found == (kept["nodes"], kept["arcs"], len(kept["dead"]))
+
+
+@pytest.mark.cc
+@pytest.mark.skipif(shutil.which("cc") is None, reason="no C compiler")
+@pytest.mark.parametrize("name", COMPILED)
+def test_the_compiled_explorer_finds_the_same(name: str, seen: Seen) -> None:
+    found = seen.space(KEPT[name]["space"])
+    assert found.state in {"agrees", "random"}, found.note

@@ -1,0 +1,171 @@
+"""The engine for tables against the whole graph, worked out in Python: every method alone, on random nets."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from helpers.table_nets import Graph, random_branching, random_condition, random_tables
+from pn2code.contest import linear
+from pn2code.contest.engine import Answer, Space, Task, ask, engine
+from pn2code.contest.formulas import Formula, Op, Tokens
+from pn2code.contest.tables import Tables
+from pn2code.diagnostics import Diagnostics
+
+NETS = 150
+SECONDS = 60.0
+"""Never needed: all methods come to their end."""
+
+
+@pytest.fixture(scope="module")
+def program() -> Iterator[Path]:
+    """The engine."""
+    with engine(Diagnostics()) as found:
+        assert found is not None
+        yield found
+
+
+def nets() -> Iterator[tuple[random.Random, Tables, Graph]]:
+    """Random nets with small graphs."""
+    found = 0
+    for seed in range(10 * NETS):
+        draw = random.Random(seed)
+        tables = random_tables(draw)
+        graph = Graph.of(tables)
+        if graph is not None and len(graph.markings) > 2:
+            found += 1
+            yield draw, tables, graph
+        if found == NETS:
+            return
+
+
+def answers(program: Path, tables: Tables, questions: list[str], method: str) -> dict[int, Answer]:
+    """Final answers, by the number of the question."""
+    task = Task(method, tables.text(questions), SECONDS, 1024)
+    found: dict[int, Answer] = {}
+    for a in ask(program, [task]):
+        if isinstance(a, Answer) and a.is_final:
+            assert a.number not in found, "each question is answered once"
+            found[a.number] = a
+    return found
+
+
+def test_reachability_and_bounds(program: Path) -> None:
+    reached = 0
+    for draw, tables, graph in nets():
+        conditions = [random_condition(draw, tables) for _ in range(8)]
+        sums = [Tokens(tuple(draw.sample(sorted(tables.places), 2))) for _ in range(2)]
+        questions = [tables.reach(i, f) for i, f in enumerate(conditions)]
+        questions += [tables.bound(8 + i, s) for i, s in enumerate(sums)]
+        questions.append("10 reach dead")
+        wanted: dict[int, bool | int] = {i: bool(graph.where(f)) for i, f in enumerate(conditions)}
+        wanted |= {
+            8 + i: max(graph.value(s, m) for m in graph.markings) for i, s in enumerate(sums)
+        }
+        wanted[10] = any(not s for s in graph.successors)
+        reached += sum(1 for i in range(8) if wanted[i])
+        for method in ("reach", "explore"):
+            found = answers(program, tables, questions, method)
+            assert {n: a.value for n, a in found.items()} == wanted, (method, tables)
+    assert 0.2 < reached / (8 * NETS) < 0.95, "the conditions decide something"
+
+
+def test_walks_find_what_is_there_and_nothing_else(program: Path) -> None:
+    for draw, tables, graph in list(nets())[:20]:
+        conditions = [random_condition(draw, tables) for _ in range(8)]
+        there = [i for i, f in enumerate(conditions) if graph.where(f)]
+        questions = [tables.reach(i, f) for i, f in enumerate(conditions) if i in there]
+        found = answers(program, tables, questions, "walk") if questions else {}
+        assert set(found) <= set(there) and all(a.value is True for a in found.values())
+
+
+def test_branching_time(program: Path) -> None:
+    true = 0
+    for draw, tables, graph in nets():
+        formulas = [random_branching(draw, tables) for _ in range(10)]
+        questions = [tables.ctl(i, f) for i, f in enumerate(formulas)]
+        found = answers(program, tables, questions, "ctl")
+        wanted = {i: 0 in graph.where(f) for i, f in enumerate(formulas)}
+        assert {n: a.value for n, a in found.items()} == wanted, tables
+        true += sum(wanted.values())
+    assert 0.2 < true / (10 * NETS) < 0.8
+
+
+def test_linear_time(program: Path) -> None:
+    """Formulas of linear time that say the same as one of CTL, and those about what happens for ever."""
+    for draw, tables, graph in nets():
+        p, q, r = (random_condition(draw, tables, 1) for _ in range(3))
+        everywhere = set(range(len(graph.markings)))
+        a, b, c = graph.where(p), graph.where(q), graph.where(r)
+        cases: list[tuple[Formula, bool]] = [
+            (formula, 0 in graph.where(formula))
+            for formula in (
+                _all("G", p), _all("F", p), _all("U", p, q), _all("X", p), _all("G", Op("or", (p, q))),
+            )
+        ]  # fmt: skip
+        cases += [
+            (_all("G", Op("F", (p,))), not graph.lasts(everywhere - a, everywhere)),
+            (_all("F", Op("G", (p,))), not graph.lasts(everywhere, everywhere - a)),
+            (  # if p comes again and again, so does q
+                Op(
+                    "A",
+                    (
+                        Op(
+                            "or",
+                            (Op("F", (Op("G", (Op("not", (p,)),)),)), Op("G", (Op("F", (q,)),))),
+                        ),
+                    ),
+                ),
+                not graph.lasts(everywhere - b, a),
+            ),
+            (_all("X", Op("X", (r,))), all(k in c for j in graph.next(0) for k in graph.next(j))),
+        ]
+        questions = [linear.question(tables, i, f) for i, (f, _) in enumerate(cases)]
+        found = answers(program, tables, questions, "ltl")
+        assert {n: not x.value for n, x in found.items()} == {
+            i: w for i, (_, w) in enumerate(cases)
+        }, tables
+
+
+def _all(operator: str, *parts: Formula) -> Formula:
+    return Op("A", (Op(operator, parts),))
+
+
+def test_sizes(program: Path) -> None:
+    for _, tables, graph in nets():
+        found = list(ask(program, [Task("count", tables.text([]), SECONDS, 1024)]))
+        assert found == [
+            Space(
+                len(graph.markings),
+                graph.arcs,
+                max(max(m) for m in graph.markings),
+                max(map(sum, graph.markings)),
+                sum(not s for s in graph.successors),
+            )
+        ]
+
+
+def test_a_net_without_an_end_is_not_known(program: Path) -> None:
+    """A place that fills for ever: the methods end with their time or memory, and say what they have seen."""
+    tables = Tables((0,), ({},), ({0: 1},), {"p": (0,)}, {"t": (0,)})
+    questions = [tables.bound(0, Tokens(("p",))), "1 reach not sum 1 0 1 1000"]
+    for method in ("explore", "reach"):
+        task = Task(method, tables.text(questions), 1.0, 64)
+        found = [a for a in ask(program, [task]) if isinstance(a, Answer) and a.is_final]
+        assert [(a.number, a.value) for a in found] == [(1, True)], method
+
+
+def test_tables_that_are_wrong_are_refused(program: Path) -> None:
+    tables = Tables((0,), ({},), ({0: 1},), {"p": (0,)}, {"t": (0,)})
+    for wrong in (
+        "0 reach sum 1 7 1 0",
+        "0 reach enabled 1 3",
+        "0 reach EF true",
+        "0 says true",
+        "0 ctl",
+    ):
+        with pytest.raises(RuntimeError, match="the engine for tables"):
+            list(ask(program, [Task("reach", tables.text([wrong]), 1.0, 64)]))
