@@ -33,6 +33,7 @@ from pn2code.semantics.marking import (
     binding_to_json,
     place_to_json,
 )
+from pn2code.toolchain import programs
 
 WARNINGS = (
     c_flags.STANDARD, *c_flags.FLOATS, "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion", "-Wsign-conversion",
@@ -42,6 +43,8 @@ WARNINGS = (
 )  # fmt: skip
 SANITIZERS = ("-g1", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 FAST = ("-O1",)
+DELIVERED = programs.FLAGS
+"""Those with which users have explorers and simulators; the tests mostly have others."""
 RUNTIME = (
     "arena", "bag", "big", "codec", "file", "leaves", "library", "list", "marking", "moves", "num", "random", "read",
     "root", "stack", "string", "text", "trace", "type",

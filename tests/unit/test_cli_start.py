@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import ast
+import importlib
+import inspect
 import os
 import pty
 import signal
@@ -41,8 +43,18 @@ def test_check_of_a_net_loads_no_generator_and_no_simulator(root: Path, tmp_path
     assert not [m for m in modules if m.startswith(("pn2code.lowering", "pn2code.emission"))]
 
 
-def test_version_loads_nothing() -> None:
-    assert not [m for m in loaded_by("--version") if m.startswith("pn2code.ml")]
+@pytest.mark.parametrize("option", ["--version", "--help"])
+def test_version_and_the_list_of_verbs_load_no_verb(option: str) -> None:
+    modules = loaded_by(option)
+    assert not [m for m in modules if m.startswith(("pn2code.ml", "pn2code.net"))]
+    assert not {f"pn2code.cli.{verb}" for verb in main.VERBS} & modules
+
+
+@pytest.mark.parametrize("verb", main.VERBS)
+def test_the_list_says_what_the_help_of_the_verb_begins_with(verb: str) -> None:
+    module = importlib.import_module(f"pn2code.cli.{verb}")
+    first = inspect.cleandoc(getattr(module, verb).__doc__).split("\n\n")[0]
+    assert " ".join(first.split()) == main.VERBS[verb]
 
 
 @pytest.mark.parametrize("verb", main.VERBS)

@@ -42,6 +42,7 @@ ALLOWED: dict[str, set[str]] = {
                  "verify"},
     "unfold": {"diagnostics", "ml", "net", "semantics"},
     "convert": {"diagnostics", "ml", "net", "reading", "semantics", "unfold", "pnml"},
+    "contest": {"diagnostics", "properties", "toolchain", "unfold"},
     "monitors": {"diagnostics", "ml", "net", "reading", "semantics"},
     "simulate": {"diagnostics", "ml", "net", "semantics", "monitors", "cell", "lowering", "emission", "toolchain",
                  "parser_cache"},
@@ -59,7 +60,8 @@ ALLOWED: dict[str, set[str]] = {
     "start": {"cli"},
     "cli": {"diagnostics", "cell", "channels", "emission", "net", "pipeline", "run", "report", "semantics", "toolchain",
             "robot", "tdl", "ml", "lowering", "bytecode", "reading", "drawing", "simulate", "monitors", "structure",
-            "convert", "unfold", "verify", "properties", "conform", "medium", "verdict"},
+            "convert", "unfold", "verify", "properties", "conform", "medium", "verdict",
+            "contest"},
 }  # fmt: skip
 EVERYWHERE = {"deadline", "frozen", "os_reason", "private_folder", "real_json", "whole_file"}
 

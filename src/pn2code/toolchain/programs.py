@@ -14,6 +14,7 @@ from __future__ import annotations
 import atexit
 import hashlib
 import os
+import shlex
 import shutil
 import signal
 import subprocess
@@ -32,7 +33,14 @@ from pn2code.emission import c_flags, runtime
 from pn2code.emission.output import OutputFile
 from pn2code.os_reason import os_reason
 from pn2code.private_folder import private_folder, without_folder
-from pn2code.toolchain.build import BUILD_FAILED, TOOL_MISSING, find_compiler, report_failure
+from pn2code.toolchain.build import (
+    BUILD_FAILED,
+    TOOL_MISSING,
+    WITHOUT_ROOT,
+    find_archiver,
+    find_compiler,
+    report_failure,
+)
 
 CACHE_UNUSABLE = register(
     "program-cache",
@@ -48,8 +56,6 @@ LARGE = 1_000_000
 """Characters of generated C beyond which a net is not compiled in one piece with its host."""
 MOST_PROGRAMS = 64
 """Programs of a host that are kept; the ones that were not used for the longest time go first."""
-GROUPS = 8
-"""Calls of the compiler for the runtime."""
 STALE_S = 6 * 3600.0
 """After that a folder in which something is built belongs to a process that was killed."""
 _BUILDS = "build-"
@@ -111,7 +117,7 @@ class Compiler:
         """The compiler that is there; None after a diagnostic."""
         name = find_compiler()
         if name is not None:
-            command = tuple(name.split())
+            command = tuple(shlex.split(name))
             said = _run([*command, "--version"])
             if said is not None and said.returncode == 0:
                 return Compiler(command, said.stdout)
@@ -119,7 +125,7 @@ class Compiler:
             TOOL_MISSING,
             "a C compiler is not installed",
             Origin(host.name),
-            hint=f"on Debian or Ubuntu type: sudo apt-get install gcc libc6-dev{host.without}",
+            hint=f"on Debian or Ubuntu type: sudo apt-get install gcc libc6-dev; {WITHOUT_ROOT}{host.without}",
         )
         return None
 
@@ -293,21 +299,17 @@ class _Builder:
         objects = [f"{Path(s).stem}.o" for s in sources]
         # Large ones first, so that all processors are busy to the end.
         sources.sort(key=lambda name: -(room / name).stat().st_size)
-        own = [name for name in sources if self.host.own and self._is_own(name)]
-        common = [name for name in sources if name not in own]
-        groups = [(self.host.own, own[i::GROUPS]) for i in range(GROUPS)]
-        groups += [((), common[i::GROUPS]) for i in range(GROUPS)]
 
-        def compiled(group: tuple[Sequence[str], Sequence[str]]) -> bool:
-            flags, names = group
-            return self._compiler(room, *flags, "-Iruntime/include", "-c", *names, d=d)
+        def compiled(source: str) -> bool:
+            own = self.host.own if self._is_own(source) else ()
+            return self._compiler(room, *own, "-Iruntime/include", "-c", source, d=d)
 
         with ThreadPoolExecutor(max(os.cpu_count() or 1, 1)) as pool:
-            if not all(list(pool.map(compiled, [g for g in groups if g[1]]))):
+            if not all(list(pool.map(compiled, sources))):
                 return False
         made = room / "runtime.a"
-        archiver = shutil.which("ar")
-        done = _run([archiver or "ar", "rcs", made.name, *objects], room, self.interrupted)
+        archiver = find_archiver() or ("ar",)
+        done = _run([*archiver, "rcs", made.name, *objects], room, self.interrupted)
         if done is None or done.returncode != 0:
             said = "`ar` is not installed" if done is None else done.stderr.strip()
             d.error(
@@ -330,7 +332,8 @@ class _Builder:
         """
         includes = (*self.host.net, "-Iruntime/include", "-I.")
         others = [f.path for f in self._sources() if f.path != "net.c"]
-        if others and not self._compiler(room, *includes, "-c", *others, d=d):
+        # One a call: of several sources `zig cc` makes one object only.
+        if not all(self._compiler(room, *includes, "-c", source, d=d) for source in others):
             return False
         if len(others) == len(self._sources()):
             return True  # a host that needs no net
