@@ -1,19 +1,21 @@
 /* SPDX-License-Identifier: MIT
- * conform_port.c - the operating system as a program under test sees it: files in memory, a clock that stands, a state that can be
- * saved and restored. It takes the place of port_posix.c; everything above it is the deployed supervisor, byte for byte.
+ * conform_port.c - the operating system as a program under test sees it: files in memory, a clock that stands, a state
+ * that can be saved and restored. It takes the place of port_posix.c; everything above it is the deployed supervisor,
+ * byte for byte.
  *
- * The supervisor goes round its cycle and waits. There it is asked, line by line on standard input, and answers by a line of JSON:
+ * The supervisor goes round its cycle and waits. There it is asked, line by line on standard input, and answers by a
+ * line of JSON:
  *
- *     push              saves the state: {"pushed": true}. The state is the process: it waits while a copy of it goes on
- *     pop               goes back to the state saved last: {"popped": true}
- *     write NAME BYTES  another party publishes a file (name and bytes in hexadecimal): {"written": true}
- *     time SECONDS      the clock shows so much since the start: {"time": true}
- *     go                one cycle: {"files": {NAME: TEXT, ...}, "read": [NAME, ...], "published": [NAME, ...], "marking":
- *                       {PLACE: [[count, value], ...], ...}, "fired": N, "ended": null | "finished" | "stopped"}; "read" and "published"
- *                       have files in the order in which they were read and replaced; of a program that has ended, the state before is back then
+ *     push              saves the state: {"pushed": true}. The state is the process: it waits while a copy of it goes
+ * on pop               goes back to the state saved last: {"popped": true} write NAME BYTES  another party publishes a
+ * file (name and bytes in hexadecimal): {"written": true} time SECONDS      the clock shows so much since the start:
+ * {"time": true} go                one cycle: {"files": {NAME: TEXT, ...}, "read": [NAME, ...], "published": [NAME,
+ * ...], "marking": {PLACE: [[count, value], ...], ...}, "fired": N, "ended": null | "finished" | "stopped"}; "read" and
+ * "published" have files in the order in which they were read and replaced; of a program that has ended, the state
+ * before is back then
  *
- * At the start the tables of the program (pn_cell, and what pn_net says of places and transitions) are told, then the first cycle is
- * done, and its answer is given unasked.
+ * At the start the tables of the program (pn_cell, and what pn_net says of places and transitions) are told, then the
+ * first cycle is done, and its answer is given unasked.
  */
 #define _POSIX_C_SOURCE 200809L
 
@@ -31,10 +33,10 @@
 #include "conform_tables.h"
 #include "supervisor_impl.h"
 
-#define FILES_MAX 512U
-#define FILE_SIZE 4200U /* of a message at most 4095 */
-#define NAME_SIZE 256U
-#define LINE_SIZE (2U * (FILE_SIZE + NAME_SIZE) + 32U)
+#define FILES_MAX   512U
+#define FILE_SIZE   4200U /* of a message at most 4095 */
+#define NAME_SIZE   256U
+#define LINE_SIZE   (2U * (FILE_SIZE + NAME_SIZE) + 32U)
 #define ANSWER_SIZE ((size_t)1U << 24U)
 
 enum { DIRECTORY = 1000, FIRST_FILE = 2000 }; /* descriptors: numbers that no real one has */
@@ -49,7 +51,7 @@ typedef struct memory_file {
 static memory_file_t s_file[FILES_MAX];
 #define BEGIN_NS UINT64_C(1000000000) /* any beginning will do */
 static uint64_t s_now_ns = BEGIN_NS;
-static const sup_t *s_sup;              /* the program under test */
+static const sup_t *s_sup; /* the program under test */
 static uint64_t s_fired_before;
 static char s_answer[ANSWER_SIZE];
 
@@ -62,7 +64,7 @@ typedef struct names {
 static names_t s_published;
 static names_t s_read;
 
-/* --- files ------------------------------------------------------------------------------------------------------------- */
+/* --- files -------------------------------------------------------------------------------------------------------- */
 
 static memory_file_t *find(const char *name)
 {
@@ -144,6 +146,20 @@ bool pn_port_dir_exists(int directory)
 void pn_port_close(int descriptor)
 {
     (void)descriptor;
+}
+
+int pn_port_load(const char *path, char *buffer, size_t capacity, size_t *length)
+{
+    *length = 0U;
+    errno = 0;
+    FILE *const file = fopen(path, "rb"); /* input files are real ones */
+    if (file == NULL) {
+        return errno;
+    }
+    *length = fread(buffer, 1U, capacity, file);
+    const int error = (ferror(file) != 0) ? errno : 0;
+    (void)fclose(file);
+    return error;
 }
 
 int pn_port_read(int directory, const char *name, char *buffer, size_t capacity, size_t *length, int *held)
@@ -244,7 +260,7 @@ bool pn_port_changes(int watch, pn_port_change_t change, void *user)
     return true;
 }
 
-/* --- time and signals -------------------------------------------------------------------------------------------------- */
+/* --- time and signals --------------------------------------------------------------------------------------------- */
 
 uint64_t pn_port_now(void)
 {
@@ -279,7 +295,7 @@ long pn_port_receive(int descriptor, char *buffer, size_t capacity)
     return 0;
 }
 
-/* --- the conversation -------------------------------------------------------------------------------------------------- */
+/* --- the conversation --------------------------------------------------------------------------------------------- */
 
 static void say(const char *line)
 {
@@ -340,7 +356,8 @@ static void tables(void)
     say(text.truncated ? "{\"error\": \"the tables are too large to be told\"}" : s_answer);
 }
 
-/* A line of standard input, byte by byte: nothing may be read ahead, as what comes next may be for a copy of this process. */
+/* A line of standard input, byte by byte: nothing may be read ahead, as what comes next may be for a copy of this
+ * process. */
 static bool command(char *line, size_t capacity)
 {
     size_t length = 0U;
@@ -403,7 +420,8 @@ static void write_file(const char *text)
     const char *const space = strchr(text, ' ');
     (void)from_hex(text, name, sizeof name - 1U);
     const size_t length = (space != NULL) ? from_hex(space + 1, data, sizeof data) : 0U;
-    say((put(make(name), data, length) == 0) ? "{\"written\": true}" : "{\"error\": \"there is no room for the file\"}");
+    say((put(make(name), data, length) == 0) ? "{\"written\": true}"
+                                             : "{\"error\": \"there is no room for the file\"}");
 }
 
 /* The program waits: here it is asked. Back when it is to go on. */
@@ -431,7 +449,8 @@ bool pn_port_wait(int descriptor, uint64_t timeout_ns)
     }
 }
 
-/* The linker puts this in front of the host's own (--wrap): here the program under test becomes known, and its end is told. */
+/* The linker puts this in front of the host's own (--wrap): here the program under test becomes known, and its end is
+ * told. */
 void __real_sup_run_cell(sup_t *sup);
 void __wrap_sup_run_cell(sup_t *sup);
 void __wrap_sup_run_cell(sup_t *sup)

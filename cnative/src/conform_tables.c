@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * conform_tables.c - the constant tables of a program under test as JSON, to be compared with cell.toml and the net. What only words of
- * messages are made of (the version, origins) is left out.
+ * conform_tables.c - the constant tables of a program under test as JSON, to be compared with cell.toml and the net.
+ * What only words of messages are made of (the version, origins) is left out.
  */
 #include "conform_tables.h"
 
@@ -36,7 +36,8 @@ static void bool_member(pn_text_t *text, const char *name, bool value)
 /* Writes entry `i` of a table of the program. */
 typedef void (*entry_writer_t)(pn_text_t *text, const void *table, uint32_t i);
 
-static void array_member(pn_text_t *text, const char *name, uint32_t count, entry_writer_t write_entry, const void *table)
+static void array_member(pn_text_t *text, const char *name, uint32_t count, entry_writer_t write_entry,
+                         const void *table)
 {
     member(text, name);
     pn_text_char(text, '[');

@@ -25,61 +25,58 @@
 #include "pn/pn_file.h"
 #include "pn/pn_text.h"
 
-enum {
-    EXIT_FINE = 0,
-    EXIT_MODEL = 1,
-    EXIT_USAGE = 2,
-    EXIT_TRUNCATED = 3
-};
+enum { EXIT_FINE = 0, EXIT_MODEL = 1, EXIT_USAGE = 2, EXIT_TRUNCATED = 3 };
 
-#define MEBI ((uint64_t)1U << 20U)
-#define DEFAULT_MEMORY (4096U * MEBI)
-#define DEFAULT_ARENA (64U * MEBI)
-#define DEFAULT_DEAD 1000U
+#define MEBI              ((uint64_t)1U << 20U)
+#define DEFAULT_MEMORY    (4096U * MEBI)
+#define DEFAULT_ARENA     (64U * MEBI)
+#define DEFAULT_DEAD      1000U
 #define DEFAULT_LAY_AGAIN ((uint64_t)1U << 18U)
 
 static ex_run_t s_run;
 
 static void print_help(void)
 {
-    (void)printf("explore: the state space of net `%s`, from %s\n\n"
-                 "usage: explore [--order bfs|dfs] [--threads N] [--max-states N] [--max-seconds S] [--memory MIB]\n\n"
-                 "  --order ORDER       bfs: breadth first (default), dfs: depth first\n"
-                 "  --threads N         threads that explore (default 1)\n"
-                 "  --max-states N      stop at N states\n"
-                 "  --max-seconds S     stop after S seconds\n"
-                 "  --memory MIB        most memory of all tables together (default 4096)\n"
-                 "  --arena MIB         of each thread, for lists and strings (default 64)\n"
-                 "  --no-graph          states and bounds alone: no components, no traces\n"
-                 "  --approximate HOW   bitstate, hash: states may be missed; the report says how probably\n"
-                 "  --no-notes          work out in each state anew what transitions do; the same numbers, slower\n"
-                 "  --reduce time       states that differ only in how late it is are one\n"
-                 "  --reduce HOW        partial-order, symmetry: fewer states, the same answer whether there are dead ones\n"
-                 "  --elements FILE     the table of binding elements that these two need\n"
-                 "  --spill DIR         keep large tables in files of a folder\n"
-                 "  --progress          lines of JSON on the standard error\n"
-                 "  --progress-every S  seconds between them (default 0.5)\n"
-                 "  --dead-limit N      dead states that are listed (default 1000)\n"
-                 "  --write-graph FILE  all nodes and arcs as lines of JSON\n"
-                 "  --write-limit N     but none of a graph with more nodes\n"
-                 "  --trace-to NAME     a shortest trace to a dead state, as NAMEn.trace.jsonl with its number n\n"
-                 "  --traces N          so many of them (default 1)\n"
-                 "  --error-trace-to NAME  a shortest trace to an exception, as NAMEn.trace.jsonl\n"
-                 "  --queries FILE      questions about the states and runs; see explore_query_read.c\n"
-                 "  --query-trace-to NAME  runs that prove the answers, as NAMEn.trace.jsonl with the number n of the question\n"
-                 "  --seed N            of random numbers (default 1)\n"
-                 "  --multiset-limit N  colours of a multi-set bound that are printed (default: all)\n"
-                 "  --whole P,Q,..      places of which all colours are printed\n"
-                 "  --ends-in PHASE     for tests: the time is over when explore, graph, components, properties or questions begins\n"
-                 "  --parent PID        end at once when this process, which started it, has ended\n"
-                 "  --lay-again N       after N states see once more how they are stored best (default 262144)\n"
-                 "  --help              this text\n\n"
-                 "The report is one JSON object on the standard output.\n\n"
-                 "exit codes: 0 complete, 1 an inscription raised an exception, 2 wrong usage, 3 truncated or approximate\n",
-                 pn_net.name, pn_net.source);
+    (void)printf(
+        "explore: the state space of net `%s`, from %s\n\n"
+        "usage: explore [--order bfs|dfs] [--threads N] [--max-states N] [--max-seconds S] [--memory MIB]\n\n"
+        "  --order ORDER       bfs: breadth first (default), dfs: depth first\n"
+        "  --threads N         threads that explore (default 1)\n"
+        "  --max-states N      stop at N states\n"
+        "  --max-seconds S     stop after S seconds\n"
+        "  --memory MIB        most memory of all tables together (default 4096)\n"
+        "  --arena MIB         of each thread, for lists and strings (default 64)\n"
+        "  --no-graph          states and bounds alone: no components, no traces\n"
+        "  --approximate HOW   bitstate, hash: states may be missed; the report says how probably\n"
+        "  --no-notes          work out in each state anew what transitions do; the same numbers, slower\n"
+        "  --reduce time       states that differ only in how late it is are one\n"
+        "  --reduce HOW        partial-order, symmetry: fewer states, the same answer whether there are dead ones\n"
+        "  --elements FILE     the table of binding elements that these two need\n"
+        "  --spill DIR         keep large tables in files of a folder\n"
+        "  --progress          lines of JSON on the standard error\n"
+        "  --progress-every S  seconds between them (default 0.5)\n"
+        "  --dead-limit N      dead states that are listed (default 1000)\n"
+        "  --write-graph FILE  all nodes and arcs as lines of JSON\n"
+        "  --write-limit N     but none of a graph with more nodes\n"
+        "  --trace-to NAME     a shortest trace to a dead state, as NAMEn.trace.jsonl with its number n\n"
+        "  --traces N          so many of them (default 1)\n"
+        "  --error-trace-to NAME  a shortest trace to an exception, as NAMEn.trace.jsonl\n"
+        "  --queries FILE      questions about the states and runs; see explore_query_read.c\n"
+        "  --query-trace-to NAME  runs that prove the answers, as NAMEn.trace.jsonl with the number n of the question\n"
+        "  --seed N            of random numbers (default 1)\n"
+        "  --multiset-limit N  colours of a multi-set bound that are printed (default: all)\n"
+        "  --whole P,Q,..      places of which all colours are printed\n"
+        "  --ends-in PHASE     for tests: the time is over when explore, graph, components, properties or questions "
+        "begins\n"
+        "  --parent PID        end at once when this process, which started it, has ended\n"
+        "  --lay-again N       after N states see once more how they are stored best (default 262144)\n"
+        "  --help              this text\n\n"
+        "The report is one JSON object on the standard output.\n\n"
+        "exit codes: 0 complete, 1 an inscription raised an exception, 2 wrong usage, 3 truncated or approximate\n",
+        pn_net.name, pn_net.source);
 }
 
-/* --- options --------------------------------------------------------------------------------------------------------- */
+/* --- options ------------------------------------------------------------------------------------------------------ */
 
 static bool read_number(const char *text, uint64_t most, uint64_t *number)
 {
@@ -178,9 +175,19 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
 
 static bool read_options(int argc, char **argv, ex_options_t *options)
 {
-    *options = (ex_options_t){ .threads = 1U, .max_states = UINT64_MAX, .memory = DEFAULT_MEMORY, .arena = DEFAULT_ARENA,
-                               .seed = 1U, .lay_again = DEFAULT_LAY_AGAIN, .has_graph = true, .has_notes = true, .dead_limit = (uint64_t)DEFAULT_DEAD,
-                               .traces = 1U, .write_limit = UINT64_MAX, .multiset_limit = UINT64_MAX, .progress_every = 0.5 };
+    *options = (ex_options_t){ .threads = 1U,
+                               .max_states = UINT64_MAX,
+                               .memory = DEFAULT_MEMORY,
+                               .arena = DEFAULT_ARENA,
+                               .seed = 1U,
+                               .lay_again = DEFAULT_LAY_AGAIN,
+                               .has_graph = true,
+                               .has_notes = true,
+                               .dead_limit = (uint64_t)DEFAULT_DEAD,
+                               .traces = 1U,
+                               .write_limit = UINT64_MAX,
+                               .multiset_limit = UINT64_MAX,
+                               .progress_every = 0.5 };
     for (int i = 1; i < argc; i++) {
         const char *option = argv[i];
         if (strcmp(option, "--no-graph") == 0) {
@@ -201,7 +208,7 @@ static bool read_options(int argc, char **argv, ex_options_t *options)
     return true;
 }
 
-/* --- signals and the watch ------------------------------------------------------------------------------------------- */
+/* --- signals and the watch ---------------------------------------------------------------------------------------- */
 
 static void on_signal(int number)
 {
@@ -250,10 +257,11 @@ static void show_progress(ex_run_t *run, watch_t *watch)
     ex_progress(run, &progress);
     const double rate = (now > watch->shown) ? ((double)(progress.states - watch->states) / (now - watch->shown)) : 0.0;
     (void)fprintf(stderr,
-                  "{\"states\": %" PRIu64 ", \"arcs\": %" PRIu64 ", \"rate\": %.0f, \"frontier\": %" PRIu64 ", \"depth\": %" PRIu64
-                  ", \"mib\": %.1f, \"seconds\": %.3f, \"phase\": \"%s\"}\n",
+                  "{\"states\": %" PRIu64 ", \"arcs\": %" PRIu64 ", \"rate\": %.0f, \"frontier\": %" PRIu64
+                  ", \"depth\": %" PRIu64 ", \"mib\": %.1f, \"seconds\": %.3f, \"phase\": \"%s\"}\n",
                   progress.states, progress.arcs, rate, progress.frontier, progress.depth,
-                  (double)atomic_load(&run->memory_used) / (double)MEBI, now - run->started, (phase != NULL) ? phase : "explore");
+                  (double)atomic_load(&run->memory_used) / (double)MEBI, now - run->started,
+                  (phase != NULL) ? phase : "explore");
     (void)fflush(stderr);
     watch->states = progress.states;
     watch->shown = now;
@@ -315,12 +323,13 @@ static void end_watch(watch_t *watch)
     }
 }
 
-/* --- the report ------------------------------------------------------------------------------------------------------ */
+/* --- the report --------------------------------------------------------------------------------------------------- */
 
 const char *ex_why_text(ex_why_t why)
 {
     static const char *const s_texts[] = {
-        [EX_COMPLETE] = "complete", [EX_DECIDED] = "decided", [EX_APPROXIMATE] = "approximation", [EX_STATES] = "states",           [EX_SECONDS] = "seconds", [EX_MEMORY] = "memory",
+        [EX_COMPLETE] = "complete",       [EX_DECIDED] = "decided",   [EX_APPROXIMATE] = "approximation",
+        [EX_STATES] = "states",           [EX_SECONDS] = "seconds",   [EX_MEMORY] = "memory",
         [EX_INTERRUPTED] = "interrupted", [EX_CAPACITY] = "capacity", [EX_ERROR] = "error",
     };
     return s_texts[why];
@@ -392,18 +401,20 @@ static void print_report(ex_run_t *run)
     const ex_options_t *options = &run->options;
     const uint64_t store_bytes = ((run->store.bucket != NULL) ? ex_store_bytes(&run->store) : run->approximate_bytes)
                                  + (run->has_bounds ? ex_codec_bytes(run) : 0U); /* that is: all was made */
-    (void)printf("{\"complete\": %s, \"why\": \"%s\", \"error\": ", (why == EX_COMPLETE) ? "true" : "false", ex_why_text(why));
+    (void)printf("{\"complete\": %s, \"why\": \"%s\", \"error\": ", (why == EX_COMPLETE) ? "true" : "false",
+                 ex_why_text(why));
     print_error(run);
-    (void)printf(",\n \"seen\": {\"markings\": %s, \"arcs\": %s, \"components\": %s}", run->is_seen_whole ? "true" : "false",
-                 run->has_arcs ? "true" : "false", run->has_components ? "true" : "false");
+    (void)printf(",\n \"seen\": {\"markings\": %s, \"arcs\": %s, \"components\": %s}",
+                 run->is_seen_whole ? "true" : "false", run->has_arcs ? "true" : "false",
+                 run->has_components ? "true" : "false");
     (void)printf(",\n \"nodes\": %" PRIu64 ", \"arcs\": %" PRIu64 ", \"depth\": %" PRIu64 ", \"expanded\": %" PRIu64,
                  run->nodes, run->arcs, run->depth, run->expanded);
-    (void)printf(",\n \"seconds\": %.6f, \"cpu_seconds\": %.6f, \"states_per_second\": %.0f", run->seconds, run->cpu_seconds,
-                 (run->seconds > 0.0) ? ((double)run->nodes / run->seconds) : 0.0);
-    (void)printf(",\n \"bytes_per_state\": %.3f, \"store_bytes\": %" PRIu64 ", \"peak_mib\": %" PRIu64 ", \"threads\": %" PRIu32
-                 ", \"order\": \"%s\"",
-                 (run->nodes > 0U) ? ((double)store_bytes / (double)run->nodes) : 0.0, store_bytes, peak_mib(), options->threads,
-                 options->is_depth_first ? "dfs" : "bfs");
+    (void)printf(",\n \"seconds\": %.6f, \"cpu_seconds\": %.6f, \"states_per_second\": %.0f", run->seconds,
+                 run->cpu_seconds, (run->seconds > 0.0) ? ((double)run->nodes / run->seconds) : 0.0);
+    (void)printf(",\n \"bytes_per_state\": %.3f, \"store_bytes\": %" PRIu64 ", \"peak_mib\": %" PRIu64
+                 ", \"threads\": %" PRIu32 ", \"order\": \"%s\"",
+                 (run->nodes > 0U) ? ((double)store_bytes / (double)run->nodes) : 0.0, store_bytes, peak_mib(),
+                 options->threads, options->is_depth_first ? "dfs" : "bfs");
     (void)printf(",\n \"approximate\": ");
     if (!ex_is_exact(run)) {
         (void)printf("{\"kind\": \"%s\", \"omission_probability\": %.6g}", options->is_bitstate ? "bitstate" : "hash",
@@ -431,7 +442,7 @@ static void print_report(ex_run_t *run)
     (void)printf("}\n");
 }
 
-/* --- the run --------------------------------------------------------------------------------------------------------- */
+/* --- the run ------------------------------------------------------------------------------------------------------ */
 
 static bool make(ex_run_t *run)
 {
@@ -452,8 +463,8 @@ static bool make(ex_run_t *run)
         worker->run = run;
         worker->index = i;
         worker->fired = ex_alloc(run, ((uint64_t)pn_net.transition_count + 1U) * sizeof *worker->fired);
-        if ((worker->fired == NULL) || !ex_scratch_make(worker) || !ex_bounds_make(worker) ||
-            ((run->queries != NULL) && !ex_early_make(worker))) {
+        if ((worker->fired == NULL) || !ex_scratch_make(worker) || !ex_bounds_make(worker)
+            || ((run->queries != NULL) && !ex_early_make(worker))) {
             return false;
         }
     }
@@ -477,7 +488,8 @@ static int explore(ex_run_t *run)
     if (run->is_seen_whole && run->options.has_graph) {
         (void)ex_graph(run);
     }
-    if (is_explored && is_exact && (atomic_load(&run->why) == (int)EX_ERROR) && (strcmp(run->error.kind, "exception") == 0)) {
+    if (is_explored && is_exact && (atomic_load(&run->why) == (int)EX_ERROR)
+        && (strcmp(run->error.kind, "exception") == 0)) {
         ex_phase(run, "trace");
         ex_follow_error(run);
     }
@@ -490,18 +502,15 @@ static int explore(ex_run_t *run)
     const bool is_written = fflush(stdout) == 0;
     switch ((ex_why_t)atomic_load(&run->why)) {
     case EX_COMPLETE:
-    case EX_DECIDED:
-        return is_written ? EXIT_FINE : EXIT_USAGE;
+    case EX_DECIDED: return is_written ? EXIT_FINE : EXIT_USAGE;
     case EX_ERROR:
-    case EX_CAPACITY:
-        return EXIT_MODEL;
+    case EX_CAPACITY: return EXIT_MODEL;
     case EX_APPROXIMATE:
     case EX_STATES:
     case EX_SECONDS:
     case EX_MEMORY:
     case EX_INTERRUPTED:
-    default:
-        return EXIT_TRUNCATED;
+    default: return EXIT_TRUNCATED;
     }
 }
 

@@ -1,14 +1,13 @@
 /* SPDX-License-Identifier: MIT
- * explore_again.c - the states that are known, once more in breadth-first order. With breadth-first exploration the first ones in which
- * something holds are the same ones whatever the number of threads: all states that are not deeper are known.
+ * explore_again.c - the states that are known, once more in breadth-first order. With breadth-first exploration the
+ * first ones in which something holds are the same ones whatever the number of threads: all states that are not deeper
+ * are known.
  */
 #include "explore_again.h"
 
 #include <string.h>
 
-enum {
-    BATCH = 64
-};
+enum { BATCH = 64 };
 
 /* Successors whose lines of the store are on their way. */
 typedef struct search {

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * explore_again.h - the states that are known gone through once more in breadth-first order, when the whole graph is not there.
+ * explore_again.h - the states that are known gone through once more in breadth-first order, when the whole graph is
+ * not there.
  */
 #ifndef EXPLORE_AGAIN_H
 #define EXPLORE_AGAIN_H
@@ -9,8 +10,9 @@
 /* Called for each state when its successors have been made; `found` as ex_successors gives it. False: enough. */
 typedef bool (*ex_again_t)(void *user, uint32_t node, const ex_key_t *key, ex_found_t found);
 
-/* Goes from the initial state through the states that are in the store, and fills slots and parents of a graph that has nothing else.
- * The first worker does it, and goes on whatever has stopped it before. Gives the node at which `visit` had enough; EX_NO_NODE: none. */
+/* Goes from the initial state through the states that are in the store, and fills slots and parents of a graph that has
+ * nothing else. The first worker does it, and goes on whatever has stopped it before. Gives the node at which `visit`
+ * had enough; EX_NO_NODE: none. */
 uint32_t ex_again(ex_run_t *run, ex_graph_t *graph, ex_again_t visit, void *user);
 /* Tables of the graph for that; false: no memory. */
 bool ex_again_make(ex_run_t *run, ex_graph_t *graph);

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * explore_bits.c - bit states: of each state three bits of one word are all that is kept.
  *
- * A state whose bits are all set already is taken for known. How probable that is for a new state is measured now and then: in a
- * sample of words, the part of all triples of bits that are set.
+ * A state whose bits are all set already is taken for known. How probable that is for a new state is measured now and
+ * then: in a sample of words, the part of all triples of bits that are set.
  */
 #include "explore_impl.h"
 
@@ -17,7 +17,8 @@ static uint64_t mask_of(uint64_t hash)
 {
     /* The upper bits of the hash have chosen the word. Three different bits of 64. */
     uint64_t mask = 0U;
-    for (uint64_t rest = hash * 0xd6e8feb86659fd93U; __builtin_popcountll(mask) < 3; rest = (rest >> 6U) | (rest << 58U)) {
+    for (uint64_t rest = hash * 0xd6e8feb86659fd93U; __builtin_popcountll(mask) < 3;
+         rest = (rest >> 6U) | (rest << 58U)) {
         mask |= (uint64_t)1U << (rest >> 58U);
         rest += 0x9e3779b97f4a7c15U;
     }
@@ -42,7 +43,8 @@ static double measured(const ex_bits_t *bits)
     double sum = 0.0;
     for (uint64_t i = 0U; i < (uint64_t)SAMPLE; i++) {
         const ex_key_t key = { i, atomic_load_explicit(&bits->inserted, memory_order_relaxed) };
-        const uint64_t word = atomic_load_explicit(&bits->word[ex_scaled(ex_hash(&key), bits->words)], memory_order_relaxed);
+        const uint64_t word =
+            atomic_load_explicit(&bits->word[ex_scaled(ex_hash(&key), bits->words)], memory_order_relaxed);
         const double set = (double)__builtin_popcountll(word);
         sum += (set * (set - 1.0) * (set - 2.0)) / (64.0 * 63.0 * 62.0);
     }
@@ -61,7 +63,8 @@ static void measure(ex_bits_t *bits, uint64_t states)
 ex_insertion_t ex_bits_insert(ex_bits_t *bits, uint64_t hash)
 {
     const uint64_t mask = mask_of(hash);
-    const uint64_t old = atomic_fetch_or_explicit(&bits->word[ex_scaled(hash, bits->words)], mask, memory_order_relaxed);
+    const uint64_t old =
+        atomic_fetch_or_explicit(&bits->word[ex_scaled(hash, bits->words)], mask, memory_order_relaxed);
     if ((old & mask) == mask) {
         return EX_KNOWN;
     }

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * explore_blocks.c - the arcs of nodes, made from their keys.
  *
- * Successors are gathered until there are enough of them that the lines of the store and of the numbers, which are sent for one by
- * one, have arrived when they are needed.
+ * Successors are gathered until there are enough of them that the lines of the store and of the numbers, which are sent
+ * for one by one, have arrived when they are needed.
  */
 #include "explore_blocks.h"
 
@@ -12,9 +12,9 @@
 #include "explore_words.h"
 
 enum {
-    GATHERED = 256,  /* arcs that are looked up together, at least when so many are there */
-    AHEAD = 8,       /* nodes whose keys are sent for */
-    MADE = 256       /* words */
+    GATHERED = 256, /* arcs that are looked up together, at least when so many are there */
+    AHEAD = 8,      /* nodes whose keys are sent for */
+    MADE = 256      /* words */
 };
 
 /* A successor, or some arcs to the same one. */
@@ -33,7 +33,7 @@ struct ex_expander {
     bool is_partial;
     bool is_fine;
     uint16_t node;
-    uint16_t label;  /* of the words that are being made */
+    uint16_t label; /* of the words that are being made */
     uint64_t used;
     uint64_t room;
     uint64_t arcs;
@@ -52,7 +52,12 @@ ex_expander_t *ex_expander_make(ex_worker_t *worker, const ex_graph_t *graph, bo
         x->store = &worker->run->store;
         x->graph = graph;
         x->is_partial = is_partial;
-        x->made = (pn_words_t){ .cx = &worker->cx, .marking = worker->marking, .word = x->word, .room = (uint32_t)MADE, .is_full = drain, .user = x };
+        x->made = (pn_words_t){ .cx = &worker->cx,
+                                .marking = worker->marking,
+                                .word = x->word,
+                                .room = (uint32_t)MADE,
+                                .is_full = drain,
+                                .user = x };
     }
     return x;
 }
@@ -65,7 +70,7 @@ void ex_expander_free(ex_expander_t *x)
     }
 }
 
-/* --- gathering ------------------------------------------------------------------------------------------------------- */
+/* --- gathering ---------------------------------------------------------------------------------------------------- */
 
 static bool make_room(ex_expander_t *x, uint64_t more)
 {
@@ -84,7 +89,8 @@ static bool make_room(ex_expander_t *x, uint64_t more)
 static inline void add(ex_expander_t *x, const ex_key_t *key, uint64_t hash, uint32_t transition, uint32_t times)
 {
     ex_store_prefetch(x->store, hash);
-    x->found[x->used] = (found_t){ .key = *key, .hash = hash, .times = times, .label = (uint16_t)transition, .node = x->node };
+    x->found[x->used] =
+        (found_t){ .key = *key, .hash = hash, .times = times, .label = (uint16_t)transition, .node = x->node };
     x->used += 1U;
     x->arcs += times;
 }
@@ -138,7 +144,7 @@ static ex_found_t make_words(ex_expander_t *x, const ex_key_t *key)
     return (x->arcs > before) ? EX_SOME : EX_DEAD;
 }
 
-/* --- looking up ------------------------------------------------------------------------------------------------------ */
+/* --- looking up --------------------------------------------------------------------------------------------------- */
 
 static bool reserve(ex_block_t *block, uint64_t more)
 {
@@ -175,7 +181,8 @@ static bool look_up(ex_expander_t *x, ex_block_t *block)
         const found_t *const found = &x->found[i];
         const uint64_t slot = found->hash;
         if (slot != EX_NO_SLOT) {
-            const uint64_t target = (number[slot] != 0U) ? (((uint64_t)number[slot] << EX_LABEL_BITS) | EX_NUMBERED) : (slot << EX_LABEL_BITS);
+            const uint64_t target = (number[slot] != 0U) ? (((uint64_t)number[slot] << EX_LABEL_BITS) | EX_NUMBERED)
+                                                         : (slot << EX_LABEL_BITS);
             for (uint32_t k = 0U; k < found->times; k++) {
                 block->arc[block->used] = target | found->label;
                 block->used += 1U;
@@ -206,7 +213,8 @@ bool ex_expand(ex_expander_t *x, ex_block_t *block, uint32_t first, uint32_t cou
         x->node = (uint16_t)i;
         block->arcs[i] = 0U;
         const bool is_there = ex_store_fetch(store, slot[first + i], &key);
-        const ex_found_t found = !is_there ? EX_FAILED : (is_word ? make_words(x, &key) : ex_arcs(x->worker, &key, gather, x));
+        const ex_found_t found =
+            !is_there ? EX_FAILED : (is_word ? make_words(x, &key) : ex_arcs(x->worker, &key, gather, x));
         block->is_dead[i] = (found == EX_DEAD) ? 1U : 0U;
         block->is_late[i] = x->worker->has_waited ? 1U : 0U;
         if ((found != EX_SOME) && (found != EX_DEAD) && !x->is_partial) {

@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * explore_bounds.c - how many tokens each place holds at least and at most, and of each colour.
  *
- * Packed places are looked at in every state: their counters lie in the marking. Of neighbours that are small together it is only noted
- * which values their bits have had, and what that means is found in the end. Of a counter of one bit the least and the most are the
- * conjunction and the disjunction of all states, 64 at a time. Other places are looked at once for each multi-set that they ever held
- * (explore_intern.c has them all), however many states there are.
+ * Packed places are looked at in every state: their counters lie in the marking. Of neighbours that are small together
+ * it is only noted which values their bits have had, and what that means is found in the end. Of a counter of one bit
+ * the least and the most are the conjunction and the disjunction of all states, 64 at a time. Other places are looked
+ * at once for each multi-set that they ever held (explore_intern.c has them all), however many states there are.
  */
 #include "explore_impl.h"
 
@@ -21,24 +21,24 @@ typedef struct colour {
     uint64_t hash;
     uint64_t most;
     uint64_t least;
-    uint64_t seen;      /* multi-sets in which it is */
-    uint64_t round;     /* the last multi-set in which it was */
-    uint64_t now;       /* of it there */
-    uint32_t next;      /* index + 1 of another colour that is in that one too */
+    uint64_t seen;  /* multi-sets in which it is */
+    uint64_t round; /* the last multi-set in which it was */
+    uint64_t now;   /* of it there */
+    uint32_t next;  /* index + 1 of another colour that is in that one too */
 } colour_t;
 
 typedef struct colours {
     colour_t *colour;
-    uint32_t *entry;    /* index + 1 of the colour */
+    uint32_t *entry; /* index + 1 of the colour */
     uint32_t count;
-    uint32_t room;      /* a power of two: of entries; half as many colours */
+    uint32_t room; /* a power of two: of entries; half as many colours */
 } colours_t;
 
 typedef struct place_bounds {
     uint64_t least;
     uint64_t most;
-    uint64_t multisets; /* looked at */
-    uint64_t arena;     /* bytes of the lists and strings of one of them, at most */
+    uint64_t multisets;      /* looked at */
+    uint64_t arena;          /* bytes of the lists and strings of one of them, at most */
     uint32_t *counter_least; /* packed, more than one bit: by colour */
     uint32_t *counter_most;
     colours_t colours;
@@ -46,23 +46,23 @@ typedef struct place_bounds {
 
 /* Packed places that are neighbours, or one of them. */
 typedef struct group {
-    uint32_t unit;       /* 64 bits of the packed part */
+    uint32_t unit; /* 64 bits of the packed part */
     uint32_t shift;
-    uint32_t bits;       /* at most SEEN_BITS; 0: that is one large place, see `first` */
-    uint32_t first;      /* in ex_bounds.order */
+    uint32_t bits;  /* at most SEEN_BITS; 0: that is one large place, see `first` */
+    uint32_t first; /* in ex_bounds.order */
     uint32_t places;
-    uint8_t *seen;       /* by value of these bits */
+    uint8_t *seen; /* by value of these bits */
 } group_t;
 
 enum { SEEN_BITS = 10, UNIT_BITS = 64 };
 
 struct ex_bounds {
     uint64_t states;
-    uint32_t *order;    /* packed places, by their first bit */
+    uint32_t *order; /* packed places, by their first bit */
     group_t *group;
     uint32_t groups;
-    uint64_t *all;      /* conjunction of the packed parts */
-    uint64_t *any;      /* disjunction */
+    uint64_t *all; /* conjunction of the packed parts */
+    uint64_t *any; /* disjunction */
     place_bounds_t *place;
 };
 
@@ -104,7 +104,8 @@ static bool make_groups(ex_bounds_t *bounds)
         const uint32_t end = (place->bag->bit % (uint32_t)UNIT_BITS) + bits_in(place);
         const bool is_small = bits_in(place) <= (uint32_t)SEEN_BITS; /* then it lies in one unit */
         group_t *const last = &bounds->group[(bounds->groups > 0U) ? (bounds->groups - 1U) : 0U];
-        if (is_small && (bounds->groups > 0U) && (last->bits > 0U) && (last->unit == unit) && ((end - last->shift) <= (uint32_t)SEEN_BITS)) {
+        if (is_small && (bounds->groups > 0U) && (last->bits > 0U) && (last->unit == unit)
+            && ((end - last->shift) <= (uint32_t)SEEN_BITS)) {
             last->bits = end - last->shift;
             last->places++;
             continue;
@@ -155,9 +156,10 @@ bool ex_bounds_make(ex_worker_t *worker)
     return make_groups(bounds);
 }
 
-/* --- packed places ------------------------------------------------------------------------------------------------- */
+/* --- packed places ------------------------------------------------------------------------------------------------ */
 
-/* The tokens of a place with counters of one bit: those of a large place begin with a unit, those of a small one lie in one. */
+/* The tokens of a place with counters of one bit: those of a large place begin with a unit, those of a small one lie in
+ * one. */
 static uint32_t count_bits(const uint64_t *word, uint32_t bit, uint32_t colours)
 {
     const uint64_t *unit = &word[bit / (uint32_t)UNIT_BITS];
@@ -190,7 +192,8 @@ static void see_place(ex_bounds_t *bounds, uint32_t p, const uint64_t *word)
 {
     const pn_place_t *const place = &pn_net.place[p];
     place_bounds_t *const own = &bounds->place[p];
-    const uint64_t total = (place->bag->width == 1U) ? count_bits(word, place->bag->bit, place->bag->colours) : see_counters(own, place, word);
+    const uint64_t total = (place->bag->width == 1U) ? count_bits(word, place->bag->bit, place->bag->colours)
+                                                     : see_counters(own, place, word);
     own->least = (total < own->least) ? total : own->least;
     own->most = (total > own->most) ? total : own->most;
 }
@@ -248,13 +251,15 @@ static void merge(ex_bounds_t *bounds, const ex_bounds_t *other)
         own->least = (theirs->least < own->least) ? theirs->least : own->least;
         own->most = (theirs->most > own->most) ? theirs->most : own->most;
         for (uint32_t i = 0U; (own->counter_least != NULL) && (i < place->bag->colours); i++) {
-            own->counter_least[i] = (theirs->counter_least[i] < own->counter_least[i]) ? theirs->counter_least[i] : own->counter_least[i];
-            own->counter_most[i] = (theirs->counter_most[i] > own->counter_most[i]) ? theirs->counter_most[i] : own->counter_most[i];
+            own->counter_least[i] =
+                (theirs->counter_least[i] < own->counter_least[i]) ? theirs->counter_least[i] : own->counter_least[i];
+            own->counter_most[i] =
+                (theirs->counter_most[i] > own->counter_most[i]) ? theirs->counter_most[i] : own->counter_most[i];
         }
     }
 }
 
-/* --- other places -------------------------------------------------------------------------------------------------- */
+/* --- other places ------------------------------------------------------------------------------------------------- */
 
 static uint64_t text_hash(const char *text, size_t length)
 {
@@ -384,7 +389,7 @@ static bool see_multiset(place_bounds_t *own, const char *text)
 }
 
 #define TEXT_SIZE ((size_t)1U << 22)
-#define LOOK 1024U /* multi-sets between two looks at the clock */
+#define LOOK      1024U /* multi-sets between two looks at the clock */
 
 /* The time was over some time ago: what is left to look at may be as much as all that was explored. */
 static bool is_late(const ex_run_t *run)
@@ -428,7 +433,7 @@ static bool see_interned(ex_run_t *run, ex_bounds_t *bounds)
     return is_fine;
 }
 
-/* --- the report ---------------------------------------------------------------------------------------------------- */
+/* --- the report --------------------------------------------------------------------------------------------------- */
 
 /* A list of which no more than a number of items is printed. */
 typedef struct list {
@@ -450,7 +455,8 @@ static void list_item(list_t *list, uint64_t count, const char *colour)
     list->items += 1U;
 }
 
-/* Shorter ones first, then by their texts: which ones are printed must not depend on the order in which threads came upon them. */
+/* Shorter ones first, then by their texts: which ones are printed must not depend on the order in which threads came
+ * upon them. */
 static int by_text(const void *a, const void *b)
 {
     const colour_t *const left = a;
@@ -460,8 +466,8 @@ static int by_text(const void *a, const void *b)
     return (length != other) ? ((length < other) ? -1 : 1) : strcmp(left->text, right->text);
 }
 
-static void packed_json(const ex_bounds_t *bounds, const pn_place_t *place, const place_bounds_t *own, bool is_upper, list_t *list,
-                        char *buffer)
+static void packed_json(const ex_bounds_t *bounds, const pn_place_t *place, const place_bounds_t *own, bool is_upper,
+                        list_t *list, char *buffer)
 {
     for (uint32_t i = 0U; i < place->bag->colours; i++) {
         pn_text_t text;
@@ -493,8 +499,8 @@ static void colours_json(const place_bounds_t *own, bool is_upper, list_t *list)
     }
 }
 
-/* What the supervisor's arena has to hold: bytes at the start and of the values of declarations, of one occurrence, of one marking (a sum
- * over places, so that it may be too large). */
+/* What the supervisor's arena has to hold: bytes at the start and of the values of declarations, of one occurrence, of
+ * one marking (a sum over places, so that it may be too large). */
 static void arena_json(const ex_run_t *run, const ex_bounds_t *bounds, FILE *out)
 {
     uint64_t firing = 0U;
@@ -507,7 +513,8 @@ static void arena_json(const ex_run_t *run, const ex_bounds_t *bounds, FILE *out
     }
     const pn_arena_t *const first = run->worker[0].cx.arena;
     if (bounds != NULL) {
-        (void)fprintf(out, ",\n \"arena\": {\"start\": %zu, \"firing\": %" PRIu64 ", \"marking\": %" PRIu64 "}", first->start, firing, marking);
+        (void)fprintf(out, ",\n \"arena\": {\"start\": %zu, \"firing\": %" PRIu64 ", \"marking\": %" PRIu64 "}",
+                      first->start, firing, marking);
     }
 }
 
@@ -542,11 +549,13 @@ void ex_bounds_json(ex_run_t *run, FILE *out)
         const pn_place_t *const place = &pn_net.place[p];
         const place_bounds_t *const own = &bounds->place[p];
         const uint64_t most = most_printed(&run->options, p);
-        (void)fprintf(out, "%s{\"lower\": %" PRIu64 ", \"upper\": %" PRIu64, (p > 0U) ? ", " : "", own->least, own->most);
+        (void)fprintf(out, "%s{\"lower\": %" PRIu64 ", \"upper\": %" PRIu64, (p > 0U) ? ", " : "", own->least,
+                      own->most);
         for (int is_upper = 0; is_upper <= 1; is_upper++) {
             const char *const which = (is_upper == 1) ? "upper" : "lower";
             if (!place->bag->is_packed && (own->colours.count > most)) {
-                qsort(own->colours.colour, own->colours.count, sizeof *own->colours.colour, by_text); /* found by place from here on */
+                qsort(own->colours.colour, own->colours.count, sizeof *own->colours.colour,
+                      by_text); /* found by place from here on */
             }
             list_t list = { .out = out, .most = most };
             (void)fprintf(out, ", \"%s_multiset\": [", which);

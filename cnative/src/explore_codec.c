@@ -1,12 +1,12 @@
 /* SPDX-License-Identifier: MIT
  * explore_codec.c - markings as vectors of words, vectors as keys, and back.
  *
- * A vector of at most four words is a key. A longer one is divided into four parts, of which each has a number: that of the root of a
- * tree of words, whose inner nodes have numbers, too. Where it is cut follows the places, as different places often vary independently;
- * so the numbers stay small, and the store keeps no more bits of them than they need.
+ * A vector of at most four words is a key. A longer one is divided into four parts, of which each has a number: that of
+ * the root of a tree of words, whose inner nodes have numbers, too. Where it is cut follows the places, as different
+ * places often vary independently; so the numbers stay small, and the store keeps no more bits of them than they need.
  *
- * A successor differs in few places from the state it comes from: only the places that its transition touches are encoded again, and
- * only the inner nodes above words that have changed are looked up again.
+ * A successor differs in few places from the state it comes from: only the places that its transition touches are
+ * encoded again, and only the inner nodes above words that have changed are looked up again.
  */
 #define _POSIX_C_SOURCE 200809L
 
@@ -50,9 +50,9 @@ bool ex_scratch_make(ex_worker_t *worker)
     scratch->next = ex_reserve(pn_net.marking_size + (size_t)UNIT);
     scratch->binding = ex_alloc(run, pn_binding_size(&pn_net));
     void *memory = ex_reserve(run->options.arena);
-    if ((scratch->cell == NULL) || (scratch->dirty == NULL) || (scratch->stale == NULL) || (scratch->undo_cell == NULL) || (scratch->undo_value == NULL) || (scratch->decoded == NULL)
-        || (scratch->buffer == NULL) || (worker->marking == NULL) || (scratch->next == NULL) || (scratch->binding == NULL)
-        || (memory == NULL)) {
+    if ((scratch->cell == NULL) || (scratch->dirty == NULL) || (scratch->stale == NULL) || (scratch->undo_cell == NULL)
+        || (scratch->undo_value == NULL) || (scratch->decoded == NULL) || (scratch->buffer == NULL)
+        || (worker->marking == NULL) || (scratch->next == NULL) || (scratch->binding == NULL) || (memory == NULL)) {
         return false;
     }
     pn_arena_init(&scratch->arena, memory, (size_t)run->options.arena);
@@ -62,7 +62,7 @@ bool ex_scratch_make(ex_worker_t *worker)
     return true;
 }
 
-/* --- cells --------------------------------------------------------------------------------------------------------------- */
+/* --- cells -------------------------------------------------------------------------------------------------------- */
 
 static bool intern_place(ex_worker_t *worker, uint32_t place, const void *marking, uint32_t *number)
 {
@@ -123,7 +123,8 @@ static inline void lanes_of(const ex_node_t *node, const uint32_t *cell, uint64_
     }
 }
 
-bool ex_number_tuple(ex_worker_t *worker, ex_tuples_t *tuples, const uint64_t lane[EX_TUPLE_LANES], uint64_t hash, uint32_t *number)
+bool ex_number_tuple(ex_worker_t *worker, ex_tuples_t *tuples, const uint64_t lane[EX_TUPLE_LANES], uint64_t hash,
+                     uint32_t *number)
 {
     for (;;) {
         *number = ex_tuples_number(tuples, lane, hash);
@@ -225,7 +226,7 @@ static inline bool is_stale(const ex_scratch_t *scratch, uint32_t n)
     return ((scratch->stale[n / 64U] >> (n % 64U)) & 1U) != 0U;
 }
 
-/* --- encoding -------------------------------------------------------------------------------------------------------------- */
+/* --- encoding ----------------------------------------------------------------------------------------------------- */
 
 bool ex_encode(ex_worker_t *worker, const void *marking, ex_key_t *key)
 {
@@ -279,7 +280,8 @@ bool ex_encode_time(ex_worker_t *worker)
         set_cell(worker, codec->time_word, number);
         scratch->decoded[codec->time_word - codec->packed_words] = number;
     }
-    /* The words stay. What is above them is looked up for each successor: only with what that changes is it part of a state. */
+    /* The words stay. What is above them is looked up for each successor: only with what that changes is it part of a
+     * state. */
     for (uint32_t w = 0U; w <= (codec->nodes / 64U); w++) {
         scratch->stale[w] |= scratch->dirty[w];
         scratch->dirty[w] = 0U;
@@ -287,7 +289,6 @@ bool ex_encode_time(ex_worker_t *worker)
     scratch->undone = 0U;
     return true;
 }
-
 
 /* A part of the key of a successor: a node over words that can be read as they lie there. */
 static inline bool encode_direct(ex_worker_t *worker, const ex_node_t *node, const void *next, uint32_t *number)
@@ -304,7 +305,8 @@ static inline bool encode_direct(ex_worker_t *worker, const ex_node_t *node, con
 }
 
 /* A part of the key of a successor: a node over words, of which those of bags are in the cells already. */
-static inline bool encode_part(ex_worker_t *worker, const ex_node_t *node, const void *next, bool is_different, uint32_t *number)
+static inline bool encode_part(ex_worker_t *worker, const ex_node_t *node, const void *next, bool is_different,
+                               uint32_t *number)
 {
     const ex_codec_t *codec = worker->run->codec;
     const uint32_t *cell = worker->scratch->cell;
@@ -415,7 +417,7 @@ bool ex_encode_next(ex_worker_t *worker, uint32_t transition, const void *next, 
     return codec->is_flat ? encode_flat(worker, transition, next, key) : encode_cells(worker, transition, next, key);
 }
 
-/* --- decoding -------------------------------------------------------------------------------------------------------------- */
+/* --- decoding ----------------------------------------------------------------------------------------------------- */
 
 /* The cells below a node. */
 static void open_tree(const ex_codec_t *codec, uint32_t *cell)
@@ -492,7 +494,8 @@ static bool decode_word(ex_worker_t *worker, uint32_t w, uint32_t number)
         const uint32_t place = codec->place_of[w - codec->packed_words];
         size_t length = 0U;
         const unsigned char *byte = ex_multiset_bytes(worker, number, &length);
-        is_fine = (byte != NULL) && (pn_bag_decode(&worker->cx, pn_net.place[place].bag, worker->marking, byte, length) != SIZE_MAX);
+        is_fine = (byte != NULL)
+                  && (pn_bag_decode(&worker->cx, pn_net.place[place].bag, worker->marking, byte, length) != SIZE_MAX);
     }
     *decoded = is_fine ? number : EX_NO_NUMBER;
     if (!is_fine) {

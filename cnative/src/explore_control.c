@@ -1,16 +1,19 @@
 /* SPDX-License-Identifier: MIT
- * explore_control.c - whether a supervisor may follow its execution scheme (docs/execution.md) in the cell whose state space this is.
+ * explore_control.c - whether a supervisor may follow its execution scheme (docs/execution.md) in the cell whose state
+ * space this is.
  *
- * A *step* is an arc of the supervisor that takes no time to wait for: one firing of its cycle. The supervisor *rests* where there is none.
+ * A *step* is an arc of the supervisor that takes no time to wait for: one firing of its cycle. The supervisor *rests*
+ * where there is none.
  *
  *   finite response   no run of steps goes on for ever
  *   restless          the same of the steps of scripts that neither wait nor take time, and how long their runs are
  *   bounded response  the longest run of steps
  *   confluence        from each node all runs of steps come to rest in the same node
- *   non-blocking      of its steps the supervisor does only the first in the documented order, all others do what they like: from each node
- *                     that can be reached so, a node can be reached in which it rests and that is final
+ *   non-blocking      of its steps the supervisor does only the first in the documented order, all others do what they
+ * like: from each node that can be reached so, a node can be reached in which it rests and that is final
  *
- * The first three come of one walk over the steps, the last of a search forwards and one backwards. All are linear in the graph.
+ * The first three come of one walk over the steps, the last of a search forwards and one backwards. All are linear in
+ * the graph.
  */
 #include "explore_query.h"
 
@@ -19,10 +22,10 @@
 typedef struct ex_control {
     ex_queries_t *queries;
     const ex_graph_t *graph;
-    uint32_t *length;   /* by node: the longest run of steps from there; EX_NO_NODE: one without end */
-    uint32_t *rest;     /* by node: where all runs of steps end; EX_NO_NODE: not in one node */
-    uint64_t *left;     /* a bit for each node whose runs are known */
-    bool of_scripts;    /* steps are those of scripts that neither wait nor take time */
+    uint32_t *length; /* by node: the longest run of steps from there; EX_NO_NODE: one without end */
+    uint32_t *rest;   /* by node: where all runs of steps end; EX_NO_NODE: not in one node */
+    uint64_t *left;   /* a bit for each node whose runs are known */
+    bool of_scripts;  /* steps are those of scripts that neither wait nor take time */
 } control_t;
 
 static bool is_supervisor(const control_t *c, uint64_t arc)
@@ -56,7 +59,7 @@ static uint64_t first_step(const control_t *c, uint32_t node)
     return next_step(c, node, c->graph->row[node]);
 }
 
-/* --- runs of steps --------------------------------------------------------------------------------------------------- */
+/* --- runs of steps ------------------------------------------------------------------------------------------------ */
 
 /* All steps of the node lead to nodes that are known, or on the way to it. */
 static void leave(control_t *c, uint32_t node)
@@ -145,7 +148,8 @@ static control_t *worked_out(ex_queries_t *queries, bool of_scripts)
     uint64_t *const entered = ex_set(queries);
     uint32_t *const stack = ex_table(run, nodes, sizeof *stack);
     uint64_t *const at = ex_table(run, nodes, sizeof *at);
-    const bool has_memory = (c->length != NULL) && (c->rest != NULL) && (c->left != NULL) && (entered != NULL) && (stack != NULL) && (at != NULL);
+    const bool has_memory = (c->length != NULL) && (c->rest != NULL) && (c->left != NULL) && (entered != NULL)
+                            && (stack != NULL) && (at != NULL);
     const bool is_done = has_memory && walk(c, entered, stack, at);
     ex_free(run, entered, ex_set_words(run->graph) * sizeof *entered);
     ex_free_table(run, stack, nodes, sizeof *stack);
@@ -166,7 +170,7 @@ static const control_t *known(ex_queries_t *queries)
     return queries->control;
 }
 
-/* --- searches -------------------------------------------------------------------------------------------------------- */
+/* --- searches ----------------------------------------------------------------------------------------------------- */
 
 /* Breadth first: by node, the one from which it was reached and the arc; EX_NO_NODE: it was not. */
 typedef struct search {
@@ -235,7 +239,7 @@ static void search_way(const control_t *c, const search_t *s, uint32_t node, ex_
     free(list);
 }
 
-/* --- answers --------------------------------------------------------------------------------------------------------- */
+/* --- answers ------------------------------------------------------------------------------------------------------ */
 
 static void say_number(ex_question_t *question, uint64_t number)
 {
@@ -394,7 +398,7 @@ static void answer_confluent(const control_t *c, ex_question_t *question)
     }
 }
 
-/* --- non-blocking ---------------------------------------------------------------------------------------------------- */
+/* --- non-blocking ------------------------------------------------------------------------------------------------- */
 
 /* The run is over: the supervisor rests, and the node is final. */
 static bool is_over(const control_t *c, const ex_question_t *question, uint32_t node)
@@ -435,8 +439,8 @@ static bool reach(const control_t *c, const ex_question_t *question, search_t *s
     return true;
 }
 
-/* The arcs under control backwards: those to node i come from source[row[i]] .. source[row[i + 1] - 1]. Counted first, then filled from
- * behind; row[i + 1] is where node i's begin meanwhile. */
+/* The arcs under control backwards: those to node i come from source[row[i]] .. source[row[i + 1] - 1]. Counted first,
+ * then filled from behind; row[i + 1] is where node i's begin meanwhile. */
 static void turn(const control_t *c, const ex_question_t *question, const search_t *s, uint64_t *row, uint32_t *source)
 {
     const uint32_t nodes = c->graph->nodes;
@@ -471,8 +475,8 @@ static void turn(const control_t *c, const ex_question_t *question, const search
 }
 
 /* The nodes from which a node where the run is over can be reached. False: told to stop. */
-static bool grow(const control_t *c, const ex_question_t *question, const search_t *s, const uint64_t *row, const uint32_t *source, uint64_t *good,
-                 uint32_t *stack)
+static bool grow(const control_t *c, const ex_question_t *question, const search_t *s, const uint64_t *row,
+                 const uint32_t *source, uint64_t *good, uint32_t *stack)
 {
     uint64_t used = 0U;
     uint64_t turns = 0U;

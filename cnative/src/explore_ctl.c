@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * explore_ctl.c - the operators of CTL over the graph, each in one pass over its arcs, and runs that show why a formula holds or not.
+ * explore_ctl.c - the operators of CTL over the graph, each in one pass over its arcs, and runs that show why a formula
+ * holds or not.
  *
- * Runs are maximal: one that comes to a dead node ends there. So there AX holds of anything and EX of nothing, AF and EG ask for the node
- * itself. All operators are made of three: EX, and
+ * Runs are maximal: one that comes to a dead node ends there. So there AX holds of anything and EX of nothing, AF and
+ * EG ask for the node itself. All operators are made of three: EX, and
  *
  *     E[a U b]  the least set with b, and with the nodes of a that have a successor in it
  *     A[a U b]  the least set with b, and with the nodes of a that are not dead and have all successors in it
@@ -67,7 +68,8 @@ static void add_before(const ex_queries_t *queries, const uint64_t *a, uint32_t 
     const ex_graph_t *const graph = queries->run->graph;
     for (uint32_t node = 0U; node < graph->nodes; node++) {
         for (uint64_t arc = graph->row[node]; arc < graph->row[node + 1U]; arc++) {
-            if ((EX_BIT(a, graph->target[arc]) != 0U) && ((transition == UINT32_MAX) || (graph->label[arc] == transition))) {
+            if ((EX_BIT(a, graph->target[arc]) != 0U)
+                && ((transition == UINT32_MAX) || (graph->label[arc] == transition))) {
                 EX_SET_BIT(set, node);
                 break;
             }
@@ -75,8 +77,8 @@ static void add_before(const ex_queries_t *queries, const uint64_t *a, uint32_t 
     }
 }
 
-/* Grows `set`, which holds b, to an until; a is NULL where every node will do. `left`: of each node the successors that are not in the
- * set; NULL: one successor is enough. */
+/* Grows `set`, which holds b, to an until; a is NULL where every node will do. `left`: of each node the successors that
+ * are not in the set; NULL: one successor is enough. */
 static bool grow(ex_queries_t *queries, const uint64_t *a, uint64_t *set, uint32_t *left, uint32_t *stack)
 {
     const ex_graph_t *const graph = queries->run->graph;
@@ -164,15 +166,9 @@ bool ex_ctl(ex_queries_t *queries, ex_item_t *item)
         complement(queries, set);
         break;
     case EX_ITEM_AND:
-    case EX_ITEM_OR:
-        combine(queries, set, a, b, item->kind == EX_ITEM_AND);
-        break;
-    case EX_ITEM_EX:
-        add_before(queries, a, UINT32_MAX, set);
-        break;
-    case EX_ITEM_EXA:
-        add_before(queries, a, item->number, set);
-        break;
+    case EX_ITEM_OR: combine(queries, set, a, b, item->kind == EX_ITEM_AND); break;
+    case EX_ITEM_EX: add_before(queries, a, UINT32_MAX, set); break;
+    case EX_ITEM_EXA: add_before(queries, a, item->number, set); break;
     case EX_ITEM_EF:
         copy(queries, set, a);
         is_fine = until(queries, NULL, set, false);
@@ -219,7 +215,7 @@ bool ex_ctl(ex_queries_t *queries, ex_item_t *item)
     return is_fine;
 }
 
-/* --- runs that show it ----------------------------------------------------------------------------------------------- */
+/* --- runs that show it -------------------------------------------------------------------------------------------- */
 
 /* What comes next in an explanation: whether an item holds at the end of the way. */
 typedef struct claim {
@@ -240,7 +236,8 @@ static uint64_t *without(const ex_queries_t *queries, uint32_t item)
 }
 
 /* A way to the nearest node that is (not) in an item. */
-static bool show_way(ex_queries_t *queries, const uint64_t *through, claim_t *claim, uint32_t item, bool holds, ex_way_t *way)
+static bool show_way(ex_queries_t *queries, const uint64_t *through, claim_t *claim, uint32_t item, bool holds,
+                     ex_way_t *way)
 {
     uint64_t *const other = holds ? NULL : without(queries, item);
     const uint64_t *const goal = holds ? queries->item[item].set : other;
@@ -274,7 +271,9 @@ static bool show_for_ever(ex_queries_t *queries, claim_t *claim, uint32_t item, 
     uint32_t first[] = { 0U, 1U };
     ex_literal_t literal = { .item = item, .is_positive = holds };
     ex_edge_t edge = { .literals = 1U, .literal = &literal };
-    const ex_automaton_t automaton = { .states = 1U, .is_accepting = &is_accepting, .edges = 1U, .edge = &edge, .first = first };
+    const ex_automaton_t automaton = {
+        .states = 1U, .is_accepting = &is_accepting, .edges = 1U, .edge = &edge, .first = first
+    };
     claim->is_shown = true;
     return ex_lasso(queries, &automaton, ex_way_end(way), way) == EX_YES;
 }
@@ -304,42 +303,33 @@ static bool show(ex_queries_t *queries, claim_t *claim, ex_way_t *way)
     const bool holds = claim->holds;
     const uint32_t node = ex_way_end(way);
     switch (item->kind) {
-    case EX_ITEM_NOT:
-        *claim = (claim_t){ .item = item->a, .holds = !holds };
-        return true;
+    case EX_ITEM_NOT: *claim = (claim_t){ .item = item->a, .holds = !holds }; return true;
     case EX_ITEM_AND:
-    case EX_ITEM_OR: /* the operand that decides; if both have to be shown, the second is the one that says more as a rule */
+    case EX_ITEM_OR: /* the operand that decides; if both have to be shown, the second is the one that says more as a
+                        rule */
         if (holds == (item->kind == EX_ITEM_AND)) {
             *claim = (claim_t){ .item = item->b, .holds = holds };
         } else {
-            *claim = (claim_t){ .item = (ex_is_in(queries, item->a, node) == holds) ? item->a : item->b, .holds = holds };
+            *claim =
+                (claim_t){ .item = (ex_is_in(queries, item->a, node) == holds) ? item->a : item->b, .holds = holds };
         }
         return true;
     case EX_ITEM_EX:
-    case EX_ITEM_EXA:
-        return holds && show_step(queries, claim, item, true, way);
-    case EX_ITEM_AX:
-        return !holds && show_step(queries, claim, item, false, way);
-    case EX_ITEM_EF:
-        return holds && show_way(queries, NULL, claim, item->a, true, way);
-    case EX_ITEM_AG:
-        return !holds && show_way(queries, NULL, claim, item->a, false, way);
-    case EX_ITEM_EU:
-        return holds && show_way(queries, queries->item[item->a].set, claim, item->b, true, way);
-    case EX_ITEM_EG:
-        return holds && show_for_ever(queries, claim, item->a, true, way);
-    case EX_ITEM_AF:
-        return !holds && show_for_ever(queries, claim, item->a, false, way);
-    case EX_ITEM_AU:
-        return !holds && show_no_until(queries, claim, item, way);
+    case EX_ITEM_EXA: return holds && show_step(queries, claim, item, true, way);
+    case EX_ITEM_AX: return !holds && show_step(queries, claim, item, false, way);
+    case EX_ITEM_EF: return holds && show_way(queries, NULL, claim, item->a, true, way);
+    case EX_ITEM_AG: return !holds && show_way(queries, NULL, claim, item->a, false, way);
+    case EX_ITEM_EU: return holds && show_way(queries, queries->item[item->a].set, claim, item->b, true, way);
+    case EX_ITEM_EG: return holds && show_for_ever(queries, claim, item->a, true, way);
+    case EX_ITEM_AF: return !holds && show_for_ever(queries, claim, item->a, false, way);
+    case EX_ITEM_AU: return !holds && show_no_until(queries, claim, item, way);
     case EX_ITEM_TRUE:
     case EX_ITEM_DEAD:
     case EX_ITEM_INITIAL:
     case EX_ITEM_PRED:
     case EX_ITEM_ENABLED:
     case EX_ITEM_WITHIN:
-    default:
-        return false;
+    default: return false;
     }
 }
 

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * explore_derive.c - packed places that follow from others: the net proves that a sum of markings never changes, so one of the places of
- * the sum is no part of a vector. What the sum is, the initial marking says.
+ * explore_derive.c - packed places that follow from others: the net proves that a sum of markings never changes, so one
+ * of the places of the sum is no part of a vector. What the sum is, the initial marking says.
  */
 #include "explore_impl.h"
 

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * explore_elements.c - reads the table of binding elements: numbers in a text (src/pn2code/verify/elements.py writes it).
+ * explore_elements.c - reads the table of binding elements: numbers in a text (src/pn2code/verify/elements.py writes
+ * it).
  */
 #include "explore_reduce.h"
 
@@ -100,18 +101,10 @@ static uint32_t read_element(reader_t *r, const ex_reduction_t *reduction, ex_to
         for (uint32_t i = 0U; (r->problem == NULL) && (i < count); i++) {
             ex_touch_t *own = touch_of(touch, &touches, number(r, reduction->counters));
             switch (list) {
-            case 0U:
-                own->pre = number(r, UINT32_MAX);
-                break;
-            case 1U:
-                own->post = number(r, UINT32_MAX);
-                break;
-            case 2U:
-                own->is_inhibitor = true;
-                break;
-            default:
-                own->is_reset = true;
-                break;
+            case 0U: own->pre = number(r, UINT32_MAX); break;
+            case 1U: own->post = number(r, UINT32_MAX); break;
+            case 2U: own->is_inhibitor = true; break;
+            default: own->is_reset = true; break;
             }
         }
     }
@@ -269,7 +262,8 @@ static bool read_all(reader_t *r, ex_reduction_t *reduction)
     char last[8] = "";
     return read_places(r) && read_counters(r, reduction) && read_elements(r, reduction) && read_rotations(r, reduction)
            && read_exchanges(r, reduction)
-           && (((fscanf(r->file, " %7s", last) == 1) && (strcmp(last, "end") == 0)) || refuse(r, "the table of elements has no end"));
+           && (((fscanf(r->file, " %7s", last) == 1) && (strcmp(last, "end") == 0))
+               || refuse(r, "the table of elements has no end"));
 }
 
 static void note(ex_run_t *run, const char *kind, const char *message, int64_t transition)

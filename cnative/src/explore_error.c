@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * explore_error.c - the way to an exception.
  *
- * Threads stop at the exception that one of them meets first. So the states that are known are gone through once more, in breadth-first
- * order: the first one in which an inscription raises an exception is the same one whatever the number of threads, and with breadth-first
- * exploration none is nearer to the initial state.
+ * Threads stop at the exception that one of them meets first. So the states that are known are gone through once more,
+ * in breadth-first order: the first one in which an inscription raises an exception is the same one whatever the number
+ * of threads, and with breadth-first exploration none is nearer to the initial state.
  */
 #include "explore_error.h"
 
@@ -16,9 +16,7 @@
 #include "pn/pn_arena.h"
 #include "pn/pn_text.h"
 
-enum {
-    BINDING_SIZE = 1 << 20
-};
+enum { BINDING_SIZE = 1 << 20 };
 
 static bool ignore(void *user, uint32_t transition, const void *binding, const ex_key_t *key)
 {
@@ -71,7 +69,7 @@ static uint32_t find(ex_run_t *run, ex_graph_t *graph)
     return (run->error.kind != NULL) ? node : EX_NO_NODE;
 }
 
-/* --- the binding element ------------------------------------------------------------------------------------------------- */
+/* --- the binding element ------------------------------------------------------------------------------------------ */
 
 /* Fires the bindings of a transition one after the other, and writes down the one that cannot. */
 typedef struct trial {
@@ -100,7 +98,8 @@ static bool on_binding(void *user, uint32_t transition, const void *binding)
     return is_fired;
 }
 
-/* The binding whose occurrence raises the exception in worker->marking, as JSON; NULL: it is raised before one occurs. */
+/* The binding whose occurrence raises the exception in worker->marking, as JSON; NULL: it is raised before one occurs.
+ */
 static char *raising_binding(ex_worker_t *worker, uint32_t transition)
 {
     trial_t trial = { .worker = worker };
@@ -118,7 +117,7 @@ static char *raising_binding(ex_worker_t *worker, uint32_t transition)
     return buffer;
 }
 
-/* --- both ---------------------------------------------------------------------------------------------------------------- */
+/* --- both --------------------------------------------------------------------------------------------------------- */
 
 /* Writes the trace, if it is wanted, and makes the exception be raised once more where it ends. */
 static bool follow(ex_run_t *run, const ex_graph_t *graph, uint32_t node, ex_raised_t *raised)
@@ -129,7 +128,8 @@ static bool follow(ex_run_t *run, const ex_graph_t *graph, uint32_t node, ex_rai
     raised->node = (uint64_t)node + 1U;
     raised->steps = -1;
     if (run->options.error_trace_to != NULL) {
-        (void)snprintf(raised->path, sizeof raised->path, "%s%" PRIu64 ".trace.jsonl", run->options.error_trace_to, raised->node);
+        (void)snprintf(raised->path, sizeof raised->path, "%s%" PRIu64 ".trace.jsonl", run->options.error_trace_to,
+                       raised->node);
         raised->steps = ex_write_run(run, graph, node, raised->path, "error");
     }
     const bool is_symmetric = (run->reduction != NULL) && run->reduction->is_symmetric && (raised->steps >= 0);
@@ -137,7 +137,8 @@ static bool follow(ex_run_t *run, const ex_graph_t *graph, uint32_t node, ex_rai
         (void)ex_all_successors(worker, ignore_marking, NULL);
     } else {
         clear(run);
-        (void)(ex_store_fetch(&run->store, graph->slot[node], &key) && (ex_successors(worker, &key, ignore, NULL) == EX_FAILED));
+        (void)(ex_store_fetch(&run->store, graph->slot[node], &key)
+               && (ex_successors(worker, &key, ignore, NULL) == EX_FAILED));
     }
     if (run->error.kind == NULL) {
         return false;

@@ -1,16 +1,17 @@
 /* SPDX-License-Identifier: MIT
- * explore_fairness.c - how fair each transition is, over all infinite occurrence sequences (in a finite graph each is in the end a walk in
- * one component):
- *   impartial  t occurs infinitely often in each                        no cycle without t
- *   fair       ... in each in which it is enabled infinitely often      no cycle without t through a node at which t is enabled
- *   just       ... in each in which it is enabled from some point on    no cycle without t among the nodes at which t is enabled
+ * explore_fairness.c - how fair each transition is, over all infinite occurrence sequences (in a finite graph each is
+ * in the end a walk in one component): impartial  t occurs infinitely often in each                        no cycle
+ * without t fair       ... in each in which it is enabled infinitely often      no cycle without t through a node at
+ * which t is enabled just       ... in each in which it is enabled from some point on    no cycle without t among the
+ * nodes at which t is enabled
  *
- * The first and the third ask whether a part of the graph has a cycle, and are worked out for up to 32 transitions together: each node has
- * a bit for each question, which tells whether a cycle of that part may be reached from it. A bit without a successor that has it
- * goes (an arc counts for the questions that do not leave out its transition). Bits are gone through in sweeps over all arcs, as they
- * lie in memory, until none goes; or along a way that goes back where it comes to an end: should it come to itself, that is a cycle,
- * and may answer the questions of many transitions. Such ways are tried for a while first, and used when sweeps get nowhere.
- * The second question is left only where the answer to the first is that there is such a cycle, and to the third that there is none.
+ * The first and the third ask whether a part of the graph has a cycle, and are worked out for up to 32 transitions
+ * together: each node has a bit for each question, which tells whether a cycle of that part may be reached from it. A
+ * bit without a successor that has it goes (an arc counts for the questions that do not leave out its transition). Bits
+ * are gone through in sweeps over all arcs, as they lie in memory, until none goes; or along a way that goes back where
+ * it comes to an end: should it come to itself, that is a cycle, and may answer the questions of many transitions. Such
+ * ways are tried for a while first, and used when sweeps get nowhere. The second question is left only where the answer
+ * to the first is that there is such a cycle, and to the third that there is none.
  */
 #include "explore_graph.h"
 
@@ -25,54 +26,42 @@ typedef struct group {
     const ex_graph_t *graph;
     uint32_t transition[GROUP];
     uint32_t count;
-    uint64_t *bit_of;        /* by transition; 0: of another group */
-    uint64_t not_impartial;  /* there is such a cycle */
+    uint64_t *bit_of;       /* by transition; 0: of another group */
+    uint64_t not_impartial; /* there is such a cycle */
     uint64_t not_fair;
     uint64_t not_just;
     /* The questions: bit k is the first of transition[k], bit count + k the third. */
-    uint64_t open;           /* those without an answer, or of which the bits are wanted for the second question */
-    void *alive;             /* of each node: `width` bytes */
+    uint64_t open; /* those without an answer, or of which the bits are wanted for the second question */
+    void *alive;   /* of each node: `width` bytes */
     uint32_t width;
-    uint64_t *is_on_way;     /* bit set of nodes */
+    uint64_t *is_on_way; /* bit set of nodes */
     /* A sweep. */
     bool is_upward;
     bool is_first;
-    _Atomic uint32_t next;   /* block */
+    _Atomic uint32_t next; /* block */
     _Atomic uint64_t removed;
-    _Atomic uint64_t some;   /* bits that some node has */
+    _Atomic uint64_t some; /* bits that some node has */
 } group_t;
 
-/* --- bits of nodes --------------------------------------------------------------------------------------------------- */
+/* --- bits of nodes ------------------------------------------------------------------------------------------------ */
 
 static inline uint64_t load(const void *alive, uint32_t width, uint32_t node)
 {
     switch (width) {
-    case 1U:
-        return __atomic_load_n(&((const uint8_t *)alive)[node], __ATOMIC_RELAXED);
-    case 2U:
-        return __atomic_load_n(&((const uint16_t *)alive)[node], __ATOMIC_RELAXED);
-    case 4U:
-        return __atomic_load_n(&((const uint32_t *)alive)[node], __ATOMIC_RELAXED);
-    default:
-        return __atomic_load_n(&((const uint64_t *)alive)[node], __ATOMIC_RELAXED);
+    case 1U: return __atomic_load_n(&((const uint8_t *)alive)[node], __ATOMIC_RELAXED);
+    case 2U: return __atomic_load_n(&((const uint16_t *)alive)[node], __ATOMIC_RELAXED);
+    case 4U: return __atomic_load_n(&((const uint32_t *)alive)[node], __ATOMIC_RELAXED);
+    default: return __atomic_load_n(&((const uint64_t *)alive)[node], __ATOMIC_RELAXED);
     }
 }
 
 static inline void store(void *alive, uint32_t width, uint32_t node, uint64_t bits)
 {
     switch (width) {
-    case 1U:
-        __atomic_store_n(&((uint8_t *)alive)[node], (uint8_t)bits, __ATOMIC_RELAXED);
-        break;
-    case 2U:
-        __atomic_store_n(&((uint16_t *)alive)[node], (uint16_t)bits, __ATOMIC_RELAXED);
-        break;
-    case 4U:
-        __atomic_store_n(&((uint32_t *)alive)[node], (uint32_t)bits, __ATOMIC_RELAXED);
-        break;
-    default:
-        __atomic_store_n(&((uint64_t *)alive)[node], bits, __ATOMIC_RELAXED);
-        break;
+    case 1U: __atomic_store_n(&((uint8_t *)alive)[node], (uint8_t)bits, __ATOMIC_RELAXED); break;
+    case 2U: __atomic_store_n(&((uint16_t *)alive)[node], (uint16_t)bits, __ATOMIC_RELAXED); break;
+    case 4U: __atomic_store_n(&((uint32_t *)alive)[node], (uint32_t)bits, __ATOMIC_RELAXED); break;
+    default: __atomic_store_n(&((uint64_t *)alive)[node], bits, __ATOMIC_RELAXED); break;
     }
 }
 
@@ -97,10 +86,10 @@ static inline uint64_t left_out(const group_t *g, uint16_t label)
     return g->bit_of[label] | (g->bit_of[label] << g->count);
 }
 
-/* --- ways ------------------------------------------------------------------------------------------------------------ */
+/* --- ways --------------------------------------------------------------------------------------------------------- */
 
 typedef struct step {
-    uint64_t arc;   /* the next one to look at */
+    uint64_t arc; /* the next one to look at */
     uint32_t node;
 } step_t;
 
@@ -108,9 +97,9 @@ typedef struct search {
     group_t *group;
     uint32_t question;
     step_t *step;
-    uint64_t room;  /* steps */
+    uint64_t room; /* steps */
     uint64_t depth;
-    uint64_t left;  /* nodes that may be entered */
+    uint64_t left; /* nodes that may be entered */
     bool is_found;
 } search_t;
 
@@ -149,7 +138,7 @@ static void note_cycle(search_t *s, uint32_t node)
     uint64_t sometimes = 0U;
     uint64_t always = all_of(g->count);
     bool is_begun = false;
-    for (uint64_t i = s->depth; !is_begun; ) {
+    for (uint64_t i = s->depth; !is_begun;) {
         i -= 1U;
         const uint64_t enabled = enabled_at(g, s->step[i].node);
         occurs |= g->bit_of[g->graph->label[s->step[i].arc - 1U]]; /* the one that was followed */
@@ -215,7 +204,7 @@ static bool search(group_t *g, uint32_t question, uint32_t first, uint64_t most)
     return true;
 }
 
-/* --- sweeps ---------------------------------------------------------------------------------------------------------- */
+/* --- sweeps ------------------------------------------------------------------------------------------------------- */
 
 typedef struct swept {
     uint64_t removed;
@@ -271,18 +260,10 @@ static void sweep_blocks(ex_worker_t *worker, void *user)
         const uint32_t first = (g->is_upward ? index : (blocks - 1U - index)) * EX_SWEEP_BLOCK;
         const uint32_t count = ((nodes - first) < EX_SWEEP_BLOCK) ? (nodes - first) : EX_SWEEP_BLOCK;
         switch (g->width) { /* a loop for each */
-        case 1U:
-            sweep_nodes(g, 1U, first, count, &swept);
-            break;
-        case 2U:
-            sweep_nodes(g, 2U, first, count, &swept);
-            break;
-        case 4U:
-            sweep_nodes(g, 4U, first, count, &swept);
-            break;
-        default:
-            sweep_nodes(g, 8U, first, count, &swept);
-            break;
+        case 1U: sweep_nodes(g, 1U, first, count, &swept); break;
+        case 2U: sweep_nodes(g, 2U, first, count, &swept); break;
+        case 4U: sweep_nodes(g, 4U, first, count, &swept); break;
+        default: sweep_nodes(g, 8U, first, count, &swept); break;
         }
     }
     (void)atomic_fetch_add(&g->removed, swept.removed);
@@ -321,7 +302,7 @@ static bool sweep_all(group_t *g)
     return g->open == 0U;
 }
 
-/* --- answers --------------------------------------------------------------------------------------------------------- */
+/* --- answers ------------------------------------------------------------------------------------------------------ */
 
 /* Questions without an answer, and those of which the bits are still wanted. */
 static uint64_t wanted(const group_t *g)

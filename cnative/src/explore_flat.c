@@ -1,7 +1,7 @@
 /* SPDX-License-Identifier: MIT
- * explore_flat.c - the search where all places are packed, but into more than a key can hold: each part of a key is then a word of the
- * packed part, or the number of a tuple of such words. Successors are kept as tuples for a while: until it is their turn to be
- * looked up, the lines of the tables that know their numbers are on the way.
+ * explore_flat.c - the search where all places are packed, but into more than a key can hold: each part of a key is
+ * then a word of the packed part, or the number of a tuple of such words. Successors are kept as tuples for a while:
+ * until it is their turn to be looked up, the lines of the tables that know their numbers are on the way.
  */
 #include "explore_search.h"
 
@@ -24,7 +24,8 @@ typedef struct part {
     uint32_t unit;         /* of the word: where it is */
     uint32_t shift;
     uint64_t mask;
-    uint64_t *remembered;  /* tuples that were looked up a short while ago, each as its number + 1 (0: none) and its lanes */
+    uint64_t
+        *remembered; /* tuples that were looked up a short while ago, each as its number + 1 (0: none) and its lanes */
 } part_t;
 
 /* A successor that has not been given to the search yet. */
@@ -43,7 +44,7 @@ struct ex_flat {
     bool is_ready;               /* keys are of this kind now */
     uint32_t word[EX_KEY_WORDS]; /* of the state that is opened */
     uint32_t kept;
-    bool has_missing;            /* one of them has no key */
+    bool has_missing; /* one of them has no key */
     kept_t successor[KEPT];
     uint64_t remembered[EX_KEY_WORDS][(EX_TUPLE_LANES + 1U) * REMEMBERED];
 };
@@ -92,7 +93,7 @@ bool ex_flat_is_ready(const ex_worker_t *worker)
     return (worker->search->flat != NULL) && worker->search->flat->is_ready;
 }
 
-/* --- keys ------------------------------------------------------------------------------------------------------------- */
+/* --- keys --------------------------------------------------------------------------------------------------------- */
 
 /* Some lanes of the tuple of a part in a marking: of lanes that there are not the mask is 0. */
 static inline void read_lanes(const ex_node_t *node, const uint64_t *unit, uint64_t *lane, uint32_t lanes)
@@ -106,7 +107,8 @@ static inline void read_lanes(const ex_node_t *node, const uint64_t *unit, uint6
 }
 
 /* The same where its words do not lie two and two. */
-static EX_APART void gather(const ex_codec_t *codec, const ex_node_t *node, const uint64_t *unit, uint64_t lane[EX_TUPLE_LANES])
+static EX_APART void gather(const ex_codec_t *codec, const ex_node_t *node, const uint64_t *unit,
+                            uint64_t lane[EX_TUPLE_LANES])
 {
     for (uint32_t i = 0U; i < node->count; i++) {
         lane[i / 2U] |= (uint64_t)ex_packed_word(codec, unit, node->child[i]) << (32U * (i % 2U));
@@ -149,7 +151,8 @@ static void open(ex_worker_t *worker, const ex_key_t *key)
     const ex_codec_t *codec = worker->run->codec;
     struct ex_flat *const own = worker->search->flat;
     uint64_t *const unit = worker->marking;
-    const uint32_t word[EX_KEY_WORDS] = { (uint32_t)key->low, (uint32_t)(key->low >> 32U), (uint32_t)key->high, (uint32_t)(key->high >> 32U) };
+    const uint32_t word[EX_KEY_WORDS] = { (uint32_t)key->low, (uint32_t)(key->low >> 32U), (uint32_t)key->high,
+                                          (uint32_t)(key->high >> 32U) };
     (void)memcpy(own->word, word, sizeof own->word);
     (void)memset(unit, 0, pn_net.packed_size);
     for (uint32_t i = 0U; i < own->parts; i++) {
@@ -168,7 +171,8 @@ static void open(ex_worker_t *worker, const ex_key_t *key)
         }
         for (uint32_t k = 0U; k < node->count; k++) {
             const uint32_t bit = codec->slice_bit[node->child[k]];
-            unit[bit / (uint32_t)UNIT_BITS] |= ((lane[k / 2U] >> (32U * (k % 2U))) & UINT32_MAX) << (bit % (uint32_t)UNIT_BITS);
+            unit[bit / (uint32_t)UNIT_BITS] |= ((lane[k / 2U] >> (32U * (k % 2U))) & UINT32_MAX)
+                                               << (bit % (uint32_t)UNIT_BITS);
         }
     }
     ex_derive(codec, unit);
@@ -203,7 +207,8 @@ static EX_APART bool complete(ex_worker_t *worker)
         for (uint32_t rest = successor->missing; rest != 0U; rest &= rest - 1U) {
             const uint32_t i = (uint32_t)__builtin_ctz(rest);
             const part_t *const part = &own->part[i];
-            if (!ex_number_tuple(worker, part->tuples, successor->lane[i], successor->tuple_hash[i], &successor->word[i])) {
+            if (!ex_number_tuple(worker, part->tuples, successor->lane[i], successor->tuple_hash[i],
+                                 &successor->word[i])) {
                 return false;
             }
             remember(part, successor->lane[i], successor->word[i]);
@@ -231,7 +236,7 @@ bool ex_flat_finish(ex_worker_t *worker)
     return true;
 }
 
-/* --- successors ------------------------------------------------------------------------------------------------------ */
+/* --- successors --------------------------------------------------------------------------------------------------- */
 
 static bool on_marking(void *user, uint32_t transition, const void *binding, const void *next)
 {

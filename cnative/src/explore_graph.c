@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * explore_graph.c - the graph of a state space that has been explored: nodes are numbered breadth first, whatever the number of threads,
- * and the successors of each are made once more and looked up.
+ * explore_graph.c - the graph of a state space that has been explored: nodes are numbered breadth first, whatever the
+ * number of threads, and the successors of each are made once more and looked up.
  *
- * Threads take blocks of nodes and find the slots of all successors (explore_blocks.c); then the slots that are new get numbers, in the
- * order of the nodes and of their arcs.
+ * Threads take blocks of nodes and find the slots of all successors (explore_blocks.c); then the slots that are new get
+ * numbers, in the order of the nodes and of their arcs.
  */
 #include "explore_blocks.h"
 
@@ -20,7 +20,7 @@ typedef struct level {
     ex_graph_t *graph;
     uint32_t first;
     uint32_t end;
-    _Atomic uint32_t next;    /* block */
+    _Atomic uint32_t next; /* block */
     ex_block_t *block;
     uint32_t block_count;
     ex_expander_t *expander[EX_MOST_THREADS];
@@ -104,7 +104,8 @@ static void number_block(ex_graph_t *graph, const ex_block_t *block, uint32_t fi
     }
 }
 
-/* Blocks that are made before their targets get numbers: few, so that what one needs is still near the processor then. */
+/* Blocks that are made before their targets get numbers: few, so that what one needs is still near the processor then.
+ */
 #define BLOCKS_OF_THREAD 16U
 
 /* Expands the nodes of which the numbers are known, or some of them. */
@@ -189,8 +190,9 @@ bool ex_graph(ex_run_t *run)
     graph->row = ex_alloc(run, (nodes + 1U) * sizeof *graph->row);
     graph->dead = ex_alloc(run, ((nodes / 64U) + 1U) * sizeof *graph->dead);
     graph->late = pn_net.timed ? ex_alloc(run, ((nodes / 64U) + 1U) * sizeof *graph->late) : NULL;
-    bool is_fine = (graph->slot != NULL) && (graph->number != NULL) && (graph->parent != NULL) && (graph->row != NULL) && (graph->dead != NULL) &&
-                   ((graph->late != NULL) || !pn_net.timed) && reserve_arcs(run, graph, run->arcs);
+    bool is_fine = (graph->slot != NULL) && (graph->number != NULL) && (graph->parent != NULL) && (graph->row != NULL)
+                   && (graph->dead != NULL) && ((graph->late != NULL) || !pn_net.timed)
+                   && reserve_arcs(run, graph, run->arcs);
     ex_phase(run, "graph");
     is_fine = is_fine && build(run, graph) && (!is_whole || (graph->nodes == nodes));
     if (run->options.write_graph == NULL) {
@@ -216,7 +218,7 @@ bool ex_graph(ex_run_t *run)
     return is_fine;
 }
 
-/* --- the report ---------------------------------------------------------------------------------------------------- */
+/* --- the report --------------------------------------------------------------------------------------------------- */
 
 static bool is_dead(const ex_graph_t *graph, uint32_t node)
 {
@@ -228,7 +230,8 @@ static void dead_json(const ex_run_t *run, FILE *out)
     const ex_graph_t *const graph = run->graph;
     uint64_t listed = 0U;
     (void)fprintf(out, "\"dead\": [");
-    for (uint32_t node = 0U; (graph != NULL) && graph->is_whole && (node < graph->nodes) && (listed < run->options.dead_limit); node++) {
+    for (uint32_t node = 0U;
+         (graph != NULL) && graph->is_whole && (node < graph->nodes) && (listed < run->options.dead_limit); node++) {
         if (is_dead(graph, node)) {
             (void)fprintf(out, "%s%" PRIu32, (listed > 0U) ? ", " : "", node + 1U);
             listed += 1U;
@@ -284,8 +287,8 @@ static void traces_json(ex_run_t *run, FILE *out)
             char quoted[2U * sizeof path];
             pn_text_init(&text, quoted, sizeof quoted);
             pn_text_json_str(&text, path);
-            (void)fprintf(out, "%s{\"node\": %" PRIu32 ", \"file\": %s, \"steps\": %" PRId64 "}", (written > 0U) ? ", " : "", node + 1U,
-                          quoted, steps);
+            (void)fprintf(out, "%s{\"node\": %" PRIu32 ", \"file\": %s, \"steps\": %" PRId64 "}",
+                          (written > 0U) ? ", " : "", node + 1U, quoted, steps);
         }
         written += 1U;
     }

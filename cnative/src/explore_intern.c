@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * explore_intern.c - numbers for tuples of words and for strings of bytes.
  *
- * An index of one word for each number: half of it is a part of the hash, so that hardly ever something else is looked at in vain. A
- * thread that has something new takes the next number, writes the thing down and only then, by one compare-and-swap, enters it in the
- * index. When another thread was faster with the same, the number is a hole.
+ * An index of one word for each number: half of it is a part of the hash, so that hardly ever something else is looked
+ * at in vain. A thread that has something new takes the next number, writes the thing down and only then, by one
+ * compare-and-swap, enters it in the index. When another thread was faster with the same, the number is a hole.
  */
 #include "explore_impl.h"
 
@@ -11,8 +11,8 @@
 
 enum {
     FIRST_ENTRIES = 1 << 10,
-    DOUBLED = 1 << 15, /* entries up to which an index grows to twice its size; then by a quarter */
-    BLOCK = 1 << 20, /* bytes that are counted at a time */
+    DOUBLED = 1 << 15,       /* entries up to which an index grows to twice its size; then by a quarter */
+    BLOCK = 1 << 20,         /* bytes that are counted at a time */
     SHARED_ENTRIES = 1 << 17 /* of an index that threads move together */
 };
 
@@ -77,7 +77,7 @@ static uint64_t bytes_hash(uint32_t place, const unsigned char *byte, uint32_t l
     return folded(hash ^ 0x8ebc6af09c88c6e3U, 0x589965cc75374cc3U);
 }
 
-/* --- the index ----------------------------------------------------------------------------------------------------- */
+/* --- the index ---------------------------------------------------------------------------------------------------- */
 
 static bool index_make(ex_index_t *index, ex_run_t *run)
 {
@@ -94,14 +94,15 @@ static void index_put(ex_index_t *index, uint64_t hash, uint64_t number)
 {
     uint64_t at = home(index, hash);
     uint64_t expected = 0U;
-    while (!atomic_compare_exchange_strong_explicit(&index->entry[at], &expected, entry_of(hash, number), memory_order_relaxed,
-                                                    memory_order_relaxed)) {
+    while (!atomic_compare_exchange_strong_explicit(&index->entry[at], &expected, entry_of(hash, number),
+                                                    memory_order_relaxed, memory_order_relaxed)) {
         at = ((at + 1U) < index->entries) ? (at + 1U) : 0U;
         expected = 0U;
     }
 }
 
-/* A larger one, without its entries yet; the old ones, to be entered and freed, are in *old. False: there is no memory. */
+/* A larger one, without its entries yet; the old ones, to be entered and freed, are in *old. False: there is no memory.
+ */
 static bool index_enlarge(ex_index_t *index, uint64_t payload, ex_index_t *old)
 {
     const uint64_t step = (index->entries < (uint64_t)DOUBLED) ? index->entries : (index->entries / 4U);
@@ -183,7 +184,7 @@ static void *reserve(ex_run_t *run, uint64_t size, uint64_t *most)
     return NULL;
 }
 
-/* --- tuples ------------------------------------------------------------------------------------------------------------ */
+/* --- tuples ------------------------------------------------------------------------------------------------------- */
 
 bool ex_tuples_make(ex_tuples_t *tuples, ex_run_t *run, uint32_t words)
 {
@@ -228,14 +229,14 @@ uint32_t ex_tuples_number(ex_tuples_t *tuples, const uint64_t lane[EX_TUPLE_LANE
                     if (number >= index->limit) {
                         return EX_NO_NUMBER;
                     }
-                } while (!atomic_compare_exchange_weak_explicit(&index->count, &number, number + 1U, memory_order_relaxed,
-                                                                memory_order_relaxed));
+                } while (!atomic_compare_exchange_weak_explicit(&index->count, &number, number + 1U,
+                                                                memory_order_relaxed, memory_order_relaxed));
                 for (uint32_t i = 0U; i < tuples->lanes; i++) {
                     tuples->lane[(number * tuples->lanes) + i] = lane[i];
                 }
             }
-            if (atomic_compare_exchange_strong_explicit(&index->entry[at], &entry, entry_of(hash, number), memory_order_acq_rel,
-                                                        memory_order_acquire)) {
+            if (atomic_compare_exchange_strong_explicit(&index->entry[at], &entry, entry_of(hash, number),
+                                                        memory_order_acq_rel, memory_order_acquire)) {
                 return (uint32_t)number;
             }
         }
@@ -283,7 +284,7 @@ uint64_t ex_tuples_bytes(const ex_tuples_t *tuples)
            + (atomic_load(&tuples->index.count) * tuples->lanes * sizeof *tuples->lane);
 }
 
-/* --- strings of bytes ------------------------------------------------------------------------------------------------ */
+/* --- strings of bytes --------------------------------------------------------------------------------------------- */
 
 bool ex_bytes_make(ex_bytes_t *bytes, ex_run_t *run)
 {
@@ -321,7 +322,8 @@ static uint64_t take_bytes(ex_bytes_t *bytes, uint32_t length)
     return used;
 }
 
-static bool is_same(const ex_bytes_t *bytes, uint32_t number, uint32_t place, const unsigned char *byte, uint32_t length)
+static bool is_same(const ex_bytes_t *bytes, uint32_t number, uint32_t place, const unsigned char *byte,
+                    uint32_t length)
 {
     const ex_bytes_entry_t *of = &bytes->of[number];
     return (of->place == place) && (of->length == length) && (memcmp(&bytes->byte[of->offset], byte, length) == 0);
@@ -347,13 +349,13 @@ uint32_t ex_bytes_number(ex_bytes_t *bytes, uint32_t place, const unsigned char 
                     if (number >= index->limit) {
                         return EX_NO_NUMBER;
                     }
-                } while (!atomic_compare_exchange_weak_explicit(&index->count, &number, number + 1U, memory_order_relaxed,
-                                                                memory_order_relaxed));
+                } while (!atomic_compare_exchange_weak_explicit(&index->count, &number, number + 1U,
+                                                                memory_order_relaxed, memory_order_relaxed));
                 (void)memcpy(&bytes->byte[offset], byte, length);
                 bytes->of[number] = (ex_bytes_entry_t){ .offset = offset, .length = length, .place = place };
             }
-            if (atomic_compare_exchange_strong_explicit(&index->entry[at], &entry, entry_of(hash, number), memory_order_acq_rel,
-                                                        memory_order_acquire)) {
+            if (atomic_compare_exchange_strong_explicit(&index->entry[at], &entry, entry_of(hash, number),
+                                                        memory_order_acq_rel, memory_order_acquire)) {
                 return (uint32_t)number;
             }
         }

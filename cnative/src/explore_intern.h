@@ -12,24 +12,25 @@ struct ex_run;
 
 #define EX_NO_NUMBER UINT32_MAX
 
-/* Gives equal things equal numbers, from 0 on nearly without holes. Threads may do it at the same time; it never moves what it has, but
- * has to grow now and then, while nobody uses it. */
+/* Gives equal things equal numbers, from 0 on nearly without holes. Threads may do it at the same time; it never moves
+ * what it has, but has to grow now and then, while nobody uses it. */
 typedef struct ex_index {
     struct ex_run *run;
     _Atomic uint64_t *entry; /* low half: number + 1, 0: free; high half: of the hash */
     uint64_t entries;
-    uint64_t limit;          /* numbers from which on it has to grow */
-    uint64_t most;           /* numbers for which addresses are reserved */
-    _Atomic uint64_t count;  /* numbers given */
+    uint64_t limit;         /* numbers from which on it has to grow */
+    uint64_t most;          /* numbers for which addresses are reserved */
+    _Atomic uint64_t count; /* numbers given */
 } ex_index_t;
 
-/* Up to eight words as one number: the inner nodes of trees. Words lie two and two in a lane, the first one in the lower half. */
+/* Up to eight words as one number: the inner nodes of trees. Words lie two and two in a lane, the first one in the
+ * lower half. */
 #define EX_TUPLE_WORDS 8U
 #define EX_TUPLE_LANES 4U
 
 typedef struct ex_tuples {
     ex_index_t index;
-    uint64_t *lane;    /* `lanes` of each number */
+    uint64_t *lane; /* `lanes` of each number */
     uint32_t lanes;
 } ex_tuples_t;
 
@@ -45,7 +46,7 @@ typedef struct ex_bytes {
     ex_bytes_entry_t *of;
     unsigned char *byte;
     uint64_t reserved;
-    _Atomic uint64_t used;    /* bytes */
+    _Atomic uint64_t used; /* bytes */
     _Atomic uint64_t counted;
 } ex_bytes_t;
 

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * explore_lasso.c - a run that an automaton accepts: a way to an accepting state of a good component of the product, and a cycle there that
- * comes back to it and is fair.
+ * explore_lasso.c - a run that an automaton accepts: a way to an accepting state of a good component of the product,
+ * and a cycle there that comes back to it and is fair.
  *
- * The accepting states that are nearest to the start are tried, each with a shortest cycle (with fairness: one made of shortest parts).
+ * The accepting states that are nearest to the start are tried, each with a shortest cycle (with fairness: one made of
+ * shortest parts).
  */
 #include "explore_product.h"
 
@@ -22,9 +23,9 @@ typedef struct steps {
 typedef struct hunt {
     ex_product_t *p;
     uint32_t *parent;
-    uint32_t *label;    /* of the step from the parent */
+    uint32_t *label; /* of the step from the parent */
     uint32_t *queue;
-    uint32_t *seen;     /* the number of the search in which a state was last met */
+    uint32_t *seen; /* the number of the search in which a state was last met */
     uint32_t number;
     uint64_t work;
     uint32_t component; /* in which it stays */
@@ -42,7 +43,7 @@ typedef struct goal {
     uint32_t number;
 } goal_t;
 
-/* --- steps ----------------------------------------------------------------------------------------------------------- */
+/* --- steps -------------------------------------------------------------------------------------------------------- */
 
 static bool has_room(steps_t *s, uint64_t more)
 {
@@ -88,7 +89,7 @@ static bool add_steps(const hunt_t *h, uint32_t from, uint32_t label, uint32_t s
     return true;
 }
 
-/* --- searches -------------------------------------------------------------------------------------------------------- */
+/* --- searches ----------------------------------------------------------------------------------------------------- */
 
 static void begin(hunt_t *h, uint32_t start)
 {
@@ -156,13 +157,10 @@ static uint32_t find_candidates(hunt_t *h, steps_t *found)
 static bool is_reached(const ex_product_t *p, const goal_t *goal, uint32_t state, uint32_t label)
 {
     switch (goal->kind) {
-    case GOAL_STATE:
-        return state == goal->number;
-    case GOAL_OCCURS:
-        return label == goal->number;
+    case GOAL_STATE: return state == goal->number;
+    case GOAL_OCCURS: return label == goal->number;
     case GOAL_DISABLED:
-    default:
-        return !ex_is_in(p->queries, goal->number, state / p->states);
+    default: return !ex_is_in(p->queries, goal->number, state / p->states);
     }
 }
 
@@ -189,7 +187,7 @@ static bool hunt_for(hunt_t *h, const goal_t *goal, steps_t *s)
     return false;
 }
 
-/* --- cycles ---------------------------------------------------------------------------------------------------------- */
+/* --- cycles ------------------------------------------------------------------------------------------------------- */
 
 /* Whether the steps after `first` show already that a transition is treated fairly. */
 static bool is_treated(const ex_product_t *p, uint32_t k, const steps_t *s, uint64_t first)
@@ -217,7 +215,8 @@ static bool add_cycle(hunt_t *h, steps_t *s)
         const goal_t occurs = { .kind = GOAL_OCCURS, .number = automaton->fair[k] };
         const goal_t disabled = { .kind = GOAL_DISABLED, .number = automaton->fair_item[k] };
         /* In a good component a strong transition that does not occur is enabled nowhere. */
-        if (!is_treated(p, k, s, first) && !hunt_for(h, &occurs, s) && !automaton->is_strong[k] && !hunt_for(h, &disabled, s)) {
+        if (!is_treated(p, k, s, first) && !hunt_for(h, &occurs, s) && !automaton->is_strong[k]
+            && !hunt_for(h, &disabled, s)) {
             return false;
         }
     }

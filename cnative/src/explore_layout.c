@@ -1,10 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * explore_layout.c - which words of the vectors become a part of the key together.
  *
- * A part needs a number for each combination of its words that occurs; so words that depend on each other belong together. How many
- * combinations there are is estimated from a sample: at the beginning of states on a way at random, later of states from the store, whose
- * keys are then made anew. Beginning with each place for itself, the two parts whose union adds the fewest combinations are united,
- * until there are four.
+ * A part needs a number for each combination of its words that occurs; so words that depend on each other belong
+ * together. How many combinations there are is estimated from a sample: at the beginning of states on a way at random,
+ * later of states from the store, whose keys are then made anew. Beginning with each place for itself, the two parts
+ * whose union adds the fewest combinations are united, until there are four.
  */
 #include "explore_impl.h"
 
@@ -12,29 +12,29 @@
 
 enum {
     SAMPLES = 2048,
-    FEW_SAMPLES = 64,  /* where reductions make successors expensive, and states few */
+    FEW_SAMPLES = 64, /* where reductions make successors expensive, and states few */
     MOST_SAMPLES = 16384,
-    WORK = 4 << 20,    /* samples times pairs of items, about, of a second look */
-    APART = 3,         /* steps from one to the next */
-    LONGEST = 768,     /* steps before the way begins again */
+    WORK = 4 << 20, /* samples times pairs of items, about, of a second look */
+    APART = 3,      /* steps from one to the next */
+    LONGEST = 768,  /* steps before the way begins again */
     MOST_ITEMS = 40,
-    SET_SIZE = 32768   /* a power of two, more than MOST_SAMPLES */
+    SET_SIZE = 32768 /* a power of two, more than MOST_SAMPLES */
 };
 
 typedef struct item {
-    uint32_t first;    /* in `next` */
+    uint32_t first; /* in `next` */
     uint32_t last;
     uint32_t words;
-    double number;     /* of combinations, estimated */
-    bool is_united;    /* with another one: gone */
+    double number;  /* of combinations, estimated */
+    bool is_united; /* with another one: gone */
 } item_t;
 
 typedef struct layout {
     ex_run_t *run;
     uint32_t samples;
-    uint32_t room;     /* for samples */
-    uint64_t *value;   /* of item i in sample s: value[i * room + s] */
-    uint32_t *next;    /* word -> the next one of the item */
+    uint32_t room;   /* for samples */
+    uint64_t *value; /* of item i in sample s: value[i * room + s] */
+    uint32_t *next;  /* word -> the next one of the item */
     item_t item[MOST_ITEMS];
     uint32_t items;
     uint64_t set[SET_SIZE];
@@ -104,8 +104,8 @@ static bool walk(layout_t *layout)
     return true;
 }
 
-/* The number of combinations of two items (the same twice: of one): those in the sample, and as many more as those that are in it once
- * and twice suggest (Chao's estimate). */
+/* The number of combinations of two items (the same twice: of one): those in the sample, and as many more as those that
+ * are in it once and twice suggest (Chao's estimate). */
 static double estimate(layout_t *layout, uint32_t a, uint32_t b)
 {
     const uint64_t *first = &layout->value[(size_t)a * layout->room];
@@ -258,7 +258,8 @@ static uint64_t value_bytes(uint32_t samples)
 bool ex_layout(ex_run_t *run)
 {
     const ex_codec_t *codec = run->codec;
-    if ((codec->words <= EX_KEY_WORDS) || !ex_is_repeatable()) { /* else looking at some states beforehand would change something */
+    if ((codec->words <= EX_KEY_WORDS)
+        || !ex_is_repeatable()) { /* else looking at some states beforehand would change something */
         return true;
     }
     const uint64_t values = value_bytes((uint32_t)SAMPLES);
@@ -290,7 +291,7 @@ bool ex_layout(ex_run_t *run)
     return is_fine;
 }
 
-/* --- a second look ---------------------------------------------------------------------------------------------------- */
+/* --- a second look ------------------------------------------------------------------------------------------------ */
 
 /* From keys of one kind to keys of another. */
 typedef struct change {

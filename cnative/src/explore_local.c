@@ -1,17 +1,19 @@
 /* SPDX-License-Identifier: MIT
  * explore_local.c - what transitions do, remembered by the places that they look at.
  *
- * What a transition can do depends on the places that it reads (and on the time) alone, and it changes few places. Markings agree in
- * most places with many others, so the same is worked out again and again: multi-sets decoded, bindings searched, values compared,
- * multi-sets encoded and numbered. Here it is worked out once for each combination of what these places hold, and noted as numbers:
+ * What a transition can do depends on the places that it reads (and on the time) alone, and it changes few places.
+ * Markings agree in most places with many others, so the same is worked out again and again: multi-sets decoded,
+ * bindings searched, values compared, multi-sets encoded and numbered. Here it is worked out once for each combination
+ * of what these places hold, and noted as numbers:
  *
- *     transition, words that it reads  ->  for each successor: how many bindings lead to it, and its words that are different
+ *     transition, words that it reads  ->  for each successor: how many bindings lead to it, and its words that are
+ * different
  *
- * Of a place in which a transition only puts tokens the note says which, not what becomes of the place: so what the place holds does not
- * matter. A second table knows sums: multi-set, what is added -> multi-set.
+ * Of a place in which a transition only puts tokens the note says which, not what becomes of the place: so what the
+ * place holds does not matter. A second table knows sums: multi-set, what is added -> multi-set.
  *
- * Each thread has notes of its own, of bounded size: when there is no room left they are forgotten. A transition whose notes are hardly
- * ever found again is left alone for a while.
+ * Each thread has notes of its own, of bounded size: when there is no room left they are forgotten. A transition whose
+ * notes are hardly ever found again is left alone for a while.
  */
 #define _POSIX_C_SOURCE 200809L
 
@@ -24,14 +26,14 @@
 enum {
     FIRST_ENTRIES = 1 << 12,
     MOST_ENTRIES = 1 << 18,
-    MOST_WORDS = 1 << 22,     /* of notes: 16 MiB */
-    PAGE_WORDS = 1 << 16,     /* counted at a time */
-    MOST_NOTE = 1 << 14,      /* words of one note */
-    MOST_COMPARED = 64,       /* successors of a note with which a further one is compared */
+    MOST_WORDS = 1 << 22, /* of notes: 16 MiB */
+    PAGE_WORDS = 1 << 16, /* counted at a time */
+    MOST_NOTE = 1 << 14,  /* words of one note */
+    MOST_COMPARED = 64,   /* successors of a note with which a further one is compared */
     SUMS = 1 << 15,
-    TRIALS = 1024,            /* after so many it is seen whether notes pay */
-    ALONE = 1 << 16,          /* how often a transition is passed over when they do not */
-    SHARE_OF_MEMORY = 16      /* most of it for all notes */
+    TRIALS = 1024,       /* after so many it is seen whether notes pay */
+    ALONE = 1 << 16,     /* how often a transition is passed over when they do not */
+    SHARE_OF_MEMORY = 16 /* most of it for all notes */
 };
 
 typedef struct sum {
@@ -66,15 +68,15 @@ typedef struct form {
 
 struct ex_local {
     ex_worker_t *worker;
-    form_t *form;        /* by transition */
-    uint64_t *entry;     /* upper half: of the hash; lower half: where the note begins + 1, 0: free */
+    form_t *form;    /* by transition */
+    uint64_t *entry; /* upper half: of the hash; lower half: where the note begins + 1, 0: free */
     uint32_t entries;
     uint32_t used;
-    uint32_t *word;      /* notes: transition, what was read, number of successors; of each: times, what has changed */
+    uint32_t *word; /* notes: transition, what was read, number of successors; of each: times, what has changed */
     uint32_t words;
-    uint32_t counted;    /* of the reservation */
+    uint32_t counted; /* of the reservation */
     uint32_t most;
-    uint64_t *hash;      /* by transition, of what it reads: see ex_local_ahead */
+    uint64_t *hash; /* by transition, of what it reads: see ex_local_ahead */
     sum_t *sum;
     ex_change_t *change; /* of one successor */
     /* The note that is being written, at `words`. */
@@ -83,7 +85,7 @@ struct ex_local {
     bool is_too_long;
 };
 
-/* --- forms ------------------------------------------------------------------------------------------------------------- */
+/* --- forms -------------------------------------------------------------------------------------------------------- */
 
 /* A word of the packed part, or more bits of one that is there. */
 static void add_bits(word_t *word, uint32_t *count, uint32_t cell, uint32_t mask)
@@ -140,7 +142,8 @@ static uint32_t list_reads(const ex_codec_t *codec, const pn_transition_t *trans
     }
     for (uint32_t i = 0U; i < transition->touched_count; i++) {
         if (pn_net.place[transition->touched[i]].bag->is_packed) {
-            add_packed(codec, word, &count, transition->touched[i], false); /* what becomes of counters depends on them */
+            add_packed(codec, word, &count, transition->touched[i],
+                       false); /* what becomes of counters depends on them */
         }
     }
     if (codec->time_word != UINT32_MAX) {
@@ -165,7 +168,8 @@ static uint32_t list_changes(const ex_codec_t *codec, const pn_transition_t *tra
     return count;
 }
 
-/* Those of all transitions, one behind the other in `pool`; NULL: they are only counted, with `room` for those of one. */
+/* Those of all transitions, one behind the other in `pool`; NULL: they are only counted, with `room` for those of one.
+ */
 static uint64_t lay_forms(const ex_codec_t *codec, form_t *form, word_t *pool, word_t *room)
 {
     uint64_t used = 0U;
@@ -205,8 +209,8 @@ bool ex_local_make(ex_worker_t *worker)
     ex_run_t *run = worker->run;
     const bool is_reduced = (run->reduction != NULL) || run->options.is_time_reduced;
     const uint64_t most = run->options.memory / ((uint64_t)SHARE_OF_MEMORY * run->options.threads * sizeof(uint32_t));
-    if (!run->options.has_notes || is_reduced || (pn_net.bag_count == 0U) || run->codec->is_whole || (pn_net.root_count > 0U)
-        || (most < (uint64_t)PAGE_WORDS)) {
+    if (!run->options.has_notes || is_reduced || (pn_net.bag_count == 0U) || run->codec->is_whole
+        || (pn_net.root_count > 0U) || (most < (uint64_t)PAGE_WORDS)) {
         return true;
     }
     ex_local_t *own = ex_alloc(run, sizeof *own);
@@ -222,15 +226,15 @@ bool ex_local_make(ex_worker_t *worker)
     own->sum = ex_alloc(run, (uint64_t)SUMS * sizeof *own->sum);
     own->change = ex_table(run, run->codec->words, sizeof *own->change);
     own->hash = ex_table(run, pn_net.transition_count, sizeof *own->hash);
-    if ((own->form == NULL) || (own->entry == NULL) || (own->word == NULL) || (own->sum == NULL) || (own->change == NULL)
-        || (own->hash == NULL)) {
+    if ((own->form == NULL) || (own->entry == NULL) || (own->word == NULL) || (own->sum == NULL)
+        || (own->change == NULL) || (own->hash == NULL)) {
         return false;
     }
     worker->local = own;
     return ex_wakes_make(worker);
 }
 
-/* --- notes ------------------------------------------------------------------------------------------------------------- */
+/* --- notes -------------------------------------------------------------------------------------------------------- */
 
 static uint64_t mixed(uint64_t hash, uint64_t value)
 {
@@ -323,7 +327,8 @@ static bool reserve(ex_local_t *own)
         forget(own);
     }
     while ((own->words + (uint32_t)MOST_NOTE) > own->counted) {
-        if (((own->counted + (uint32_t)PAGE_WORDS) > own->most) || !ex_count(own->worker->run, (uint64_t)PAGE_WORDS * sizeof *own->word)) {
+        if (((own->counted + (uint32_t)PAGE_WORDS) > own->most)
+            || !ex_count(own->worker->run, (uint64_t)PAGE_WORDS * sizeof *own->word)) {
             if (own->words == 0U) {
                 return false;
             }
@@ -336,21 +341,19 @@ static bool reserve(ex_local_t *own)
     return true;
 }
 
-/* --- writing a note ---------------------------------------------------------------------------------------------------- */
+/* --- writing a note ----------------------------------------------------------------------------------------------- */
 
 static bool write_change(const ex_local_t *own, const word_t *word, const void *next, uint32_t *value)
 {
     ex_worker_t *worker = own->worker;
     switch (word->kind) {
-    case WORD_BITS:
-        *value = ex_packed_word(worker->run->codec, next, word->cell) & word->mask;
-        return true;
-    case WORD_PLACE:
-        return ex_number_place(worker, word->place, word->place, next, value);
+    case WORD_BITS: *value = ex_packed_word(worker->run->codec, next, word->cell) & word->mask; return true;
+    case WORD_PLACE: return ex_number_place(worker, word->place, word->place, next, value);
     case WORD_ADDED:
     default:
         *value = EX_NO_NUMBER;
-        return (pn_bag_total(pn_net.place[word->place].bag, next) == 0U) || ex_number_place(worker, word->place, EX_ADDED + word->place, next, value);
+        return (pn_bag_total(pn_net.place[word->place].bag, next) == 0U)
+               || ex_number_place(worker, word->place, EX_ADDED + word->place, next, value);
     }
 }
 
@@ -384,7 +387,8 @@ static bool on_next(void *user, uint32_t t, const void *binding, const void *nex
     return true;
 }
 
-/* Only what is read is there; where tokens are only put there are none, so that what is there in the end has been put. */
+/* Only what is read is there; where tokens are only put there are none, so that what is there in the end has been put.
+ */
 static bool prepare(ex_local_t *own, const form_t *form)
 {
     ex_worker_t *worker = own->worker;
@@ -481,7 +485,7 @@ static const uint32_t *note_of(ex_local_t *own, uint32_t t)
     return note;
 }
 
-/* --- reading a note ---------------------------------------------------------------------------------------------------- */
+/* --- reading a note ----------------------------------------------------------------------------------------------- */
 
 /* What a place holds when something comes to it. */
 static bool add_up(ex_local_t *own, const word_t *word, uint32_t t, uint32_t added, uint32_t *value)
@@ -504,7 +508,8 @@ static bool add_up(ex_local_t *own, const word_t *word, uint32_t t, uint32_t add
     }
     const size_t mark = pn_arena_mark(&worker->scratch->arena);
     const size_t length = pn_bag_add_bytes(&worker->cx, pn_net.place[word->place].bag, worker->marking, byte, size);
-    const bool is_fine = (length != SIZE_MAX) && ex_number_place(worker, word->place, word->place, worker->marking, value);
+    const bool is_fine =
+        (length != SIZE_MAX) && ex_number_place(worker, word->place, word->place, worker->marking, value);
     ex_clear_place(worker, word->place);
     pn_arena_release(&worker->scratch->arena, mark);
     if (worker->cx.error != PN_OK) {

@@ -19,8 +19,8 @@ typedef enum ex_local_found {
 
 /* Where it is possible: worker->local. False: no memory. */
 bool ex_local_make(ex_worker_t *worker);
-/* The successors of the opened state (ex_open) by a transition at the time of worker->marking. Only that time and the packed places
- * of worker->marking are worth something afterwards. */
+/* The successors of the opened state (ex_open) by a transition at the time of worker->marking. Only that time and the
+ * packed places of worker->marking are worth something afterwards. */
 ex_local_found_t ex_local_successors(ex_worker_t *worker, uint32_t t, ex_times_sink_t sink, void *user);
 
 /* Some transitions that are asked next: what is known of them is on its way then. To be called for all of them. */
@@ -31,7 +31,8 @@ void ex_local_ahead(ex_worker_t *worker, const uint32_t *t, uint32_t count);
 
 /* Where it is possible: worker->wake. False: no memory. */
 bool ex_wakes_make(ex_worker_t *worker);
-/* The earliest time after that of worker->marking at which a token of the opened state becomes available. False: there is none, or an error. */
+/* The earliest time after that of worker->marking at which a token of the opened state becomes available. False: there
+ * is none, or an error. */
 bool ex_next_time(ex_worker_t *worker, pn_time_t *next);
 
 #endif /* EXPLORE_LOCAL_H */

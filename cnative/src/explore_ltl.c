@@ -1,21 +1,23 @@
 /* SPDX-License-Identifier: MIT
  * explore_ltl.c - runs that an automaton accepts: cycles in the product of the graph and the automaton.
  *
- * A run is accepted when it comes infinitely often to an accepting state and is fair: what is assumed of a transition t is
+ * A run is accepted when it comes infinitely often to an accepting state and is fair: what is assumed of a transition t
+ * is
  *
  *     strong   if it is enabled infinitely often, it occurs infinitely often
  *     weak     if it is enabled from some point on, it occurs infinitely often
  *
- * What a run does infinitely often it does in one component of the product. There is an accepted run in a component with an accepting
- * state in which each weak t occurs, or is not enabled somewhere, and each strong t occurs, or is enabled nowhere. Where only the last
- * fails, the states in which t is enabled cannot be visited for ever: without them the component falls into smaller ones, which are looked
- * at in the next round. No transition fails twice in the same place, so there are at most as many rounds as strong transitions, and one.
+ * What a run does infinitely often it does in one component of the product. There is an accepted run in a component
+ * with an accepting state in which each weak t occurs, or is not enabled somewhere, and each strong t occurs, or is
+ * enabled nowhere. Where only the last fails, the states in which t is enabled cannot be visited for ever: without them
+ * the component falls into smaller ones, which are looked at in the next round. No transition fails twice in the same
+ * place, so there are at most as many rounds as strong transitions, and one.
  */
 #include "explore_product.h"
 
 #include <stdlib.h>
 
-/* --- components ------------------------------------------------------------------------------------------------------ */
+/* --- components --------------------------------------------------------------------------------------------------- */
 
 /* What the arcs and nodes of a component have of all that is asked for. Gives whether there is a cycle. */
 static bool look_through(ex_product_t *p, const uint32_t *member, uint64_t count)
@@ -200,7 +202,8 @@ static bool walk_round(ex_product_t *p)
     p->is_found = false;
     (void)memset(p->rank, 0, p->size * sizeof *p->rank);
     for (uint64_t word = 0U; is_fine && (word < ((p->size + 63U) / 64U)); word++) {
-        for (uint64_t state = word * 64U; is_fine && (p->active[word] != 0U) && (state < ((word + 1U) * 64U)); state++) {
+        for (uint64_t state = word * 64U; is_fine && (p->active[word] != 0U) && (state < ((word + 1U) * 64U));
+             state++) {
             if ((EX_BIT(p->active, state) != 0U) && (p->rank[state] == 0U)) {
                 is_fine = walk_from(&w, (uint32_t)state);
             }
@@ -210,7 +213,7 @@ static bool walk_round(ex_product_t *p)
     return is_fine;
 }
 
-/* --- which states there are ------------------------------------------------------------------------------------------ */
+/* --- which states there are --------------------------------------------------------------------------------------- */
 
 #define MOST_STATES 2048U /* of an automaton, of which all ways are looked at */
 
@@ -233,7 +236,8 @@ static void spread(const ex_automaton_t *automaton, uint32_t from, bool *reached
     }
 }
 
-/* The states of the automaton that lie on a cycle through an accepting one: no others come back for ever. NULL: no memory. */
+/* The states of the automaton that lie on a cycle through an accepting one: no others come back for ever. NULL: no
+ * memory. */
 static bool *find_recurring(const ex_automaton_t *automaton)
 {
     const size_t states = automaton->states;
@@ -248,7 +252,8 @@ static bool *find_recurring(const ex_automaton_t *automaton)
     for (uint32_t s = 0U; has_memory && (s < states); s++) {
         recurring[s] = !is_small;
         for (uint32_t k = 0U; is_small && (k < states); k++) {
-            recurring[s] = recurring[s] || (automaton->is_accepting[k] && reached[(s * states) + k] && reached[(k * states) + s]);
+            recurring[s] =
+                recurring[s] || (automaton->is_accepting[k] && reached[(s * states) + k] && reached[(k * states) + s]);
         }
     }
     free(reached);
@@ -275,7 +280,8 @@ static bool find_reached(ex_product_t *p)
     const ex_graph_t *const graph = p->graph;
     uint64_t used = 0U;
     reach(p, p->start, &used);
-    for (uint64_t at = 0U; at < used; at++) { /* breadth first, as the nodes are numbered, so that neighbours come after each other */
+    for (uint64_t at = 0U; at < used;
+         at++) { /* breadth first, as the nodes are numbered, so that neighbours come after each other */
         const uint32_t node = p->stack[at] / p->states;
         const uint32_t state = p->stack[at] % p->states;
         const uint64_t end = graph->row[node + 1U];
@@ -319,7 +325,7 @@ static ex_answer_t find_components(ex_product_t *p)
     return p->is_found ? EX_YES : EX_NO;
 }
 
-/* --- the whole ------------------------------------------------------------------------------------------------------- */
+/* --- the whole ---------------------------------------------------------------------------------------------------- */
 
 ex_answer_t ex_lasso(ex_queries_t *queries, const ex_automaton_t *automaton, uint32_t start, ex_way_t *way)
 {
@@ -339,8 +345,8 @@ ex_answer_t ex_lasso(ex_queries_t *queries, const ex_automaton_t *automaton, uin
     p.occurs = calloc((size_t)automaton->fair_count + 1U, sizeof *p.occurs);
     p.is_enabled = calloc((size_t)automaton->fair_count + 1U, sizeof *p.is_enabled);
     p.is_disabled = calloc((size_t)automaton->fair_count + 1U, sizeof *p.is_disabled);
-    if ((p.active != NULL) && (p.rank != NULL) && (p.stack != NULL) && (p.is_root != NULL) && (p.occurs != NULL) && (p.is_enabled != NULL) &&
-        (p.is_disabled != NULL)) {
+    if ((p.active != NULL) && (p.rank != NULL) && (p.stack != NULL) && (p.is_root != NULL) && (p.occurs != NULL)
+        && (p.is_enabled != NULL) && (p.is_disabled != NULL)) {
         answer = find_components(&p);
     }
     ex_free_table(run, p.stack, p.size, sizeof *p.stack);

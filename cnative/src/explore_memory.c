@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * explore_memory.c - memory from the system in whole blocks, counted against --memory; in files of a folder with --spill.
+ * explore_memory.c - memory from the system in whole blocks, counted against --memory; in files of a folder with
+ * --spill.
  */
 #define _GNU_SOURCE 1 /* MAP_ANONYMOUS, madvise, mkstemp */
 
@@ -53,8 +54,8 @@ void ex_uncount(ex_run_t *run, uint64_t size)
 
 void *ex_reserve(uint64_t size)
 {
-    void *memory = mmap(NULL, (size_t)rounded(size), PROT_READ | PROT_WRITE,
-                        MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    void *memory =
+        mmap(NULL, (size_t)rounded(size), PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
     return (memory == MAP_FAILED) ? NULL : memory;
 }
 
@@ -65,7 +66,8 @@ static void *map_huge(uint64_t size)
     if (memory == NULL) {
         return NULL;
     }
-    const uint64_t skipped = ((uint64_t)HUGE_PAGE - ((uint64_t)(uintptr_t)memory % (uint64_t)HUGE_PAGE)) % (uint64_t)HUGE_PAGE;
+    const uint64_t skipped =
+        ((uint64_t)HUGE_PAGE - ((uint64_t)(uintptr_t)memory % (uint64_t)HUGE_PAGE)) % (uint64_t)HUGE_PAGE;
     if (skipped > 0U) {
         (void)munmap(memory, (size_t)skipped);
     }

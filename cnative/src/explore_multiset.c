@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * explore_multiset.c - numbers for what places hold that are not packed.
  *
- * In a timed place the same values come with ever new stamps. So where the values are long they are a string of their own, and what the
- * place holds is the number of that string and the stamps. Real stamps, of which hardly any is short, are numbers of strings, too: most
- * of them are in many multi-sets.
+ * In a timed place the same values come with ever new stamps. So where the values are long they are a string of their
+ * own, and what the place holds is the number of that string and the stamps. Real stamps, of which hardly any is short,
+ * are numbers of strings, too: most of them are in many multi-sets.
  */
 #include "explore_impl.h"
 
@@ -13,13 +13,14 @@
 #include "pn_bytes_impl.h"
 
 enum {
-    LONG_VALUES = 24,  /* bytes of values from which on they are stored apart */
-    SHORT_STAMP = 4,   /* bytes of a real up to which it stays as it is */
-    LONGEST_STAMP = 9  /* with the byte that says how many follow; so what is not less is none */
+    LONG_VALUES = 24, /* bytes of values from which on they are stored apart */
+    SHORT_STAMP = 4,  /* bytes of a real up to which it stays as it is */
+    LONGEST_STAMP = 9 /* with the byte that says how many follow; so what is not less is none */
 };
 
 #define APART ((uint32_t)1U << 31U) /* with it: the number of the values, instead of their length */
-#define EX_VALUES (EX_ADDED + pn_net.place_count) /* kinds of strings, beside those of multi-sets: the values of a place, */
+#define EX_VALUES \
+    (EX_ADDED + pn_net.place_count) /* kinds of strings, beside those of multi-sets: the values of a place, */
 #define EX_STAMP (EX_VALUES + pn_net.place_count) /* and stamps */
 
 bool ex_buffer_grow(ex_worker_t *worker, size_t size)
@@ -52,7 +53,7 @@ bool ex_intern(ex_worker_t *worker, uint32_t kind, const unsigned char *byte, si
     }
 }
 
-/* --- stamps ------------------------------------------------------------------------------------------------------------ */
+/* --- stamps ------------------------------------------------------------------------------------------------------- */
 
 /* Real stamps in the buffer, from..*length, become shorter: each long one the number of a string. */
 static bool shorten_stamps(ex_worker_t *worker, size_t from, size_t *length)
@@ -70,7 +71,8 @@ static bool shorten_stamps(ex_worker_t *worker, size_t from, size_t *length)
             if (!ex_intern(worker, EX_STAMP, &buffer[at], size, &number)) {
                 return false;
             }
-            end = put_number(buffer, *length, end, (uint64_t)number + (uint64_t)LONGEST_STAMP); /* at most five bytes of six or more */
+            end = put_number(buffer, *length, end,
+                             (uint64_t)number + (uint64_t)LONGEST_STAMP); /* at most five bytes of six or more */
         }
         at += size;
     }
@@ -101,7 +103,7 @@ static size_t restore_stamps(ex_worker_t *worker, size_t end, const unsigned cha
     return end;
 }
 
-/* --- multi-sets -------------------------------------------------------------------------------------------------------- */
+/* --- multi-sets --------------------------------------------------------------------------------------------------- */
 
 /* The number of the multi-set of a timed place that is in the buffer. */
 static bool intern_timed(ex_worker_t *worker, uint32_t place, uint32_t kind, size_t length, uint32_t *number)
@@ -139,7 +141,7 @@ bool ex_number_place(ex_worker_t *worker, uint32_t place, uint32_t kind, const v
         length = pn_bag_encode(pn_net.place[place].bag, marking, scratch->buffer, scratch->buffer_size);
     }
     return pn_net.place[place].bag->is_timed ? intern_timed(worker, place, kind, length, number)
-                                     : ex_intern(worker, kind, scratch->buffer, length, number);
+                                             : ex_intern(worker, kind, scratch->buffer, length, number);
 }
 
 const unsigned char *ex_multiset_bytes(ex_worker_t *worker, uint32_t number, size_t *length)

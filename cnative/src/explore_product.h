@@ -1,37 +1,38 @@
 /* SPDX-License-Identifier: MIT
  * explore_product.h - the product of the graph and an automaton, for explore_ltl.c and explore_lasso.c.
  *
- * State (v, s), number v * states + s, is a run at node v with the automaton in s. It goes on by an arc of the graph and an arc of the
- * automaton that reads v and the transition of the arc. A dead node is repeated for ever, by no transition.
+ * State (v, s), number v * states + s, is a run at node v with the automaton in s. It goes on by an arc of the graph
+ * and an arc of the automaton that reads v and the transition of the arc. A dead node is repeated for ever, by no
+ * transition.
  */
 #ifndef EXPLORE_PRODUCT_H
 #define EXPLORE_PRODUCT_H
 
 #include "explore_query.h"
 
-#define EX_NO_STATE UINT32_MAX
-#define EX_NO_TRANSITION UINT32_MAX /* the label of a step that stays at a dead node */
-#define EX_AT_BEGINNING (UINT32_MAX - 1U) /* a label that no step has */
+#define EX_NO_STATE      UINT32_MAX
+#define EX_NO_TRANSITION UINT32_MAX        /* the label of a step that stays at a dead node */
+#define EX_AT_BEGINNING  (UINT32_MAX - 1U) /* a label that no step has */
 
 typedef struct ex_product {
     ex_queries_t *queries;
     const ex_graph_t *graph;
     const ex_automaton_t *automaton;
-    uint32_t states;     /* of the automaton */
-    uint64_t size;       /* of the product */
+    uint32_t states; /* of the automaton */
+    uint64_t size;   /* of the product */
     uint32_t start;
-    uint64_t *active;    /* states that may still lie on an accepted cycle */
-    uint32_t *rank;      /* see explore_scc.c; of active states, in the end: the component */
+    uint64_t *active; /* states that may still lie on an accepted cycle */
+    uint32_t *rank;   /* see explore_scc.c; of active states, in the end: the component */
     uint32_t *stack;
     uint8_t *is_root;
     uint64_t waiting;
     uint32_t next;
     uint32_t done;
-    bool is_changed;     /* in this round states have been taken out */
-    bool is_found;       /* in this round a component was good */
+    bool is_changed; /* in this round states have been taken out */
+    bool is_found;   /* in this round a component was good */
     uint64_t steps;
-    bool *occurs;        /* by fair transition, of one component */
-    bool *is_enabled;    /* somewhere */
+    bool *occurs;     /* by fair transition, of one component */
+    bool *is_enabled; /* somewhere */
     bool *is_disabled;
 } ex_product_t;
 
@@ -39,7 +40,7 @@ typedef struct ex_product {
 typedef struct ex_cursor {
     uint32_t state;
     uint32_t edge;
-    uint32_t arc;        /* within the node */
+    uint32_t arc; /* within the node */
 } ex_cursor_t;
 
 static inline ex_cursor_t ex_first_of(const ex_product_t *p, uint32_t state)
@@ -100,8 +101,8 @@ static inline void ex_take_out(ex_product_t *p, uint64_t state)
 
 /* --- explore_lasso.c --- */
 
-/* When the active states are those of the good components: adds a run from the start to the way, as short as is found without long
- * search. */
+/* When the active states are those of the good components: adds a run from the start to the way, as short as is found
+ * without long search. */
 bool ex_show_lasso(ex_product_t *p, ex_way_t *way);
 
 #endif /* EXPLORE_PRODUCT_H */

@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * explore_properties.c - home markings and liveness, from the components of the graph.
  *
- * A component is terminal when no arc leaves it. A marking is home exactly if it lies in the only terminal component; a transition is
- * live exactly if it has an arc in every terminal component.
+ * A component is terminal when no arc leaves it. A marking is home exactly if it lies in the only terminal component; a
+ * transition is live exactly if it has an arc in every terminal component.
  */
 #include "explore_graph.h"
 
@@ -37,7 +37,8 @@ static void find_home(ex_graph_t *graph, const bool *is_terminal, uint32_t termi
     }
 }
 
-/* The nodes, those of each component next to each other: component c has member[start[c]] .. member[start[c + 1] - 1]. */
+/* The nodes, those of each component next to each other: component c has member[start[c]] .. member[start[c + 1] - 1].
+ */
 static void sort_by_component(const ex_graph_t *graph, uint32_t *start, uint32_t *member)
 {
     for (uint32_t node = 0U; node < graph->nodes; node++) {
@@ -68,9 +69,10 @@ static void find_live_in_one(ex_graph_t *graph, const bool *is_terminal)
     }
 }
 
-/* For each transition the number of terminal components in which it has an arc: `last` is the last one that was counted. */
-static void find_live_in_many(ex_graph_t *graph, const bool *is_terminal, uint32_t terminal_count, const uint32_t *member,
-                              uint32_t *last, uint32_t *seen)
+/* For each transition the number of terminal components in which it has an arc: `last` is the last one that was
+ * counted. */
+static void find_live_in_many(ex_graph_t *graph, const bool *is_terminal, uint32_t terminal_count,
+                              const uint32_t *member, uint32_t *last, uint32_t *seen)
 {
     for (uint32_t i = 0U; i < graph->nodes; i++) {
         const uint32_t node = member[i];

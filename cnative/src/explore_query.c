@@ -12,7 +12,7 @@
 
 #define BLOCK 512U /* nodes; a multiple of the bits of a word, so that no two threads write the same one */
 
-/* --- one state after the other --------------------------------------------------------------------------------------- */
+/* --- one state after the other ------------------------------------------------------------------------------------ */
 
 typedef struct round {
     ex_queries_t *queries;
@@ -34,7 +34,8 @@ static void visit_blocks(ex_worker_t *worker, void *user)
         const uint64_t end = ((first + BLOCK) < graph->nodes) ? (first + BLOCK) : graph->nodes;
         for (uint64_t node = first; node < end; node++) {
             ex_key_t key;
-            if (!ex_store_fetch(&worker->run->store, graph->slot[node], &key) || !round->visit(worker, round->user, (uint32_t)node, &key)) {
+            if (!ex_store_fetch(&worker->run->store, graph->slot[node], &key)
+                || !round->visit(worker, round->user, (uint32_t)node, &key)) {
                 atomic_store(&round->is_failed, true);
                 break;
             }
@@ -111,7 +112,7 @@ static bool ask_leaves(ex_worker_t *worker, void *user, uint32_t node, const ex_
     return true;
 }
 
-/* --- sets ------------------------------------------------------------------------------------------------------------ */
+/* --- sets --------------------------------------------------------------------------------------------------------- */
 
 static void mark_event(ex_queries_t *queries, const ex_event_t *event)
 {
@@ -141,9 +142,7 @@ static void mark_needed(ex_queries_t *queries)
             continue;
         }
         switch (question->kind) {
-        case EX_ASK_LASSO:
-            mark_automaton(queries, question->automaton);
-            break;
+        case EX_ASK_LASSO: mark_automaton(queries, question->automaton); break;
         case EX_ASK_FIRINGS:
         case EX_ASK_TIME:
             mark_event(queries, &question->first);
@@ -158,14 +157,11 @@ static void mark_needed(ex_queries_t *queries)
         case EX_ASK_FINITE:
         case EX_ASK_RESTLESS:
         case EX_ASK_BOUNDED:
-        case EX_ASK_CONFLUENT:
-            break; /* they look at arcs alone */
+        case EX_ASK_CONFLUENT: break; /* they look at arcs alone */
         case EX_ASK_INVARIANT:
         case EX_ASK_BOUND:
         case EX_ASK_INITIALLY:
-        default:
-            queries->item[question->a].is_needed = true;
-            break;
+        default: queries->item[question->a].is_needed = true; break;
         }
     }
     for (uint32_t i = queries->items; i > 0U; i--) {
@@ -285,7 +281,7 @@ static void find_sets(ex_queries_t *queries)
     }
 }
 
-/* --- answers --------------------------------------------------------------------------------------------------------- */
+/* --- answers ------------------------------------------------------------------------------------------------------ */
 
 void ex_doubt(const ex_run_t *run, ex_question_t *question)
 {
@@ -311,7 +307,8 @@ bool ex_is_kept(const ex_queries_t *queries, const ex_question_t *question)
 static uint32_t first_outside(const ex_graph_t *graph, const uint64_t *set)
 {
     for (uint64_t i = 0U; i < ex_set_words(graph); i++) {
-        for (uint64_t node = i * 64U; (set[i] != UINT64_MAX) && (node < ((i + 1U) * 64U)) && (node < graph->nodes); node++) {
+        for (uint64_t node = i * 64U; (set[i] != UINT64_MAX) && (node < ((i + 1U) * 64U)) && (node < graph->nodes);
+             node++) {
             if (EX_BIT(set, node) == 0U) {
                 return (uint32_t)node;
             }
@@ -343,7 +340,8 @@ static void answer_invariant(ex_queries_t *queries, ex_question_t *question)
         ex_key_t key;
         question->value_kind = EX_INTEGER;
         question->value = (double)item->most;
-        if ((node != EX_NO_NODE) && ex_store_fetch(&queries->run->store, graph->slot[node], &key) && ex_load(worker, &key)) {
+        if ((node != EX_NO_NODE) && ex_store_fetch(&queries->run->store, graph->slot[node], &key)
+            && ex_load(worker, &key)) {
             question->value = (double)pn_bag_total(pn_net.place[item->number].bag, worker->marking);
         }
     }
@@ -418,8 +416,8 @@ static void answer(ex_queries_t *queries, ex_question_t *question)
         break;
     case EX_ASK_FIRINGS:
     case EX_ASK_TIME:
-        if ((first->is_transition || is_ready(queries, first->number, question)) &&
-            (second->is_transition || is_ready(queries, second->number, question))) {
+        if ((first->is_transition || is_ready(queries, first->number, question))
+            && (second->is_transition || is_ready(queries, second->number, question))) {
             ex_response(queries, question);
         }
         break;
@@ -456,7 +454,8 @@ static void write_trace(ex_run_t *run, ex_question_t *question, uint32_t number)
 {
     char path[EX_PATH_SIZE];
     ex_way_t *const way = &question->way;
-    const bool is_shown = (question->answer != EX_UNKNOWN) || ((question->kind == EX_ASK_ENDS) && (question->node != EX_NO_NODE));
+    const bool is_shown =
+        (question->answer != EX_UNKNOWN) || ((question->kind == EX_ASK_ENDS) && (question->node != EX_NO_NODE));
     if ((way->node != NULL) && !way->is_failed && (question->answer != EX_UNKNOWN)) {
         question->node = ex_way_end(way);
     }

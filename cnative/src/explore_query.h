@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT
  * explore_query.h - questions about the state space: sets of nodes (*items*), and what is asked of them.
  *
- * A file of questions has one item or question on a line (explore_query_read.c); items are numbered from 0 and come after those of which
- * they are made. Items that look at one state only are *local*: a question about them may be answered before everything is explored
- * (explore_query_early.c). All others are worked out over the whole graph, in time linear in it: CTL by going backwards (explore_ctl.c),
- * runs that an automaton accepts by the components of the product of graph and automaton (explore_ltl.c), the longest waits by going
- * through the states in which one waits (explore_response.c). What proves an answer is a way through the graph (explore_way.c).
+ * A file of questions has one item or question on a line (explore_query_read.c); items are numbered from 0 and come
+ * after those of which they are made. Items that look at one state only are *local*: a question about them may be
+ * answered before everything is explored (explore_query_early.c). All others are worked out over the whole graph, in
+ * time linear in it: CTL by going backwards (explore_ctl.c), runs that an automaton accepts by the components of the
+ * product of graph and automaton (explore_ltl.c), the longest waits by going through the states in which one waits
+ * (explore_response.c). What proves an answer is a way through the graph (explore_way.c).
  */
 #ifndef EXPLORE_QUERY_H
 #define EXPLORE_QUERY_H
@@ -30,7 +31,7 @@ typedef enum ex_item_kind {
     EX_ITEM_AG,
     EX_ITEM_EU,
     EX_ITEM_AU,
-    EX_ITEM_EXA      /* an arc of transition `number` leads to a node of `a` */
+    EX_ITEM_EXA /* an arc of transition `number` leads to a node of `a` */
 } ex_item_kind_t;
 
 #define EX_RAISED_SIZE 256U
@@ -71,7 +72,7 @@ typedef struct ex_edge {
     uint32_t to;
     uint32_t literals;
     ex_literal_t *literal;
-    uint64_t *allowed;  /* a bit for each transition, and one more for no arc at all at a dead node; NULL: all */
+    uint64_t *allowed; /* a bit for each transition, and one more for no arc at all at a dead node; NULL: all */
 } ex_edge_t;
 
 /* States of runs, which read the node where the run is and the arc that it takes next. */
@@ -80,10 +81,10 @@ typedef struct ex_automaton {
     uint32_t initial;
     bool *is_accepting;
     uint32_t edges;
-    ex_edge_t *edge;    /* in the order of the states from which they go */
-    uint32_t *first;    /* of each state, and the end */
+    ex_edge_t *edge; /* in the order of the states from which they go */
+    uint32_t *first; /* of each state, and the end */
     uint32_t fair_count;
-    uint32_t *fair;     /* transitions for which fairness is assumed */
+    uint32_t *fair; /* transitions for which fairness is assumed */
     bool *is_strong;
     uint32_t *fair_item; /* where they are enabled */
 } ex_automaton_t;
@@ -94,47 +95,39 @@ typedef struct ex_way {
     uint16_t *label;
     uint64_t steps;
     uint64_t room;
-    bool is_failed;     /* no memory */
-    int64_t loop;       /* steps before the cycle with which it ends; -1: there is none */
+    bool is_failed; /* no memory */
+    int64_t loop;   /* steps before the cycle with which it ends; -1: there is none */
 } ex_way_t;
 
 typedef enum ex_question_kind {
-    EX_ASK_INVARIANT,   /* of item `a`; bounds of places are invariants too */
+    EX_ASK_INVARIANT, /* of item `a`; bounds of places are invariants too */
     EX_ASK_BOUND,
     EX_ASK_INITIALLY,
     EX_ASK_LASSO,
     EX_ASK_FIRINGS,
     EX_ASK_TIME,
-    EX_ASK_FINITE,      /* of a supervisor: explore_control.c */
-    EX_ASK_RESTLESS,    /* of scripts: the same of their steps that take no time */
+    EX_ASK_FINITE,   /* of a supervisor: explore_control.c */
+    EX_ASK_RESTLESS, /* of scripts: the same of their steps that take no time */
     EX_ASK_BOUNDED,
-    EX_ASK_CONFLUENT,   /* `a`: 0 the run of the documented order, 1 another one */
+    EX_ASK_CONFLUENT, /* `a`: 0 the run of the documented order, 1 another one */
     EX_ASK_BLOCKING,
-    EX_ASK_ENDS         /* of a cell as it runs: explore_running.c */
+    EX_ASK_ENDS /* of a cell as it runs: explore_running.c */
 } ex_question_kind_t;
 
-typedef enum ex_answer {
-    EX_UNKNOWN,
-    EX_YES,
-    EX_NO
-} ex_answer_t;
+typedef enum ex_answer { EX_UNKNOWN, EX_YES, EX_NO } ex_answer_t;
 
 /* A number of an answer. */
-typedef enum ex_value_kind {
-    EX_NO_VALUE,
-    EX_INTEGER,
-    EX_REAL
-} ex_value_kind_t;
+typedef enum ex_value_kind { EX_NO_VALUE, EX_INTEGER, EX_REAL } ex_value_kind_t;
 
 typedef struct ex_question {
     ex_question_kind_t kind;
     uint32_t a;
     ex_event_t first;
     ex_event_t second;
-    bool has_item;      /* `a` is one */
-    bool has_most;      /* a limit of the wait */
+    bool has_item; /* `a` is one */
+    bool has_most; /* a limit of the wait */
     double most;
-    uint64_t low;       /* of a bound */
+    uint64_t low; /* of a bound */
     uint64_t high;
     ex_automaton_t *automaton;
     _Atomic bool is_decided; /* during the exploration: a state has been seen that decides it */
@@ -142,10 +135,10 @@ typedef struct ex_question {
     char message[EX_RAISED_SIZE];
     /* The answer. */
     ex_answer_t answer;
-    const char *why;    /* NULL: no reason is needed */
-    uint32_t node;      /* EX_NO_NODE: none */
-    ex_way_t way;       /* node NULL: none */
-    int64_t steps;      /* of the trace; -1: there is none */
+    const char *why; /* NULL: no reason is needed */
+    uint32_t node;   /* EX_NO_NODE: none */
+    ex_way_t way;    /* node NULL: none */
+    int64_t steps;   /* of the trace; -1: there is none */
     ex_value_kind_t value_kind;
     double value;
 } ex_question_t;
@@ -156,13 +149,13 @@ typedef struct ex_queries {
     ex_item_t *item;
     uint32_t questions;
     ex_question_t *question;
-    bool needs_enabled;     /* what is enabled in a state may decide a question */
-    _Atomic uint32_t open;  /* questions that no state has decided; those that no single state can decide count */
+    bool needs_enabled;          /* what is enabled in a state may decide a question */
+    _Atomic uint32_t open;       /* questions that no state has decided; those that no single state can decide count */
     _Atomic uint32_t open_early; /* without those */
     pthread_mutex_t lock;
-    uint32_t *owner;        /* by transition; 0: the supervisor's. NULL: not told */
+    uint32_t *owner;            /* by transition; 0: the supervisor's. NULL: not told */
     struct ex_control *control; /* of explore_control.c */
-    uint64_t *in_row;       /* arcs backwards: those to node i are in_source[in_row[i]] .. */
+    uint64_t *in_row;           /* arcs backwards: those to node i are in_source[in_row[i]] .. */
     uint32_t *in_source;
 } ex_queries_t;
 
@@ -190,7 +183,8 @@ bool ex_queries_read(ex_run_t *run);
 bool ex_early_make(ex_worker_t *worker);
 /* Without the whole graph: what has been decided, with the way there. */
 void ex_early_answer(ex_run_t *run);
-/* After the graph has left a question open (there was no time, or no memory): what was seen of the states while they were explored. */
+/* After the graph has left a question open (there was no time, or no memory): what was seen of the states while they
+ * were explored. */
 void ex_early_settle(const ex_run_t *run, ex_question_t *question);
 
 /* --- explore_query.c --- */
@@ -200,8 +194,8 @@ void ex_queries_answer(ex_run_t *run);
 /* Calls `visit` for each node, by all threads; false: it said so, or the run stops. */
 typedef bool (*ex_visit_t)(ex_worker_t *worker, void *user, uint32_t node, const ex_key_t *key);
 bool ex_each_node(ex_queries_t *queries, ex_visit_t visit, void *user);
-/* Whether predicate `item` (EX_ITEM_PRED) or EX_ITEM_WITHIN holds in worker->marking; false with *raised set: an exception, for which
- * the worker's context has the name until the next call. */
+/* Whether predicate `item` (EX_ITEM_PRED) or EX_ITEM_WITHIN holds in worker->marking; false with *raised set: an
+ * exception, for which the worker's context has the name until the next call. */
 bool ex_leaf_holds(ex_worker_t *worker, const ex_item_t *item, uint64_t *tokens, bool *raised);
 /* The question cannot be answered: the reason is that of the run, or there is no memory. */
 void ex_doubt(const ex_run_t *run, ex_question_t *question);
@@ -249,8 +243,8 @@ static inline uint32_t ex_way_end(const ex_way_t *way)
 }
 /* Adds a shortest way from the initial node. `way` ends there. */
 void ex_way_from_start(const ex_graph_t *graph, uint32_t node, ex_way_t *way);
-/* Adds a shortest way from its end to a node of `goal` (the end itself may be one) on which all nodes before that are in `through`
- * (NULL: any). False: there is none, or no memory. */
+/* Adds a shortest way from its end to a node of `goal` (the end itself may be one) on which all nodes before that are
+ * in `through` (NULL: any). False: there is none, or no memory. */
 bool ex_way_search(ex_queries_t *queries, const uint64_t *through, const uint64_t *goal, ex_way_t *way);
 /* Adds an arc from its end to `node`, of a transition (UINT32_MAX: any). */
 bool ex_way_arc(const ex_graph_t *graph, uint32_t label, uint32_t node, ex_way_t *way);

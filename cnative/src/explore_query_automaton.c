@@ -57,8 +57,9 @@ static bool read_edge(ex_reader_t *r)
     automaton->edge = edges;
     ex_edge_t *const edge = &edges[automaton->edges];
     edge->literal = calloc(r->words, sizeof *edge->literal);
-    bool is_fine = (edge->literal != NULL) && ex_read_number(r, r->word[1], automaton->states, "there is no such state", &edge->from) &&
-                   ex_read_number(r, r->word[2], automaton->states, "there is no such state", &edge->to);
+    bool is_fine = (edge->literal != NULL)
+                   && ex_read_number(r, r->word[1], automaton->states, "there is no such state", &edge->from)
+                   && ex_read_number(r, r->word[2], automaton->states, "there is no such state", &edge->to);
     for (uint32_t i = 3U; is_fine && (i < r->words); i++) {
         is_fine = read_literal(r, r->word[i], edge);
     }
@@ -138,8 +139,8 @@ bool ex_begin_automaton(ex_reader_t *r)
     r->automaton = automaton;
     r->edge_room = 0U;
     r->queries->question[r->queries->questions - 1U].automaton = automaton;
-    if (!ex_read_number(r, r->word[1], MOST_STATES, "not a number", &automaton->states) ||
-        !ex_read_number(r, r->word[2], automaton->states, "there is no such state", &automaton->initial)) {
+    if (!ex_read_number(r, r->word[1], MOST_STATES, "not a number", &automaton->states)
+        || !ex_read_number(r, r->word[2], automaton->states, "there is no such state", &automaton->initial)) {
         return false;
     }
     automaton->is_accepting = calloc(automaton->states, sizeof *automaton->is_accepting);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * explore_query_early.c - questions that a single state can decide, while the net is explored.
  *
- * An invariant whose item looks at one state only is decided by a state that is not in it, or in which a predicate raises an exception.
- * When all questions are decided so, the exploration ends. Threads may find several such states; which one is reported is found out by
- * going through the known states in breadth-first order.
+ * An invariant whose item looks at one state only is decided by a state that is not in it, or in which a predicate
+ * raises an exception. When all questions are decided so, the exploration ends. Threads may find several such states;
+ * which one is reported is found out by going through the known states in breadth-first order.
  */
 #include "explore_query.h"
 
@@ -14,11 +14,11 @@
 
 /* What one thread knows of the state that it has expanded last. */
 struct ex_early {
-    bool *holds;        /* by item; of those that open questions may need */
+    bool *holds; /* by item; of those that open questions may need */
     bool *raised;
     uint64_t *tokens;
-    uint64_t *most;     /* tokens in any state */
-    uint64_t *fired;    /* by transition: worker->fired before the state was expanded */
+    uint64_t *most;  /* tokens in any state */
+    uint64_t *fired; /* by transition: worker->fired before the state was expanded */
     char (*message)[EX_RAISED_SIZE];
 };
 
@@ -60,7 +60,8 @@ bool ex_early_make(ex_worker_t *worker)
             queries->needs_enabled = queries->needs_enabled || (item->is_early && (item->kind == EX_ITEM_ENABLED));
         }
     }
-    return (early->holds != NULL) && (early->raised != NULL) && (early->tokens != NULL) && (early->most != NULL) && (early->message != NULL) && (early->fired != NULL);
+    return (early->holds != NULL) && (early->raised != NULL) && (early->tokens != NULL) && (early->most != NULL)
+           && (early->message != NULL) && (early->fired != NULL);
 }
 
 /* Works out the items in the state of worker->marking. */
@@ -75,18 +76,10 @@ static void look(ex_worker_t *worker, bool is_initial, ex_found_t found)
         }
         early->raised[i] = false;
         switch (item->kind) {
-        case EX_ITEM_TRUE:
-            early->holds[i] = true;
-            break;
-        case EX_ITEM_DEAD:
-            early->holds[i] = found == EX_DEAD;
-            break;
-        case EX_ITEM_INITIAL:
-            early->holds[i] = is_initial;
-            break;
-        case EX_ITEM_ENABLED:
-            early->holds[i] = worker->fired[item->number] != early->fired[item->number];
-            break;
+        case EX_ITEM_TRUE: early->holds[i] = true; break;
+        case EX_ITEM_DEAD: early->holds[i] = found == EX_DEAD; break;
+        case EX_ITEM_INITIAL: early->holds[i] = is_initial; break;
+        case EX_ITEM_ENABLED: early->holds[i] = worker->fired[item->number] != early->fired[item->number]; break;
         case EX_ITEM_PRED:
         case EX_ITEM_WITHIN:
             early->holds[i] = ex_leaf_holds(worker, item, &early->tokens[i], &early->raised[i]);
@@ -95,15 +88,9 @@ static void look(ex_worker_t *worker, bool is_initial, ex_found_t found)
                 (void)snprintf(early->message[i], EX_RAISED_SIZE, "%s", worker->cx.error_name);
             }
             break;
-        case EX_ITEM_NOT:
-            early->holds[i] = !early->holds[item->a];
-            break;
-        case EX_ITEM_AND:
-            early->holds[i] = early->holds[item->a] && early->holds[item->b];
-            break;
-        case EX_ITEM_OR:
-            early->holds[i] = early->holds[item->a] || early->holds[item->b];
-            break;
+        case EX_ITEM_NOT: early->holds[i] = !early->holds[item->a]; break;
+        case EX_ITEM_AND: early->holds[i] = early->holds[item->a] && early->holds[item->b]; break;
+        case EX_ITEM_OR: early->holds[i] = early->holds[item->a] || early->holds[item->b]; break;
         case EX_ITEM_EX:
         case EX_ITEM_AX:
         case EX_ITEM_EF:
@@ -113,8 +100,7 @@ static void look(ex_worker_t *worker, bool is_initial, ex_found_t found)
         case EX_ITEM_EU:
         case EX_ITEM_AU:
         case EX_ITEM_EXA:
-        default: /* not local */
-            break;
+        default: /* not local */ break;
         }
         if (item->kind >= EX_ITEM_NOT) {
             const uint32_t from = early->raised[item->a] ? item->a : item->b;
@@ -168,7 +154,7 @@ void ex_early_see(ex_worker_t *worker, const ex_key_t *key, ex_found_t found)
     }
 }
 
-/* --- what was decided -------------------------------------------------------------------------------------------------- */
+/* --- what was decided --------------------------------------------------------------------------------------------- */
 
 typedef struct finding {
     ex_run_t *run;
@@ -299,8 +285,10 @@ void ex_early_answer(ex_run_t *run)
     finding_t finding = { .run = run };
     ex_graph_t graph;
     forget(&finding);
-    if ((finding.open > 0U) && is_exact && (why != (int)EX_INTERRUPTED) && (why < (int)EX_CAPACITY) && ex_again_make(run, &graph)) {
-        (void)memcpy(run->worker[0].early->fired, run->worker[0].fired, pn_net.transition_count * sizeof *run->worker[0].fired);
+    if ((finding.open > 0U) && is_exact && (why != (int)EX_INTERRUPTED) && (why < (int)EX_CAPACITY)
+        && ex_again_make(run, &graph)) {
+        (void)memcpy(run->worker[0].early->fired, run->worker[0].fired,
+                     pn_net.transition_count * sizeof *run->worker[0].fired);
         (void)ex_again(run, &graph, find, &finding);
         write_traces(run, &graph);
     }

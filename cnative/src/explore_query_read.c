@@ -14,22 +14,19 @@
  *     arc 0 1 +0 -f3                  at a node of item 0, if transition 3 is not the next
  *     strong 2                        fairness that is assumed; weak
  *     end
- *     owner 0 2 5 7                   transitions of the supervisor; other numbers are robots and devices (explore_control.c)
- *     priorities own                  priorities count among the transitions of one owner only
- *     first 1 5 7                     of these (group 1) only the first binding element in the documented order occurs
- *     choose 2 8 9                    of these (group 2) only the first enabled transition occurs, with all its bindings
- *     kin 8 9                         count as one transition in their group
- *     meek 8                          though enabled it holds no other one back
- *     probe 9                         never occurs; while it is enabled it holds others of its owner back
- *     silent 10 11                    steps that are no occurrences of the net
+ *     owner 0 2 5 7                   transitions of the supervisor; other numbers are robots and devices
+ * (explore_control.c) priorities own                  priorities count among the transitions of one owner only first 1
+ * 5 7                     of these (group 1) only the first binding element in the documented order occurs choose 2 8 9
+ * of these (group 2) only the first enabled transition occurs, with all its bindings kin 8 9 count as one transition in
+ * their group meek 8                          though enabled it holds no other one back probe 9 never occurs; while it
+ * is enabled it holds others of its owner back silent 10 11                    steps that are no occurrences of the net
  *     instant 8 9                     steps of scripts that neither wait nor take time
  *     clock 11                        occurs a unit of time later, where something is waited for
- *     ? ends 4                        item 4 is `ef` of the ends, which are reached whoever is slow (explore_running.c); `-`: as below
- *     ? finite-response
- *     ? restless 100                  no run of `instant` steps goes on for ever, nor is longer than that
- *     ? bounded-response 100
- *     ? confluence 0                  0: with a run of the documented order, 1: with one that comes to another end
- *     ? non-blocking 3                nodes of item 3 are final; `-`: none is
+ *     ? ends 4                        item 4 is `ef` of the ends, which are reached whoever is slow
+ * (explore_running.c); `-`: as below ? finite-response ? restless 100                  no run of `instant` steps goes
+ * on for ever, nor is longer than that ? bounded-response 100 ? confluence 0                  0: with a run of the
+ * documented order, 1: with one that comes to another end ? non-blocking 3                nodes of item 3 are final;
+ * `-`: none is
  */
 #define _POSIX_C_SOURCE 200809L /* strtok_r */
 
@@ -46,7 +43,7 @@ bool ex_complain(const ex_reader_t *r, const char *what, const char *word)
     return false;
 }
 
-/* --- words ----------------------------------------------------------------------------------------------------------- */
+/* --- words -------------------------------------------------------------------------------------------------------- */
 
 /* The next line that says something, in words; false at the end. */
 bool ex_next_line(ex_reader_t *r)
@@ -109,7 +106,8 @@ static bool read_limit(const ex_reader_t *r, const char *word, uint64_t none, ui
         return true;
     }
     *limit = strtoull(word, &rest, 10);
-    return ((word[0] >= '0') && (word[0] <= '9') && (*rest == '\0') && (errno == 0)) || ex_complain(r, "not a number", word);
+    return ((word[0] >= '0') && (word[0] <= '9') && (*rest == '\0') && (errno == 0))
+           || ex_complain(r, "not a number", word);
 }
 
 /* The numbers of transitions, `3,4`. */
@@ -123,7 +121,8 @@ static bool read_transitions(const ex_reader_t *r, const char *word, ex_event_t 
     while (at != NULL) {
         char *rest = NULL;
         const unsigned long long number = strtoull(at, &rest, 10);
-        if ((at[0] < '0') || (at[0] > '9') || (number >= pn_net.transition_count) || ((*rest != ',') && (*rest != '\0'))) {
+        if ((at[0] < '0') || (at[0] > '9') || (number >= pn_net.transition_count)
+            || ((*rest != ',') && (*rest != '\0'))) {
             return ex_complain(r, "there is no such transition", at);
         }
         EX_SET_BIT(event->of, number);
@@ -157,7 +156,7 @@ void *ex_with_room(void *table, uint64_t used, uint64_t *room, size_t size)
     return larger;
 }
 
-/* --- items ----------------------------------------------------------------------------------------------------------- */
+/* --- items -------------------------------------------------------------------------------------------------------- */
 
 typedef struct form {
     const char *word;
@@ -166,10 +165,12 @@ typedef struct form {
 } form_t;
 
 static const form_t s_forms[] = {
-    { "true", EX_ITEM_TRUE, 0U }, { "dead", EX_ITEM_DEAD, 0U }, { "initial", EX_ITEM_INITIAL, 0U }, { "pred", EX_ITEM_PRED, 0U },
-    { "enabled", EX_ITEM_ENABLED, 0U }, { "not", EX_ITEM_NOT, 1U }, { "and", EX_ITEM_AND, 2U }, { "or", EX_ITEM_OR, 2U },
-    { "ex", EX_ITEM_EX, 1U }, { "ax", EX_ITEM_AX, 1U }, { "ef", EX_ITEM_EF, 1U }, { "af", EX_ITEM_AF, 1U }, { "eg", EX_ITEM_EG, 1U },
-    { "ag", EX_ITEM_AG, 1U }, { "eu", EX_ITEM_EU, 2U }, { "au", EX_ITEM_AU, 2U }, { "exa", EX_ITEM_EXA, 1U },
+    { "true", EX_ITEM_TRUE, 0U }, { "dead", EX_ITEM_DEAD, 0U },       { "initial", EX_ITEM_INITIAL, 0U },
+    { "pred", EX_ITEM_PRED, 0U }, { "enabled", EX_ITEM_ENABLED, 0U }, { "not", EX_ITEM_NOT, 1U },
+    { "and", EX_ITEM_AND, 2U },   { "or", EX_ITEM_OR, 2U },           { "ex", EX_ITEM_EX, 1U },
+    { "ax", EX_ITEM_AX, 1U },     { "ef", EX_ITEM_EF, 1U },           { "af", EX_ITEM_AF, 1U },
+    { "eg", EX_ITEM_EG, 1U },     { "ag", EX_ITEM_AG, 1U },           { "eu", EX_ITEM_EU, 2U },
+    { "au", EX_ITEM_AU, 2U },     { "exa", EX_ITEM_EXA, 1U },
 };
 
 bool ex_add_item(ex_reader_t *r, const ex_item_t *item)
@@ -197,8 +198,9 @@ static void classify(const ex_queries_t *queries, ex_item_t *item, bool has_oper
     const bool is_formed = is_and || is_or || is_not;
     item->is_local = (item->kind < EX_ITEM_EX) && (!has_operands || (a->is_local && b->is_local));
     item->is_nameless = (item->kind <= EX_ITEM_DEAD) || (is_formed && a->is_nameless && b->is_nameless);
-    item->is_about_dead = (item->kind == EX_ITEM_TRUE) || (is_not && (a->kind == EX_ITEM_DEAD)) ||
-                          (is_and && a->is_about_dead && b->is_about_dead) || (is_or && (a->is_about_dead || b->is_about_dead));
+    item->is_about_dead = (item->kind == EX_ITEM_TRUE) || (is_not && (a->kind == EX_ITEM_DEAD))
+                          || (is_and && a->is_about_dead && b->is_about_dead)
+                          || (is_or && (a->is_about_dead || b->is_about_dead));
 }
 
 /* The nodes in which a place has so many tokens. */
@@ -208,8 +210,9 @@ static bool read_within(ex_reader_t *r)
     if (r->words != 4U) {
         return ex_complain(r, "wrong number of operands", r->word[0]);
     }
-    return ex_read_number(r, r->word[1], pn_net.place_count, "there is no such place", &item.number) &&
-           read_limit(r, r->word[2], 0U, &item.low) && read_limit(r, r->word[3], UINT64_MAX, &item.high) && ex_add_item(r, &item);
+    return ex_read_number(r, r->word[1], pn_net.place_count, "there is no such place", &item.number)
+           && read_limit(r, r->word[2], 0U, &item.low) && read_limit(r, r->word[3], UINT64_MAX, &item.high)
+           && ex_add_item(r, &item);
 }
 
 static bool read_state_item(ex_reader_t *r)
@@ -224,7 +227,8 @@ static bool read_state_item(ex_reader_t *r)
     if (form == NULL) {
         return ex_complain(r, "no such item", r->word[0]);
     }
-    const bool has_number = (form->kind == EX_ITEM_PRED) || (form->kind == EX_ITEM_ENABLED) || (form->kind == EX_ITEM_EXA);
+    const bool has_number =
+        (form->kind == EX_ITEM_PRED) || (form->kind == EX_ITEM_ENABLED) || (form->kind == EX_ITEM_EXA);
     const uint32_t wanted = 1U + form->operands + (has_number ? 1U : 0U);
     if (r->words != wanted) {
         return ex_complain(r, "wrong number of operands", r->word[0]);
@@ -236,8 +240,8 @@ static bool read_state_item(ex_reader_t *r)
     } else if (has_number) {
         is_fine = ex_read_transition(r, r->word[1], &item.number);
     }
-    is_fine = is_fine && ((form->operands == 0U) || ex_read_item(r, r->word[wanted - form->operands], &item.a)) &&
-              ((form->operands < 2U) || ex_read_item(r, r->word[wanted - 1U], &item.b));
+    is_fine = is_fine && ((form->operands == 0U) || ex_read_item(r, r->word[wanted - form->operands], &item.a))
+              && ((form->operands < 2U) || ex_read_item(r, r->word[wanted - 1U], &item.b));
     if (!is_fine) {
         return false;
     }
@@ -246,13 +250,13 @@ static bool read_state_item(ex_reader_t *r)
     return ex_add_item(r, &item);
 }
 
-/* --- questions ------------------------------------------------------------------------------------------------------- */
+/* --- questions ---------------------------------------------------------------------------------------------------- */
 
 static bool read_bound(const ex_reader_t *r, ex_question_t *question)
 {
     /* `a` is the place until all lines are read: its item comes at the end of the file. */
-    return ex_read_number(r, r->word[2], pn_net.place_count, "there is no such place", &question->a) &&
-           read_limit(r, r->word[3], 0U, &question->low) && read_limit(r, r->word[4], UINT64_MAX, &question->high);
+    return ex_read_number(r, r->word[2], pn_net.place_count, "there is no such place", &question->a)
+           && read_limit(r, r->word[3], 0U, &question->low) && read_limit(r, r->word[4], UINT64_MAX, &question->high);
 }
 
 static bool read_response(const ex_reader_t *r, ex_question_t *question)
@@ -299,11 +303,18 @@ typedef struct asking {
 } asking_t;
 
 static const asking_t s_askings[] = {
-    { "invariant", EX_ASK_INVARIANT, 3U }, { "initially", EX_ASK_INITIALLY, 3U }, { "bound", EX_ASK_BOUND, 5U },
-    { "finite-response", EX_ASK_FINITE, 2U }, { "restless", EX_ASK_RESTLESS, 3U },
-    { "bounded-response", EX_ASK_BOUNDED, 3U }, { "confluence", EX_ASK_CONFLUENT, 3U },
-    { "non-blocking", EX_ASK_BLOCKING, 3U }, { "ends", EX_ASK_ENDS, 3U },
-    { "lasso", EX_ASK_LASSO, 2U }, { "within-firings", EX_ASK_FIRINGS, 5U }, { "within-time", EX_ASK_TIME, 5U },
+    { "invariant", EX_ASK_INVARIANT, 3U },
+    { "initially", EX_ASK_INITIALLY, 3U },
+    { "bound", EX_ASK_BOUND, 5U },
+    { "finite-response", EX_ASK_FINITE, 2U },
+    { "restless", EX_ASK_RESTLESS, 3U },
+    { "bounded-response", EX_ASK_BOUNDED, 3U },
+    { "confluence", EX_ASK_CONFLUENT, 3U },
+    { "non-blocking", EX_ASK_BLOCKING, 3U },
+    { "ends", EX_ASK_ENDS, 3U },
+    { "lasso", EX_ASK_LASSO, 2U },
+    { "within-firings", EX_ASK_FIRINGS, 5U },
+    { "within-time", EX_ASK_TIME, 5U },
 };
 
 static bool read_question(ex_reader_t *r)
@@ -316,7 +327,8 @@ static bool read_question(ex_reader_t *r)
     if ((asking == NULL) || (r->words != asking->words)) {
         return ex_complain(r, "no such question, or the wrong number of operands", (r->words > 1U) ? r->word[1] : "?");
     }
-    ex_question_t *const questions = ex_with_room(queries->question, queries->questions, &r->question_room, sizeof *questions);
+    ex_question_t *const questions =
+        ex_with_room(queries->question, queries->questions, &r->question_room, sizeof *questions);
     if (questions == NULL) {
         return ex_complain(r, "not enough memory", r->path);
     }
@@ -328,27 +340,22 @@ static bool read_question(ex_reader_t *r)
     queries->questions += 1U;
     switch (asking->kind) {
     case EX_ASK_INVARIANT:
-    case EX_ASK_INITIALLY:
-        return ex_read_item(r, r->word[2], &question->a);
-    case EX_ASK_BOUND:
-        return read_bound(r, question);
-    case EX_ASK_LASSO:
-        return ex_begin_automaton(r);
+    case EX_ASK_INITIALLY: return ex_read_item(r, r->word[2], &question->a);
+    case EX_ASK_BOUND: return read_bound(r, question);
+    case EX_ASK_LASSO: return ex_begin_automaton(r);
     case EX_ASK_FINITE:
     case EX_ASK_RESTLESS:
     case EX_ASK_BOUNDED:
     case EX_ASK_CONFLUENT:
     case EX_ASK_BLOCKING:
-    case EX_ASK_ENDS:
-        return read_control(r, question);
+    case EX_ASK_ENDS: return read_control(r, question);
     case EX_ASK_FIRINGS:
     case EX_ASK_TIME:
-    default:
-        return read_response(r, question);
+    default: return read_response(r, question);
     }
 }
 
-/* --- the file -------------------------------------------------------------------------------------------------------- */
+/* --- the file ----------------------------------------------------------------------------------------------------- */
 
 /* What only the questions need gets items with numbers that no line mentions. */
 static bool add_hidden_items(ex_reader_t *r)
@@ -358,7 +365,10 @@ static bool add_hidden_items(ex_reader_t *r)
     for (uint32_t i = 0U; is_fine && (i < queries->questions); i++) {
         ex_question_t *const question = &queries->question[i];
         if (question->kind == EX_ASK_BOUND) {
-            const ex_item_t item = { .kind = EX_ITEM_WITHIN, .number = question->a, .low = question->low, .high = question->high,
+            const ex_item_t item = { .kind = EX_ITEM_WITHIN,
+                                     .number = question->a,
+                                     .low = question->low,
+                                     .high = question->high,
                                      .is_local = true };
             question->a = queries->items;
             is_fine = ex_add_item(r, &item);
@@ -410,7 +420,8 @@ static bool read_owner(ex_reader_t *r)
     if (queries->owner == NULL) {
         return ex_complain(r, "not enough memory", r->path);
     }
-    bool is_fine = (r->words > 1U) && ex_read_number(r, r->word[1], (uint64_t)EX_MOST_OWNERS, "there are not so many owners", &owner);
+    bool is_fine = (r->words > 1U)
+                   && ex_read_number(r, r->word[1], (uint64_t)EX_MOST_OWNERS, "there are not so many owners", &owner);
     for (uint32_t i = 2U; is_fine && (i < r->words); i++) {
         is_fine = ex_read_transition(r, r->word[i], &transition);
         if (is_fine) {
@@ -443,8 +454,9 @@ static ex_programs_t *programs_of(const ex_reader_t *r)
         run->programs = programs;
     }
     const ex_programs_t *const made = run->programs;
-    const bool is_made = (made->group != NULL) && (made->kin != NULL) && (made->is_meek != NULL) && (made->is_probe != NULL) && (made->is_silent != NULL)
-                         && (made->is_instant != NULL) && (made->is_clock != NULL);
+    const bool is_made = (made->group != NULL) && (made->kin != NULL) && (made->is_meek != NULL)
+                         && (made->is_probe != NULL) && (made->is_silent != NULL) && (made->is_instant != NULL)
+                         && (made->is_clock != NULL);
     return is_made ? run->programs : NULL;
 }
 
@@ -457,7 +469,8 @@ static bool read_group(ex_reader_t *r, ex_choice_t choice)
     if (programs == NULL) {
         return ex_complain(r, "not enough memory", r->path);
     }
-    bool is_fine = (r->words > 1U) && ex_read_number(r, r->word[1], (uint64_t)EX_MOST_GROUPS, "there are not so many groups", &group);
+    bool is_fine = (r->words > 1U)
+                   && ex_read_number(r, r->word[1], (uint64_t)EX_MOST_GROUPS, "there are not so many groups", &group);
     is_fine = is_fine && ((group > 0U) || ex_complain(r, "groups are counted from 1", r->word[1]));
     for (uint32_t i = 2U; is_fine && (i < r->words); i++) {
         is_fine = ex_read_transition(r, r->word[i], &transition);
@@ -503,8 +516,8 @@ static bool read_kind(ex_reader_t *r)
 
 static bool is_kind(const char *word)
 {
-    return (strcmp(word, "probe") == 0) || (strcmp(word, "kin") == 0) || (strcmp(word, "meek") == 0) || (strcmp(word, "silent") == 0)
-           || (strcmp(word, "instant") == 0) || (strcmp(word, "clock") == 0);
+    return (strcmp(word, "probe") == 0) || (strcmp(word, "kin") == 0) || (strcmp(word, "meek") == 0)
+           || (strcmp(word, "silent") == 0) || (strcmp(word, "instant") == 0) || (strcmp(word, "clock") == 0);
 }
 
 static bool read_lines(ex_reader_t *r)
@@ -524,7 +537,8 @@ static bool read_lines(ex_reader_t *r)
         } else if (is_kind(r->word[0])) {
             is_fine = read_kind(r);
         } else if ((strcmp(r->word[0], "priorities") == 0) && (r->words == 2U) && (strcmp(r->word[1], "own") == 0)) {
-            is_fine = (r->queries->owner != NULL) || ex_complain(r, "the owners of transitions are not told", r->word[0]);
+            is_fine =
+                (r->queries->owner != NULL) || ex_complain(r, "the owners of transitions are not told", r->word[0]);
             r->queries->run->owner_of = r->queries->owner;
         } else {
             is_fine = read_state_item(r);

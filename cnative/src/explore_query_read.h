@@ -11,7 +11,7 @@
 typedef struct ex_reader {
     ex_queries_t *queries;
     const char *path;
-    char *rest;         /* of the text */
+    char *rest; /* of the text */
     uint64_t line;
     uint64_t item_room;
     uint64_t question_room;
@@ -19,7 +19,7 @@ typedef struct ex_reader {
     uint32_t words;
     ex_automaton_t *automaton; /* being read */
     uint64_t edge_room;
-    bool is_wrong;      /* a line has too many words */
+    bool is_wrong; /* a line has too many words */
 } ex_reader_t;
 
 /* --- explore_query_read.c --- */
@@ -42,7 +42,8 @@ bool ex_add_item(ex_reader_t *r, const ex_item_t *item);
 bool ex_begin_automaton(ex_reader_t *r);
 /* A line of it; r->automaton is NULL after the last one. */
 bool ex_read_automaton_line(ex_reader_t *r);
-/* Items for the transitions for which fairness is assumed, which must not get numbers that lines count on: when all lines are read. */
+/* Items for the transitions for which fairness is assumed, which must not get numbers that lines count on: when all
+ * lines are read. */
 bool ex_add_fair_items(ex_reader_t *r, const ex_automaton_t *automaton);
 
 #endif /* EXPLORE_QUERY_READ_H */

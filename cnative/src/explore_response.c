@@ -1,15 +1,16 @@
 /* SPDX-License-Identifier: MIT
  * explore_response.c - whether each event F is followed by an event G, and how long it may take.
  *
- * A run is marking 0, firing 1, marking 1, ... A node *waits* when a run can be there after an F without a G since. A wait begins with 0 at
- * a node that is an F (or is made by one) and no G; it goes on along arcs that neither are nor lead to a G. If the nodes that wait have a
- * cycle, or a dead node, G may never come. Else each wait ends, and the longest ones are found by going through these nodes in an order in
- * which each comes after those before it. What is computed of a node is since when it waits at most,
+ * A run is marking 0, firing 1, marking 1, ... A node *waits* when a run can be there after an F without a G since. A
+ * wait begins with 0 at a node that is an F (or is made by one) and no G; it goes on along arcs that neither are nor
+ * lead to a G. If the nodes that wait have a cycle, or a dead node, G may never come. Else each wait ends, and the
+ * longest ones are found by going through these nodes in an order in which each comes after those before it. What is
+ * computed of a node is since when it waits at most,
  *
  *     since(w) = min of now(w), if a wait begins there, and of since(v) - shift(v) for the arcs from v
  *
- * with now = 0 and shift = 1 for firings; for time with the node's time and shift = 0, or, if the time is reduced, with now = 0 and the time
- * that goes by at the node before something occurs.
+ * with now = 0 and shift = 1 for firings; for time with the node's time and shift = 0, or, if the time is reduced, with
+ * now = 0 and the time that goes by at the node before something occurs.
  */
 #include "explore_query.h"
 
@@ -17,20 +18,20 @@ typedef struct wait {
     ex_queries_t *queries;
     const ex_graph_t *graph;
     const ex_question_t *question;
-    uint64_t *waits;     /* set of nodes */
-    uint64_t *begins;    /* set of nodes */
-    uint32_t *maker;     /* where a wait begins with an arc: a node with such an arc; else EX_NO_NODE */
-    uint32_t *before;    /* where it goes on: the node before; EX_NO_NODE: it begins here */
-    uint32_t *degree;    /* arcs on which it comes, as far as they have not been looked at */
+    uint64_t *waits;  /* set of nodes */
+    uint64_t *begins; /* set of nodes */
+    uint32_t *maker;  /* where a wait begins with an arc: a node with such an arc; else EX_NO_NODE */
+    uint32_t *before; /* where it goes on: the node before; EX_NO_NODE: it begins here */
+    uint32_t *degree; /* arcs on which it comes, as far as they have not been looked at */
     uint32_t *stack;
     double *since;
-    double *now;         /* NULL: 0 */
-    double *shift;       /* NULL: `step` */
+    double *now;   /* NULL: 0 */
+    double *shift; /* NULL: `step` */
     double step;
     bool has_event;
     bool is_endless;
     double longest;
-    uint32_t last;       /* the longest wait ends with this arc of this node */
+    uint32_t last; /* the longest wait ends with this arc of this node */
     uint64_t last_arc;
 } wait_t;
 
@@ -64,7 +65,7 @@ static double shift_of(const wait_t *w, uint32_t node, uint16_t label)
     return (w->shift != NULL) ? w->shift[node] : (is_silent ? 0.0 : w->step);
 }
 
-/* --- which nodes wait ------------------------------------------------------------------------------------------------ */
+/* --- which nodes wait --------------------------------------------------------------------------------------------- */
 
 static void begin_at(wait_t *w, uint32_t node, uint32_t maker)
 {
@@ -124,7 +125,7 @@ static bool spread(wait_t *w)
     return true;
 }
 
-/* --- how long -------------------------------------------------------------------------------------------------------- */
+/* --- how long ----------------------------------------------------------------------------------------------------- */
 
 /* All waits at a node are known: they go on, or end. */
 static void pass_on(wait_t *w, uint32_t node, uint64_t *used)
@@ -178,7 +179,7 @@ static void measure(wait_t *w)
     w->is_endless = done < count; /* the rest lies on cycles, or behind them */
 }
 
-/* --- time ------------------------------------------------------------------------------------------------------------ */
+/* --- time --------------------------------------------------------------------------------------------------------- */
 
 static bool note_time(ex_worker_t *worker, void *user, uint32_t node, const ex_key_t *key)
 {
@@ -219,7 +220,7 @@ static bool find_times(wait_t *w)
     return (table != NULL) && ex_each_node(w->queries, is_reduced ? note_elapsed : note_time, w);
 }
 
-/* --- what shows it --------------------------------------------------------------------------------------------------- */
+/* --- what shows it ------------------------------------------------------------------------------------------------ */
 
 /* A run on which G never comes: the automaton guesses when the wait begins that never ends. */
 static void show_endless(const wait_t *w, ex_question_t *question)
@@ -237,19 +238,25 @@ static void show_endless(const wait_t *w, ex_question_t *question)
         other[i] &= second->is_transition ? ~second->of[i] : UINT64_MAX;
         begin[i] |= first->is_transition ? first->of[i] : 0U;
     }
-    ex_literal_t no_end[2] = { { .item = second->number, .is_positive = false }, { .item = first->number, .is_positive = true } };
+    ex_literal_t no_end[2] = { { .item = second->number, .is_positive = false },
+                               { .item = first->number, .is_positive = true } };
     const uint32_t ends = second->is_transition ? 0U : 1U;
     ex_literal_t is_first[2] = { no_end[1], no_end[0] };
     ex_edge_t edge[] = {
         { .from = 0U, .to = 0U },
         /* by an arc: what the node was before counts no more; by a node: it must be no G, nor the arc */
-        { .from = 0U, .to = 1U, .literals = first->is_transition ? 0U : (1U + ends), .literal = is_first,
+        { .from = 0U,
+          .to = 1U,
+          .literals = first->is_transition ? 0U : (1U + ends),
+          .literal = is_first,
           .allowed = first->is_transition ? begin : other },
         { .from = 1U, .to = 1U, .literals = ends, .literal = no_end, .allowed = other },
     };
     bool is_accepting[] = { false, true };
     uint32_t row[] = { 0U, 2U, 3U };
-    const ex_automaton_t automaton = { .states = 2U, .is_accepting = is_accepting, .edges = 3U, .edge = edge, .first = row };
+    const ex_automaton_t automaton = {
+        .states = 2U, .is_accepting = is_accepting, .edges = 3U, .edge = edge, .first = row
+    };
     if (ex_way_begin(&question->way, 0U)) {
         (void)ex_lasso(w->queries, &automaton, 0U, &question->way);
     }
@@ -328,7 +335,7 @@ static void show_longest(const wait_t *w, ex_question_t *question)
     way->is_failed = way->is_failed || !is_fine;
 }
 
-/* --- the answer ------------------------------------------------------------------------------------------------------ */
+/* --- the answer --------------------------------------------------------------------------------------------------- */
 
 static void answer(wait_t *w, ex_question_t *question)
 {
@@ -359,8 +366,8 @@ static bool open_tables(wait_t *w)
     w->degree = ex_table(run, nodes, sizeof *w->degree);
     w->stack = ex_table(run, nodes, sizeof *w->stack);
     w->since = ex_table(run, nodes, sizeof *w->since);
-    return (w->waits != NULL) && (w->begins != NULL) && (w->maker != NULL) && (w->before != NULL) && (w->degree != NULL) &&
-           (w->stack != NULL) && (w->since != NULL);
+    return (w->waits != NULL) && (w->begins != NULL) && (w->maker != NULL) && (w->before != NULL) && (w->degree != NULL)
+           && (w->stack != NULL) && (w->since != NULL);
 }
 
 static void close_tables(const wait_t *w)
@@ -380,7 +387,9 @@ static void close_tables(const wait_t *w)
 
 void ex_response(ex_queries_t *queries, ex_question_t *question)
 {
-    wait_t w = { .queries = queries, .graph = queries->run->graph, .question = question, .last = EX_NO_NODE, .step = 1.0 };
+    wait_t w = {
+        .queries = queries, .graph = queries->run->graph, .question = question, .last = EX_NO_NODE, .step = 1.0
+    };
     bool is_fine = open_tables(&w);
     if (is_fine) {
         find_beginnings(&w);

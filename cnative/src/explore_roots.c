@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * explore_roots.c - references that the net changes, as a part of the state.
  *
- * They are variables of C, and what they refer to lies here in an arena of its own. A state is loaded, and restored after each
- * occurrence, by decoding the same bytes into the same empty arena: so everything gets the address that it had, and what a search for
- * bindings has read from references before stays good.
+ * They are variables of C, and what they refer to lies here in an arena of its own. A state is loaded, and restored
+ * after each occurrence, by decoding the same bytes into the same empty arena: so everything gets the address that it
+ * had, and what a search for bindings has read from references before stays good.
  */
 #include "explore_impl.h"
 
@@ -43,8 +43,8 @@ bool ex_roots_load(ex_worker_t *worker, uint32_t number)
     pn_arena_t *const arena = worker->cx.arena;
     pn_arena_reset(&worker->scratch->roots);
     worker->cx.arena = &worker->scratch->roots;
-    const bool is_fine = pn_roots_decode(&worker->cx, pn_net.root, pn_net.root_count, &bytes->byte[bytes->of[number].offset],
-                                         bytes->of[number].length);
+    const bool is_fine = pn_roots_decode(&worker->cx, pn_net.root, pn_net.root_count,
+                                         &bytes->byte[bytes->of[number].offset], bytes->of[number].length);
     worker->cx.arena = arena;
     return is_fine;
 }

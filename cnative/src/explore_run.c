@@ -62,7 +62,7 @@ void ex_fail(ex_worker_t *worker, int64_t transition)
     ex_stop(run, (is_capacity || is_memory) ? EX_CAPACITY : EX_ERROR);
 }
 
-/* --- pauses --------------------------------------------------------------------------------------------------------- */
+/* --- pauses ------------------------------------------------------------------------------------------------------- */
 
 /* With the gate locked: one part of what is done together; false: all have been begun. */
 static bool do_part(ex_run_t *run)
@@ -163,7 +163,7 @@ bool ex_pause(ex_worker_t *worker)
     return !ex_is_stopping(run);
 }
 
-/* --- threads -------------------------------------------------------------------------------------------------------- */
+/* --- threads ------------------------------------------------------------------------------------------------------ */
 
 /* As much as pn_stack_init counts on at most, and a little more. Addresses alone cost nothing. */
 #define STACK_SIZE ((size_t)100U << 20U)

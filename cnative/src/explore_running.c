@@ -1,15 +1,18 @@
 /* SPDX-License-Identifier: MIT
- * explore_running.c - whether a cell comes to its end, in the graph of the cell as it runs: each node is a state of all its programs.
+ * explore_running.c - whether a cell comes to its end, in the graph of the cell as it runs: each node is a state of all
+ * its programs.
  *
- * Three answers. *No*: there is a node from which no end can be reached. *Yes*: wherever the cell is, it comes to an end, whoever is slow.
- * *Unknown*, for the reason "speeds": from each node an end can be reached, but somebody's being slow or quick can keep the cell from it.
+ * Three answers. *No*: there is a node from which no end can be reached. *Yes*: wherever the cell is, it comes to an
+ * end, whoever is slow. *Unknown*, for the reason "speeds": from each node an end can be reached, but somebody's being
+ * slow or quick can keep the cell from it.
  *
- * Who goes next is not decided by the programs, but by how long they take: it is an adversary that decides it, with one obligation: nobody
- * is left waiting for ever who could go on. What a step comes to, of several arcs of one transition, is decided by the world (what a
- * sensor says): each of the outcomes comes to pass now and then. So the cell can be kept from its end for ever exactly in a set of nodes
+ * Who goes next is not decided by the programs, but by how long they take: it is an adversary that decides it, with one
+ * obligation: nobody is left waiting for ever who could go on. What a step comes to, of several arcs of one transition,
+ * is decided by the world (what a sensor says): each of the outcomes comes to pass now and then. So the cell can be
+ * kept from its end for ever exactly in a set of nodes
  *
- *   - in which the adversary can stay: of each node some steps are chosen, with all their outcomes in the set, and by these each node of
- *     the set can be reached from each other one (an *end component*);
+ *   - in which the adversary can stay: of each node some steps are chosen, with all their outcomes in the set, and by
+ * these each node of the set can be reached from each other one (an *end component*);
  *   - in which each owner takes one of these steps somewhere, or has no step at all somewhere.
  *
  * The largest end components are found by taking away steps that leave their component until none does.
@@ -27,12 +30,12 @@ typedef struct owners {
 typedef struct running {
     ex_queries_t *queries;
     const ex_graph_t *graph;
-    const uint64_t *goal;  /* a set of nodes */
-    uint64_t *is_left;     /* nodes that may be in an end component */
-    uint64_t *is_out;      /* arcs that are no step of one */
-    uint32_t *component;   /* by node that is left */
+    const uint64_t *goal; /* a set of nodes */
+    uint64_t *is_left;    /* nodes that may be in an end component */
+    uint64_t *is_out;     /* arcs that are no step of one */
+    uint32_t *component;  /* by node that is left */
     uint32_t components;
-    uint32_t *number;      /* of the walk; 0: not seen */
+    uint32_t *number; /* of the walk; 0: not seen */
     uint32_t *low;
     uint32_t *stack;
     uint32_t *way;
@@ -123,7 +126,8 @@ static bool leaves(const running_t *r, uint32_t node, uint16_t label)
 {
     for (uint64_t arc = r->graph->row[node]; arc < r->graph->row[node + 1U]; arc++) {
         const uint32_t target = r->graph->target[arc];
-        if ((r->graph->label[arc] == label) && ((EX_BIT(r->is_left, target) == 0U) || (r->component[target] != r->component[node]))) {
+        if ((r->graph->label[arc] == label)
+            && ((EX_BIT(r->is_left, target) == 0U) || (r->component[target] != r->component[node]))) {
             return true;
         }
     }
@@ -228,8 +232,8 @@ static bool open_tables(running_t *r)
     r->stack = ex_table(run, nodes, sizeof *r->stack);
     r->way = ex_table(run, nodes, sizeof *r->way);
     r->at = ex_table(run, nodes, sizeof *r->at);
-    return (r->is_left != NULL) && (r->is_out != NULL) && (r->component != NULL) && (r->number != NULL) && (r->low != NULL)
-           && (r->stack != NULL) && (r->way != NULL) && (r->at != NULL);
+    return (r->is_left != NULL) && (r->is_out != NULL) && (r->component != NULL) && (r->number != NULL)
+           && (r->low != NULL) && (r->stack != NULL) && (r->way != NULL) && (r->at != NULL);
 }
 
 static void close_tables(const running_t *r)
@@ -279,7 +283,9 @@ bool ex_running(ex_queries_t *queries, ex_question_t *question)
     if (!question->has_item) {
         return true;
     }
-    running_t r = { .queries = queries, .graph = queries->run->graph, .goal = queries->item[queries->item[question->a].a].set };
+    running_t r = { .queries = queries,
+                    .graph = queries->run->graph,
+                    .goal = queries->item[queries->item[question->a].a].set };
     const uint32_t trap = open_tables(&r) ? find_trap(&r) : (EX_NO_NODE - 1U);
     close_tables(&r);
     if (trap == (EX_NO_NODE - 1U)) {

@@ -1,37 +1,39 @@
 /* SPDX-License-Identifier: MIT
  * explore_scc.c - strongly connected components, and cycles through certain nodes.
  *
- * Most components are found by sweeps, which go through the arcs in the order in which they lie in memory and remember one bit for each
- * node. All nodes can be reached from node 0, so those that reach it, the *core*, are one component: whoever has an arc into the core
- * belongs to it. And a node all of whose targets are in components that are complete is one for itself. The order of the nodes is
- * breadth first: sweeps go up and down in turn, since some ways lead to larger and some to smaller numbers.
+ * Most components are found by sweeps, which go through the arcs in the order in which they lie in memory and remember
+ * one bit for each node. All nodes can be reached from node 0, so those that reach it, the *core*, are one component:
+ * whoever has an arc into the core belongs to it. And a node all of whose targets are in components that are complete
+ * is one for itself. The order of the nodes is breadth first: sweeps go up and down in turn, since some ways lead to
+ * larger and some to smaller numbers.
  *
- * What sweeps leave over is for Tarjan's algorithm in Pearce's form (one number for each node), without recursion: rank[v] is 0 before v
- * is seen, then the smallest rank that v reaches on the stack; of a node whose component is complete it is above all others. Nodes of
- * the core have the smallest rank: they count as if they had been seen first and still were on the stack.
+ * What sweeps leave over is for Tarjan's algorithm in Pearce's form (one number for each node), without recursion:
+ * rank[v] is 0 before v is seen, then the smallest rank that v reaches on the stack; of a node whose component is
+ * complete it is above all others. Nodes of the core have the smallest rank: they count as if they had been seen first
+ * and still were on the stack.
  */
 #include "explore_graph.h"
 
-#define CORE_RANK 1U
+#define CORE_RANK     1U
 #define COMPLETE_RANK UINT32_MAX
-#define MOST_FETCHED 32U /* targets of a node that are asked for before they are needed */
+#define MOST_FETCHED  32U /* targets of a node that are asked for before they are needed */
 
 typedef struct walk {
     ex_run_t *run;
     const ex_graph_t *graph;
     const ex_part_t *part;
     uint32_t *rank;
-    uint32_t *stack;     /* of nodes whose component is not complete; from the other end, the way from the root */
-    uint64_t *at;        /* the way: the next arc to look at */
-    uint64_t *is_root;   /* bit set */
-    uint64_t waiting;    /* on the stack */
-    uint64_t depth;      /* of the way */
+    uint32_t *stack;         /* of nodes whose component is not complete; from the other end, the way from the root */
+    uint64_t *at;            /* the way: the next arc to look at */
+    uint64_t *is_root;       /* bit set */
+    uint64_t waiting;        /* on the stack */
+    uint64_t depth;          /* of the way */
     const uint64_t *through; /* bit set of nodes; NULL: components are sought, else a cycle through one of these */
-    uint32_t *passed;    /* the ranks with which those of them that are on the way were entered, and before them 0 */
+    uint32_t *passed; /* the ranks with which those of them that are on the way were entered, and before them 0 */
     uint64_t passes;
     bool is_found;
-    uint32_t next;       /* rank */
-    uint32_t done;       /* counts down: rank of the next complete component */
+    uint32_t next; /* rank */
+    uint32_t done; /* counts down: rank of the next complete component */
     uint64_t steps;
 } walk_t;
 
@@ -43,7 +45,9 @@ static uint64_t root_bytes(uint64_t nodes)
 static bool walk_open(walk_t *w, ex_run_t *run, const ex_graph_t *graph, const ex_part_t *part, const uint64_t *through)
 {
     const uint64_t n = graph->nodes;
-    *w = (walk_t){ .run = run, .graph = graph, .part = part, .through = through, .next = CORE_RANK + 1U, .done = COMPLETE_RANK - 1U };
+    *w = (walk_t){
+        .run = run, .graph = graph, .part = part, .through = through, .next = CORE_RANK + 1U, .done = COMPLETE_RANK - 1U
+    };
     w->rank = ex_alloc(run, n * sizeof *w->rank);
     w->stack = ex_alloc(run, n * sizeof *w->stack);
     w->at = ex_alloc(run, n * sizeof *w->at);
@@ -198,19 +202,19 @@ static bool walk_all(walk_t *w, component_sink_t sink, void *user)
     return true;
 }
 
-/* --- components by sweeps -------------------------------------------------------------------------------------------- */
+/* --- components by sweeps ----------------------------------------------------------------------------------------- */
 
 #define BLOCK_WORDS (EX_SWEEP_BLOCK / 64U)
 
 typedef struct sweep {
     ex_graph_t *graph;
-    uint64_t *core;          /* bit set of nodes */
-    uint64_t *done;          /* bit set of nodes that are a complete component each */
+    uint64_t *core; /* bit set of nodes */
+    uint64_t *done; /* bit set of nodes that are a complete component each */
     bool is_upward;
-    _Atomic uint32_t next;   /* block */
-    _Atomic uint32_t count;  /* complete components */
-    _Atomic uint64_t found;  /* nodes, in this sweep */
-    _Atomic bool has_loop;   /* an arc from a complete component to itself */
+    _Atomic uint32_t next;  /* block */
+    _Atomic uint32_t count; /* complete components */
+    _Atomic uint64_t found; /* nodes, in this sweep */
+    _Atomic bool has_loop;  /* an arc from a complete component to itself */
 } sweep_t;
 
 static inline uint64_t load_word(const uint64_t *word)
@@ -226,7 +230,8 @@ static inline bool has_bit(const uint64_t *set, uint32_t i)
 /* Words of the sets have one writer: who has the block. */
 static inline void set_bit(uint64_t *set, uint32_t i)
 {
-    __atomic_store_n(&set[i >> 6U], __atomic_load_n(&set[i >> 6U], __ATOMIC_RELAXED) | ((uint64_t)1U << (i & 63U)), __ATOMIC_RELEASE);
+    __atomic_store_n(&set[i >> 6U], __atomic_load_n(&set[i >> 6U], __ATOMIC_RELAXED) | ((uint64_t)1U << (i & 63U)),
+                     __ATOMIC_RELEASE);
 }
 
 /* Whether something has been found out about the node. */
@@ -267,7 +272,8 @@ static uint64_t sweep_block(sweep_t *sweep, uint32_t block)
             open &= ((uint64_t)1U << (sweep->graph->nodes & 63U)) - 1U;
         }
         while (open != 0U) {
-            const uint32_t bit = sweep->is_upward ? (uint32_t)__builtin_ctzll(open) : (63U - (uint32_t)__builtin_clzll(open));
+            const uint32_t bit =
+                sweep->is_upward ? (uint32_t)__builtin_ctzll(open) : (63U - (uint32_t)__builtin_clzll(open));
             open &= ~((uint64_t)1U << bit);
             found += look_at_node(sweep, (w * 64U) + bit) ? 1U : 0U;
         }
@@ -315,7 +321,7 @@ static uint32_t sweep_all(ex_run_t *run, sweep_t *sweep)
     return (uint32_t)left;
 }
 
-/* --- components ---------------------------------------------------------------------------------------------------- */
+/* --- components --------------------------------------------------------------------------------------------------- */
 
 static bool number_component(void *user, const uint32_t *member, uint64_t count, bool is_cyclic)
 {
@@ -406,7 +412,7 @@ bool ex_components(ex_run_t *run, ex_graph_t *graph)
     return is_fine;
 }
 
-/* --- cycles -------------------------------------------------------------------------------------------------------- */
+/* --- cycles ------------------------------------------------------------------------------------------------------- */
 
 static bool pass_over(void *user, const uint32_t *member, uint64_t count, bool is_cyclic)
 {

@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * explore_search.c - through all states, breadth first or depth first.
  *
- * Keys of states that are still to be expanded lie in chunks. Breadth first, threads take chunks of this level and fill chunks of the
- * next one; depth first, each has a stack of chunks and gives the lowest one away when others have nothing to do. Successors are put
- * into the store in batches: while the cache line of one is on its way from memory, others are made. Those that this thread has met
- * a short while ago are not even looked up: neighbours have many successors in common.
+ * Keys of states that are still to be expanded lie in chunks. Breadth first, threads take chunks of this level and fill
+ * chunks of the next one; depth first, each has a stack of chunks and gives the lowest one away when others have
+ * nothing to do. Successors are put into the store in batches: while the cache line of one is on its way from memory,
+ * others are made. Those that this thread has met a short while ago are not even looked up: neighbours have many
+ * successors in common.
  */
 #define _POSIX_C_SOURCE 200809L
 
@@ -21,7 +22,7 @@ enum {
     REPORTED = 1 << 12 /* states after which a thread tells how far it is */
 };
 
-/* --- batches --------------------------------------------------------------------------------------------------------- */
+/* --- batches ------------------------------------------------------------------------------------------------------ */
 
 /* Whether a state has been seen; for approximations: it seems so. */
 static bool is_known(ex_run_t *run, const ex_pending_t *pending)
@@ -59,7 +60,8 @@ bool ex_batch_begin(ex_worker_t *worker)
         (void)ex_pause(worker);
     }
     /* What other threads are inserting now is not counted yet, but there is room above the limit. */
-    return run->options.is_bitstate || ((atomic_load_explicit(&store->used, memory_order_relaxed) + (2U * (uint64_t)EX_BATCH)) <= store->limit)
+    return run->options.is_bitstate
+           || ((atomic_load_explicit(&store->used, memory_order_relaxed) + (2U * (uint64_t)EX_BATCH)) <= store->limit)
            || ex_pause(worker);
 }
 
@@ -155,7 +157,7 @@ static bool on_arc(void *user, uint32_t transition, uint32_t times, const ex_key
     return ex_take(worker, &key, ex_hash(&key));
 }
 
-/* --- the loop -------------------------------------------------------------------------------------------------------- */
+/* --- the loop ----------------------------------------------------------------------------------------------------- */
 
 /* For the progress lines. */
 static void report(ex_worker_t *worker)
@@ -198,17 +200,11 @@ static bool expand(ex_worker_t *worker, const ex_key_t *key)
         found = ex_arcs(worker, key, on_arc, worker);
     }
     switch (found) {
-    case EX_SOME:
-        break;
-    case EX_DEAD:
-        worker->dead++;
-        break;
-    case EX_STOPPED:
-        ex_bounds_see(worker);
-        return false;
+    case EX_SOME: break;
+    case EX_DEAD: worker->dead++; break;
+    case EX_STOPPED: ex_bounds_see(worker); return false;
     case EX_FAILED:
-    default:
-        return false;
+    default: return false;
     }
     worker->states++;
     ex_bounds_see(worker);
@@ -267,8 +263,8 @@ static void replace_level(ex_run_t *run, ex_replace_t one, const void *layout)
     }
 }
 
-/* Between two levels, when there are enough states to see which words of their vectors depend on each other. With the gate locked, and
- * nobody else at work. */
+/* Between two levels, when there are enough states to see which words of their vectors depend on each other. With the
+ * gate locked, and nobody else at work. */
 static void lay_again(ex_run_t *run)
 {
     ex_level_t *search = run->level;
@@ -413,7 +409,7 @@ static void work(ex_worker_t *worker, void *user)
     }
 }
 
-/* --- the run --------------------------------------------------------------------------------------------------------- */
+/* --- the run ------------------------------------------------------------------------------------------------------ */
 
 static double cpu_clock(void)
 {
@@ -454,7 +450,8 @@ static bool begin(ex_run_t *run, ex_level_t *search)
     if (!run->options.is_hashed) {
         ex_key_widths(run, width);
     }
-    if (run->options.is_bitstate ? !ex_bits_make(&run->bits, run) : !ex_store_make(&run->store, run, width, (uint64_t)FIRST_KEYS)) {
+    if (run->options.is_bitstate ? !ex_bits_make(&run->bits, run)
+                                 : !ex_store_make(&run->store, run, width, (uint64_t)FIRST_KEYS)) {
         ex_stop(run, EX_MEMORY);
         return false;
     }

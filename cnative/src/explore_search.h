@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * explore_search.h - what is shared by the parts of the search: the loop (explore_search.c), states that are still to be expanded
- * (explore_frontier.c), states of one word (explore_words.c).
+ * explore_search.h - what is shared by the parts of the search: the loop (explore_search.c), states that are still to
+ * be expanded (explore_frontier.c), states of one word (explore_words.c).
  */
 #ifndef EXPLORE_SEARCH_H
 #define EXPLORE_SEARCH_H
@@ -18,22 +18,22 @@ enum {
 typedef struct ex_chunk {
     struct ex_chunk *next;
     uint32_t count;
-    uint32_t taken;   /* from the beginning; of a chunk that is being expanded */
+    uint32_t taken; /* from the beginning; of a chunk that is being expanded */
     unsigned char byte[];
 } ex_chunk_t;
 
 typedef struct ex_level {
     ex_run_t *run;
-    uint32_t stride;    /* bytes of an entry */
-    uint32_t capacity;  /* entries of a chunk */
-    uint64_t low_mask;  /* of ex_key_t: which bytes are part of a key */
+    uint32_t stride;   /* bytes of an entry */
+    uint32_t capacity; /* entries of a chunk */
+    uint64_t low_mask; /* of ex_key_t: which bytes are part of a key */
     uint64_t high_mask;
-    ex_chunk_t *now;    /* of this level, or given away */
-    ex_chunk_t *next;   /* of the next level */
+    ex_chunk_t *now;  /* of this level, or given away */
+    ex_chunk_t *next; /* of the next level */
     ex_chunk_t *spare;
     uint64_t depth;
     uint32_t parts;
-    _Atomic uint32_t hungry; /* threads without work */
+    _Atomic uint32_t hungry;   /* threads without work */
     _Atomic uint64_t expanded; /* for the progress: as of the last chunks */
     _Atomic uint64_t arcs;
     _Atomic uint64_t deepest;
@@ -48,22 +48,22 @@ typedef struct ex_pending {
 
 typedef struct ex_search {
     ex_level_t *level;
-    ex_chunk_t *out;       /* being filled; depth first: the top of the stack */
-    ex_chunk_t *expanding; /* breadth first */
-    ex_chunk_t *bottom;    /* depth first: the lowest chunk of the stack (`next` leads downwards) */
+    ex_chunk_t *out;            /* being filled; depth first: the top of the stack */
+    ex_chunk_t *expanding;      /* breadth first */
+    ex_chunk_t *bottom;         /* depth first: the lowest chunk of the stack (`next` leads downwards) */
     ex_key_t recent[EX_RECENT]; /* keys that are in the store, or in the batch; zero: none, or the key that is zero */
     ex_pending_t batch[EX_BATCH];
     uint32_t pending;
     bool is_exact;
     struct ex_words *words; /* of explore_words.c; NULL: states are not made that way */
     struct ex_flat *flat;   /* of explore_flat.c; the same */
-    uint64_t depth;     /* of the successors */
+    uint64_t depth;         /* of the successors */
     uint64_t deepest;
     uint64_t reported_arcs;
     uint64_t reported_states;
 } ex_search_t;
 
-/* --- explore_frontier.c -------------------------------------------------------------------------------------------- */
+/* --- explore_frontier.c ------------------------------------------------------------------------------------------- */
 
 /* NULL: no memory, the run stops. */
 ex_chunk_t *ex_chunk_new(ex_level_t *level);
@@ -77,7 +77,7 @@ void ex_hand_over(ex_search_t *own);
 /* A state that has been found for the first time. False: no memory. */
 bool ex_add_new(ex_search_t *own, const ex_key_t *key);
 
-/* --- explore_search.c ---------------------------------------------------------------------------------------------- */
+/* --- explore_search.c --------------------------------------------------------------------------------------------- */
 
 /* Before a batch is inserted: lets the store grow if need be. False when the run stops. */
 bool ex_batch_begin(ex_worker_t *worker);
@@ -92,7 +92,7 @@ static inline void ex_take_soon(const ex_search_t *own, uint64_t hash)
     __builtin_prefetch(&own->recent[hash % (uint64_t)EX_RECENT], 1, 3);
 }
 
-/* --- explore_flat.c ------------------------------------------------------------------------------------------------ */
+/* --- explore_flat.c ----------------------------------------------------------------------------------------------- */
 
 /* Where it is possible. False: no memory. */
 bool ex_flat_make(ex_worker_t *worker);
@@ -105,7 +105,7 @@ ex_found_t ex_flat_successors(ex_worker_t *worker, const ex_key_t *key);
 /* Gives the search all that has stayed. False when the run stops. */
 bool ex_flat_finish(ex_worker_t *worker);
 
-/* --- explore_words.c ----------------------------------------------------------------------------------------------- */
+/* --- explore_words.c ---------------------------------------------------------------------------------------------- */
 
 /* Where it is possible. False: no memory. */
 bool ex_words_make(ex_worker_t *worker);

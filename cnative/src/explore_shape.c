@@ -1,16 +1,14 @@
 /* SPDX-License-Identifier: MIT
- * explore_shape.c - the shape of vectors and keys, found once from the tables of the net: which bits of the packed part are words, where
- * the other places have theirs, how words are put together into the parts of a key, and what each transition may change of it.
+ * explore_shape.c - the shape of vectors and keys, found once from the tables of the net: which bits of the packed part
+ * are words, where the other places have theirs, how words are put together into the parts of a key, and what each
+ * transition may change of it.
  */
 #include "explore_impl.h"
 
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    WORD_BITS = 32,
-    UNIT_BITS = 64
-};
+enum { WORD_BITS = 32, UNIT_BITS = 64 };
 
 #define NONE UINT32_MAX
 
@@ -52,15 +50,17 @@ static void add_slice(ex_codec_t *codec, uint32_t bit, uint32_t width)
     codec->packed_words++;
 }
 
-/* Whether a place goes into a slice: slices lie within one of the units in which generated code handles the packed part. */
+/* Whether a place goes into a slice: slices lie within one of the units in which generated code handles the packed
+ * part. */
 static bool is_short(const pn_place_t *place)
 {
     const uint32_t last = place->bag->bit + bits_in(place) - 1U;
-    return (bits_in(place) <= (uint32_t)WORD_BITS) && ((place->bag->bit / (uint32_t)UNIT_BITS) == (last / (uint32_t)UNIT_BITS));
+    return (bits_in(place) <= (uint32_t)WORD_BITS)
+           && ((place->bag->bit / (uint32_t)UNIT_BITS) == (last / (uint32_t)UNIT_BITS));
 }
 
-/* Slices of the packed part: first those of short places, as many in one as possible, then those of long ones. `order` has room for the
- * indices of all places. */
+/* Slices of the packed part: first those of short places, as many in one as possible, then those of long ones. `order`
+ * has room for the indices of all places. */
 static void lay_slices(ex_codec_t *codec, uint32_t *order)
 {
     uint32_t count = 0U;
@@ -79,7 +79,8 @@ static void lay_slices(ex_codec_t *codec, uint32_t *order)
         }
         if ((codec->packed_words > 0U) && ((end - codec->slice_bit[last]) <= (uint32_t)WORD_BITS)
             && (((end - 1U) / (uint32_t)UNIT_BITS) == (codec->slice_bit[last] / (uint32_t)UNIT_BITS))) {
-            codec->slice_width[last] = end - codec->slice_bit[last]; /* what lies between, if anything, belongs to nobody else */
+            codec->slice_width[last] =
+                end - codec->slice_bit[last]; /* what lies between, if anything, belongs to nobody else */
         } else {
             add_slice(codec, place->bag->bit, bits_in(place));
         }
@@ -323,15 +324,16 @@ bool ex_codec_make(ex_run_t *run)
     codec->parent = ex_table(run, 2U * most, sizeof(uint32_t));
     uint32_t *cell = ex_table(run, most, sizeof *cell);
     codec->is_joined = ex_table(run, most, sizeof(bool));
-    if ((codec->slice_bit == NULL) || (codec->slice_width == NULL) || (codec->is_joined == NULL) || (codec->word_of == NULL)
-        || (codec->place_of == NULL) || (codec->touched_words == NULL) || (codec->touched_parts == NULL)
-        || (codec->part_of == NULL) || (codec->touched_count == NULL) || (codec->touched_bags == NULL)
-        || (codec->touched_bag_count == NULL) || (codec->node == NULL)
+    if ((codec->slice_bit == NULL) || (codec->slice_width == NULL) || (codec->is_joined == NULL)
+        || (codec->word_of == NULL) || (codec->place_of == NULL) || (codec->touched_words == NULL)
+        || (codec->touched_parts == NULL) || (codec->part_of == NULL) || (codec->touched_count == NULL)
+        || (codec->touched_bags == NULL) || (codec->touched_bag_count == NULL) || (codec->node == NULL)
         || (codec->parent == NULL) || (cell == NULL)) {
         return false;
     }
     const uint32_t kept_words = rounded_up(kept_end(), (uint32_t)WORD_BITS);
-    codec->is_plain = !codec->is_whole && !pn_net.timed && (pn_net.root_count == 0U) && (pn_net.bag_count == 0U) && (kept_words > 0U) && (kept_words <= EX_KEY_WORDS);
+    codec->is_plain = !codec->is_whole && !pn_net.timed && (pn_net.root_count == 0U) && (pn_net.bag_count == 0U)
+                      && (kept_words > 0U) && (kept_words <= EX_KEY_WORDS);
     if (codec->is_plain) {
         lay_plain(codec, kept_words);
     } else if (!codec->is_whole) {
@@ -393,8 +395,9 @@ void ex_key_widths(const ex_run_t *run, uint32_t width[EX_KEY_WORDS])
         if (cell < codec->packed_words) {
             width[i] = codec->slice_width[cell];
         } else {
-            const ex_index_t *index = (cell < codec->words) ? &codec->bytes.index
-                                                            : &codec->tuples[codec->node[cell - codec->words].table].index;
+            const ex_index_t *index = (cell < codec->words)
+                                          ? &codec->bytes.index
+                                          : &codec->tuples[codec->node[cell - codec->words].table].index;
             const uint64_t count = atomic_load(&index->count);
             width[i] = bits_of(count + (count / 4U) + 64U);
         }

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT
  * explore_store.c - the set of keys.
  *
- * Buckets of one cache line: a byte for each slot, then the keys, without padding. The byte is 0 (free), 1 (being written) or a part of
- * the hash; a slot is taken by a compare-and-swap of it. Slots fill from the first to the last, and what does not fit goes to the next
- * bucket, behind the last one to the first; so two threads with the same key meet at the same slot. Where a key is at home is the hash, scaled: in a larger table the
- * order is the same, and growing is one pass from the beginning to the end through both.
- * Keys of one word lie in a simpler way: see explore_words.h.
+ * Buckets of one cache line: a byte for each slot, then the keys, without padding. The byte is 0 (free), 1 (being
+ * written) or a part of the hash; a slot is taken by a compare-and-swap of it. Slots fill from the first to the last,
+ * and what does not fit goes to the next bucket, behind the last one to the first; so two threads with the same key
+ * meet at the same slot. Where a key is at home is the hash, scaled: in a larger table the order is the same, and
+ * growing is one pass from the beginning to the end through both. Keys of one word lie in a simpler way: see
+ * explore_words.h.
  */
 #include "explore_words.h"
 
@@ -23,7 +24,7 @@ enum {
     FIRST_TAG = 2,
     LEAST_LENGTH = 4,
     MOST_SLOTS = 12,
-    STEP = 1 << 21, /* bytes that are given back at a time */
+    STEP = 1 << 21,       /* bytes that are given back at a time */
     SHARED_SIZE = 1 << 20 /* bytes of a table that threads move together */
 };
 
@@ -31,8 +32,8 @@ enum {
 
 #define SLACK (2U * (uint64_t)STEP) /* bytes of both tables at the same time while one becomes the other */
 
-/* A key without the bits that are always zero, as the two words with which it is compared: its beginning and its end, which may
- * overlap. */
+/* A key without the bits that are always zero, as the two words with which it is compared: its beginning and its end,
+ * which may overlap. */
 typedef struct probe {
     uint64_t first;
     uint64_t last;
@@ -143,7 +144,7 @@ static inline view_t look(const unsigned char *bucket, unsigned char tag, uint32
     return view;
 }
 
-/* --- life ------------------------------------------------------------------------------------------------------------ */
+/* --- life --------------------------------------------------------------------------------------------------------- */
 
 static uint64_t limit_of(const ex_store_t *store)
 {
@@ -212,7 +213,7 @@ static uint64_t after(const ex_store_t *store, uint64_t b)
     return ((b + 1U) < store->buckets) ? (b + 1U) : 0U;
 }
 
-/* --- keys ------------------------------------------------------------------------------------------------------------- */
+/* --- keys --------------------------------------------------------------------------------------------------------- */
 
 static void read_key(const ex_store_t *store, const unsigned char *at, ex_key_t *key)
 {
@@ -325,7 +326,7 @@ ex_insertion_t ex_store_insert(ex_store_t *store, const ex_key_t *key, uint64_t 
     return EX_FULL;
 }
 
-/* --- growth ----------------------------------------------------------------------------------------------------------- */
+/* --- growth ------------------------------------------------------------------------------------------------------- */
 
 /* Puts a key that is not there, while nobody else uses the table. */
 static bool put(ex_store_t *store, const ex_key_t *key)
@@ -384,8 +385,8 @@ static bool share_bucket(const ex_store_t *old, const unsigned char *bucket, ex_
     return true;
 }
 
-/* The pass through both tables, in parts that threads take. What has been read is given back while the new table fills, so that not much
- * more than one of them takes room. */
+/* The pass through both tables, in parts that threads take. What has been read is given back while the new table fills,
+ * so that not much more than one of them takes room. */
 typedef struct move {
     const ex_store_t *old;
     ex_store_t *new;

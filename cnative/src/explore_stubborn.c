@@ -1,16 +1,19 @@
 /* SPDX-License-Identifier: MIT
- * explore_stubborn.c - of the elements that are enabled in a state, those that have to be looked at so that no dead state is missed.
+ * explore_stubborn.c - of the elements that are enabled in a state, those that have to be looked at so that no dead
+ * state is missed.
  *
- * A stubborn set for the question where a state is dead. Something is enabled here that is not enabled in a dead state: every way there
- * has an element in it that takes some of its tokens. With these the set begins; then it is closed, so that nothing outside can enable a
- * disabled element of the set, and so that an enabled one can as well occur before as after what is outside:
+ * A stubborn set for the question where a state is dead. Something is enabled here that is not enabled in a dead state:
+ * every way there has an element in it that takes some of its tokens. With these the set begins; then it is closed, so
+ * that nothing outside can enable a disabled element of the set, and so that an enabled one can as well occur before as
+ * after what is outside:
  *
  * - with a disabled one all those belong to the set that can end one reason for its being disabled,
- * - with an enabled one, for each of its counters: all those with which it does not commute, or all those that put tokens there (then what
- *   is outside only takes some, and if enough are left in the end, they are now).
+ * - with an enabled one, for each of its counters: all those with which it does not commute, or all those that put
+ * tokens there (then what is outside only takes some, and if enough are left in the end, they are now).
  *
- * The first element of the set on a way to a dead state could so occur now. Only useful elements count (src/pn2code/verify/useless.py):
- * shortest ways have no others in them. For each enabled element a set is closed; the one with the fewest enabled elements is taken.
+ * The first element of the set on a way to a dead state could so occur now. Only useful elements count
+ * (src/pn2code/verify/useless.py): shortest ways have no others in them. For each enabled element a set is closed; the
+ * one with the fewest enabled elements is taken.
  */
 #include "explore_reduce.h"
 
@@ -24,13 +27,13 @@ enum {
 typedef struct effect {
     uint64_t hash;
     uint32_t transition;
-    uint32_t left;   /* that have not come as successors */
+    uint32_t left; /* that have not come as successors */
     bool is_chosen;
 } effect_t;
 
 /* What has been closed for a counter: the same needs not be done again. */
 typedef struct closed {
-    uint64_t rivals;  /* number of the set in which it was, of elements that take `pre` and put `post` */
+    uint64_t rivals; /* number of the set in which it was, of elements that take `pre` and put `post` */
     uint32_t pre;
     uint32_t post;
     uint64_t helpers; /* number of the set in which those were added that put tokens */
@@ -40,24 +43,24 @@ typedef struct closed {
 
 typedef struct ex_stubborn {
     const ex_reduction_t *reduction;
-    uint32_t *value;      /* by counter: tokens */
-    uint32_t *enabled;    /* elements */
+    uint32_t *value;   /* by counter: tokens */
+    uint32_t *enabled; /* elements */
     uint32_t enabled_count;
-    uint32_t *effect_of;  /* by position in `enabled` */
+    uint32_t *effect_of; /* by position in `enabled` */
     effect_t *effect;
     uint32_t effects;
-    uint32_t *table;      /* hashed: effect + 1 */
+    uint32_t *table; /* hashed: effect + 1 */
     uint32_t table_mask;
     uint64_t *is_enabled; /* bits, by element */
     uint64_t *is_in;      /* the set that is closed */
     uint32_t *set;        /* its elements, in the order in which they came */
     uint32_t set_count;
     uint32_t set_enabled;
-    uint32_t *best;       /* enabled elements of the best set */
+    uint32_t *best; /* enabled elements of the best set */
     uint32_t best_count;
-    uint64_t *next;       /* packed words */
-    closed_t *closed;     /* by counter */
-    uint64_t sets;        /* that have been begun */
+    uint64_t *next;   /* packed words */
+    closed_t *closed; /* by counter */
+    uint64_t sets;    /* that have been begun */
     uint64_t work;
 } stubborn_t;
 
@@ -93,12 +96,12 @@ bool ex_stubborn_make(ex_worker_t *worker, const ex_reduction_t *reduction)
     own->best = ex_alloc(run, elements * sizeof *own->best);
     own->closed = ex_alloc(run, ((uint64_t)reduction->counters + 1U) * sizeof *own->closed);
     own->next = ex_alloc(run, ((uint64_t)reduction->words + 1U) * sizeof *own->next);
-    return (own->value != NULL) && (own->enabled != NULL) && (own->effect_of != NULL) && (own->effect != NULL) && (own->table != NULL)
-           && (own->is_enabled != NULL) && (own->is_in != NULL) && (own->set != NULL) && (own->best != NULL) && (own->next != NULL)
-           && (own->closed != NULL);
+    return (own->value != NULL) && (own->enabled != NULL) && (own->effect_of != NULL) && (own->effect != NULL)
+           && (own->table != NULL) && (own->is_enabled != NULL) && (own->is_in != NULL) && (own->set != NULL)
+           && (own->best != NULL) && (own->next != NULL) && (own->closed != NULL);
 }
 
-/* --- effects --------------------------------------------------------------------------------------------------------- */
+/* --- effects ------------------------------------------------------------------------------------------------------ */
 
 static uint64_t mixed(uint64_t a, uint64_t b)
 {
@@ -190,7 +193,7 @@ static void enter_effect(stubborn_t *own, uint32_t position, const uint64_t *pac
     own->effect_of[position] = *slot - 1U;
 }
 
-/* --- closing --------------------------------------------------------------------------------------------------------- */
+/* --- closing ------------------------------------------------------------------------------------------------------ */
 
 static bool is_enabled(const stubborn_t *own, const ex_element_t *element)
 {
@@ -214,7 +217,8 @@ static void add(stubborn_t *own, uint32_t e)
     own->set_enabled += has_bit(own->is_enabled, e) ? 1U : 0U;
 }
 
-/* Whether two elements that are both enabled might not both occur, in either order and with the same result, because of a counter. */
+/* Whether two elements that are both enabled might not both occur, in either order and with the same result, because of
+ * a counter. */
 static bool is_conflict(const ex_touch_t *a, const ex_touch_t *b)
 {
     if (a->is_reset || b->is_reset) {
@@ -248,8 +252,8 @@ static uint64_t cost_of(const stubborn_t *own, uint32_t e)
     return has_bit(own->is_enabled, e) ? ((uint64_t)1U << 24U) : 1U;
 }
 
-/* Whether an element may put tokens on a counter, or look at them while they are not taken: what must not be outside for the second kind
- * of closing. */
+/* Whether an element may put tokens on a counter, or look at them while they are not taken: what must not be outside
+ * for the second kind of closing. */
 static bool is_putting(const ex_touch_t *use)
 {
     return (use->post > 0U) || use->is_reset || use->is_inhibitor;

@@ -12,8 +12,8 @@
 typedef struct hunt {
     ex_worker_t *worker;
     ex_arc_sink_t sink;
-    ex_times_sink_t times; /* not NULL: instead of `sink` */
-    ex_marking_sink_t all; /* not NULL: gets every successor, as it is */
+    ex_times_sink_t times;       /* not NULL: instead of `sink` */
+    ex_marking_sink_t all;       /* not NULL: gets every successor, as it is */
     pn_successor_sink_t on_next; /* what is done with each */
     void *user;
     bool is_found;
@@ -80,7 +80,8 @@ static bool encode(const hunt_t *hunt, uint32_t transition, const void *next, ex
 
 static bool pass_on(const hunt_t *hunt, uint32_t transition, const void *binding, const ex_key_t *key)
 {
-    return (hunt->times != NULL) ? hunt->times(hunt->user, transition, 1U, key) : hunt->sink(hunt->user, transition, binding, key);
+    return (hunt->times != NULL) ? hunt->times(hunt->user, transition, 1U, key)
+                                 : hunt->sink(hunt->user, transition, binding, key);
 }
 
 static bool on_successor(void *user, uint32_t transition, const void *binding, const void *next)
@@ -170,7 +171,8 @@ static bool load_places_of(ex_worker_t *worker, uint32_t t)
     if (transition->read == NULL) {
         return ex_load_places(worker);
     }
-    return load_places(worker, transition->read, transition->read_count) && load_places(worker, transition->touched, transition->touched_count);
+    return load_places(worker, transition->read, transition->read_count)
+           && load_places(worker, transition->touched, transition->touched_count);
 }
 
 /* The same as hunt_transition from what is remembered; false: that has to be done itself. */
@@ -220,8 +222,8 @@ static bool hunt_transition(hunt_t *hunt, uint32_t t)
     return !worker->failed && !hunt->is_stopped;
 }
 
-/* Whether a transition is tried at all: it is no step of the clock, and nothing before it in its group has been chosen. `chosen` is by
- * group the transition, + 1; 0: none. */
+/* Whether a transition is tried at all: it is no step of the clock, and nothing before it in its group has been chosen.
+ * `chosen` is by group the transition, + 1; 0: none. */
 static bool is_tried(const hunt_t *hunt, uint32_t t, const uint32_t *chosen)
 {
     const ex_programs_t *const programs = hunt->worker->run->programs;
@@ -272,7 +274,8 @@ static bool hunt_by_owner(hunt_t *hunt)
         const int32_t own = pn_net.transition[t].priority;
         const bool is_step = (programs != NULL) && programs->is_silent[t];
         bool is_enabled = false;
-        if (!is_tried(hunt, t, chosen) || (has_found[owner] && (own != priority[owner])) || (is_step && has_any[owner] && (own != last[owner]))) {
+        if (!is_tried(hunt, t, chosen) || (has_found[owner] && (own != priority[owner]))
+            || (is_step && has_any[owner] && (own != last[owner]))) {
             continue;
         }
         goes_on = hunt_choice(hunt, t, chosen, &is_enabled);
@@ -336,7 +339,8 @@ static bool advance(hunt_t *hunt, pn_time_t next)
     return ex_encode_time(worker);
 }
 
-/* With a clock that goes on by itself: one unit later, if something is waited for, its steps occur. False: it is to go no further. */
+/* With a clock that goes on by itself: one unit later, if something is waited for, its steps occur. False: it is to go
+ * no further. */
 static bool hunt_clock(hunt_t *hunt)
 {
     ex_worker_t *worker = hunt->worker;
@@ -414,19 +418,25 @@ ex_found_t ex_successors(ex_worker_t *worker, const ex_key_t *key, ex_arc_sink_t
 ex_found_t ex_arcs(ex_worker_t *worker, const ex_key_t *key, ex_times_sink_t sink, void *user)
 {
     const bool is_local = worker->local != NULL;
-    hunt_t hunt = { .worker = worker, .times = sink, .user = user, .on_next = successor_sink(worker->run), .is_local = is_local };
+    hunt_t hunt = {
+        .worker = worker, .times = sink, .user = user, .on_next = successor_sink(worker->run), .is_local = is_local
+    };
     return (is_local ? ex_open(worker, key) : ex_load(worker, key)) ? hunt_state(&hunt) : EX_FAILED;
 }
 
 ex_found_t ex_next_markings(struct ex_worker *worker, ex_marking_sink_t sink, void *user)
 {
-    hunt_t hunt = { .worker = worker, .all = sink, .user = user, .on_next = (pn_net.root_count > 0U) ? on_assigning : on_successor };
+    hunt_t hunt = {
+        .worker = worker, .all = sink, .user = user, .on_next = (pn_net.root_count > 0U) ? on_assigning : on_successor
+    };
     return hunt_state(&hunt);
 }
 
 ex_found_t ex_all_successors(ex_worker_t *worker, ex_marking_sink_t sink, void *user)
 {
-    hunt_t hunt = { .worker = worker, .all = sink, .user = user, .on_next = (pn_net.root_count > 0U) ? on_assigning : on_successor };
+    hunt_t hunt = {
+        .worker = worker, .all = sink, .user = user, .on_next = (pn_net.root_count > 0U) ? on_assigning : on_successor
+    };
     const bool goes_on = hunt_now(&hunt);
     if (hunt.is_stopped) {
         return EX_STOPPED;

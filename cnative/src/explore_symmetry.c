@@ -1,10 +1,11 @@
 /* SPDX-License-Identifier: MIT
- * explore_symmetry.c - one marking for all that are the same but for the names of colours: the greatest one among those that are looked
- * at, which is exactly the same for each member of the orbit.
+ * explore_symmetry.c - one marking for all that are the same but for the names of colours: the greatest one among those
+ * that are looked at, which is exactly the same for each member of the orbit.
  *
- * Rotations are all tried. For exchanges, points (colours) are told apart by what the marking says of them: classes are refined until
- * they are stable, and where points are left that look the same, one is made the first of its class, each in turn, unless it is known
- * that this leads to the same (points whose exchange leaves the marking as it is; points whose first leaf is one that is known).
+ * Rotations are all tried. For exchanges, points (colours) are told apart by what the marking says of them: classes are
+ * refined until they are stable, and where points are left that look the same, one is made the first of its class, each
+ * in turn, unless it is known that this leads to the same (points whose exchange leaves the marking as it is; points
+ * whose first leaf is one that is known).
  */
 #include "explore_reduce.h"
 
@@ -16,20 +17,20 @@ enum {
 
 typedef struct ex_symmetry {
     const ex_reduction_t *reduction;
-    uint32_t *value;    /* by counter: the marking that is looked at */
-    uint32_t *turned;   /* the same after rotations */
+    uint32_t *value;  /* by counter: the marking that is looked at */
+    uint32_t *turned; /* the same after rotations */
     uint32_t *best;
     bool has_best;
-    uint32_t *leaf;     /* the last leaf */
-    uint32_t *held;     /* counters of `turned` that are not 0 */
+    uint32_t *leaf; /* the last leaf */
+    uint32_t *held; /* counters of `turned` that are not 0 */
     uint32_t held_count;
-    uint32_t *kept;     /* leaves, KEPT_LEAVES for each depth */
-    uint32_t *rank;     /* by depth and point: number of points in lower classes */
-    uint64_t *mark;     /* by point: what the marking says of it */
-    uint32_t *order;    /* points */
-    uint32_t *image;    /* by point */
-    uint32_t *tried;    /* by depth: points of the class that have been made the first */
-    uint64_t *marking;  /* the result */
+    uint32_t *kept;    /* leaves, KEPT_LEAVES for each depth */
+    uint32_t *rank;    /* by depth and point: number of points in lower classes */
+    uint64_t *mark;    /* by point: what the marking says of it */
+    uint32_t *order;   /* points */
+    uint32_t *image;   /* by point */
+    uint32_t *tried;   /* by depth: points of the class that have been made the first */
+    uint64_t *marking; /* the result */
 } symmetry_t;
 
 bool ex_symmetry_make(ex_worker_t *worker, const ex_reduction_t *reduction)
@@ -55,9 +56,9 @@ bool ex_symmetry_make(ex_worker_t *worker, const ex_reduction_t *reduction)
     own->image = ex_alloc(run, points * sizeof(uint32_t));
     own->tried = ex_alloc(run, points * points * sizeof(uint32_t));
     own->marking = ex_alloc(run, pn_net.marking_size + (2U * sizeof *own->marking));
-    return (own->value != NULL) && (own->turned != NULL) && (own->best != NULL) && (own->leaf != NULL) && (own->held != NULL)
-           && (own->kept != NULL) && (own->rank != NULL) && (own->mark != NULL) && (own->order != NULL) && (own->image != NULL)
-           && (own->tried != NULL) && (own->marking != NULL);
+    return (own->value != NULL) && (own->turned != NULL) && (own->best != NULL) && (own->leaf != NULL)
+           && (own->held != NULL) && (own->kept != NULL) && (own->rank != NULL) && (own->mark != NULL)
+           && (own->order != NULL) && (own->image != NULL) && (own->tried != NULL) && (own->marking != NULL);
 }
 
 static uint64_t mixed(uint64_t a, uint64_t b)
@@ -85,7 +86,7 @@ static void offer(symmetry_t *own, const uint32_t *value)
     }
 }
 
-/* --- exchanges: images ----------------------------------------------------------------------------------------------- */
+/* --- exchanges: images -------------------------------------------------------------------------------------------- */
 
 static uint64_t hash_of_counter(uint32_t shape, const uint32_t *point, uint64_t count, const uint32_t *image)
 {
@@ -127,7 +128,8 @@ bool ex_exchanges_index(ex_run_t *run, ex_reduction_t *reduction)
     x->table_mask = slots - 1U;
     x->table = ex_alloc(run, slots * sizeof *x->table);
     for (uint32_t c = 0U; (x->table != NULL) && (c < reduction->counters); c++) {
-        uint64_t at = hash_of_counter(x->shape[c], &x->point[x->first[c]], x->first[c + 1U] - x->first[c], NULL) & x->table_mask;
+        uint64_t at =
+            hash_of_counter(x->shape[c], &x->point[x->first[c]], x->first[c + 1U] - x->first[c], NULL) & x->table_mask;
         while (x->table[at] != 0U) {
             at = (at + 1U) & x->table_mask;
         }
@@ -160,7 +162,7 @@ static bool is_alike(symmetry_t *own, uint32_t a, uint32_t b)
     return is_same;
 }
 
-/* --- exchanges: classes ---------------------------------------------------------------------------------------------- */
+/* --- exchanges: classes ------------------------------------------------------------------------------------------- */
 
 /* Adds to the mark of each point what the tokens say of it, as far as it does not depend on the names of points. */
 static void mark_points(symmetry_t *own, const uint32_t *rank)
@@ -225,7 +227,7 @@ static uint32_t refine(symmetry_t *own, uint32_t *rank)
     }
 }
 
-/* --- exchanges: search ----------------------------------------------------------------------------------------------- */
+/* --- exchanges: search -------------------------------------------------------------------------------------------- */
 
 /* All points are told apart: the marking with the points in this order. */
 static void make_leaf(symmetry_t *own, const uint32_t *rank)
@@ -385,7 +387,7 @@ static void exchange(symmetry_t *own)
     search(own, 0U, refine(own, own->rank));
 }
 
-/* --- rotations ------------------------------------------------------------------------------------------------------- */
+/* --- rotations ---------------------------------------------------------------------------------------------------- */
 
 /* Puts at each counter's image what is there: value'[permutation[c]] = value[c]. */
 static void permute(const uint32_t *permutation, const uint32_t *from, uint32_t *to, uint32_t count)

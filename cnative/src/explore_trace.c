@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * explore_trace.c - a run to a node as a trace that can be replayed, and the whole graph as lines of JSON for pictures and comparisons.
+ * explore_trace.c - a run to a node as a trace that can be replayed, and the whole graph as lines of JSON for pictures
+ * and comparisons.
  */
 #define _POSIX_C_SOURCE 200809L /* getpid */
 
@@ -46,7 +47,8 @@ static bool is_same(const ex_key_t *a, const ex_key_t *b)
 static bool write_step(void *user, uint32_t transition, const void *binding, const ex_key_t *key)
 {
     step_search_t *const search = user;
-    if (!is_same(key, &search->wanted) || ((search->transition != ANY_TRANSITION) && (search->transition != transition))) {
+    if (!is_same(key, &search->wanted)
+        || ((search->transition != ANY_TRANSITION) && (search->transition != transition))) {
         return true;
     }
     search->is_found = true;
@@ -74,7 +76,7 @@ static uint32_t *way_to(const ex_graph_t *graph, uint32_t node, uint64_t *length
     return way;
 }
 
-/* --- with symmetries: the states of the way stand for others, and a run goes through one of them after the other --- */
+/* --- with symmetries: the states of the way stand for others, and a run goes through one of them after the other -- */
 
 typedef struct walk {
     ex_worker_t *worker;
@@ -92,7 +94,8 @@ static bool walk_step(void *user, uint32_t transition, const void *binding, cons
     }
     walk->is_found = true;
     (void)memcpy(walk->marking, next, pn_net.marking_size);
-    pn_trace_model_occurrence(walk->trace, pn_now(&pn_net, walk->worker->marking), pn_net.real_time, &pn_net.transition[transition], binding);
+    pn_trace_model_occurrence(walk->trace, pn_now(&pn_net, walk->worker->marking), pn_net.real_time,
+                              &pn_net.transition[transition], binding);
     return false;
 }
 
@@ -146,8 +149,8 @@ int64_t ex_write_run(ex_run_t *run, const ex_graph_t *graph, uint32_t node, cons
     return steps;
 }
 
-int64_t ex_write_way(ex_run_t *run, const ex_graph_t *graph, const uint32_t *way, const uint16_t *label, uint64_t steps, const char *path,
-                     const char *why)
+int64_t ex_write_way(ex_run_t *run, const ex_graph_t *graph, const uint32_t *way, const uint16_t *label, uint64_t steps,
+                     const char *path, const char *why)
 {
     ex_worker_t *const worker = &run->worker[0];
     pn_trace_t trace;
@@ -171,13 +174,15 @@ int64_t ex_write_way(ex_run_t *run, const ex_graph_t *graph, const uint32_t *way
         ex_key_t from;
         step_search_t search = { .worker = worker, .trace = &trace, .before = elapsed };
         search.transition = (label != NULL) ? label[i + 1U] : ANY_TRANSITION;
-        is_fine = ex_store_fetch(&run->store, graph->slot[way[i]], &from) &&
-                  ex_store_fetch(&run->store, graph->slot[way[i + 1U]], &search.wanted);
+        is_fine = ex_store_fetch(&run->store, graph->slot[way[i]], &from)
+                  && ex_store_fetch(&run->store, graph->slot[way[i + 1U]], &search.wanted);
         is_fine = is_fine && (ex_successors(worker, &from, write_step, &search) == EX_STOPPED) && search.is_found;
         elapsed += worker->elapsed;
     }
     ex_key_t last;
-    is_fine = is_fine && (is_symmetric || (ex_store_fetch(&run->store, graph->slot[way[steps]], &last) && ex_load(worker, &last)));
+    is_fine =
+        is_fine
+        && (is_symmetric || (ex_store_fetch(&run->store, graph->slot[way[steps]], &last) && ex_load(worker, &last)));
     if (is_fine) {
         const char *const usual = (EX_BIT(graph->dead, way[steps]) != 0U) ? "finished" : "steps";
         pn_trace_model_end(&trace, time_of(worker, elapsed), pn_net.real_time, (why != NULL) ? why : usual);
@@ -191,7 +196,7 @@ int64_t ex_write_way(ex_run_t *run, const ex_graph_t *graph, const uint32_t *way
     return is_fine ? (int64_t)steps : -1;
 }
 
-/* --- the whole graph ----------------------------------------------------------------------------------------------- */
+/* --- the whole graph ---------------------------------------------------------------------------------------------- */
 
 typedef struct graph_writer {
     ex_worker_t *worker;
@@ -267,7 +272,9 @@ bool ex_write_graph(ex_run_t *run, const ex_graph_t *graph, const char *path)
 {
     char *const line = malloc(LINE_SIZE);
     FILE *const file = fopen(path, "w");
-    graph_writer_t w = { .worker = &run->worker[0], .graph = graph, .file = file, .is_fine = (line != NULL) && (file != NULL) };
+    graph_writer_t w = {
+        .worker = &run->worker[0], .graph = graph, .file = file, .is_fine = (line != NULL) && (file != NULL)
+    };
     if (w.is_fine) {
         pn_text_init(&w.text, line, LINE_SIZE);
     }

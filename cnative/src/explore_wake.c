@@ -1,16 +1,14 @@
 /* SPDX-License-Identifier: MIT
  * explore_wake.c - when the time has to go on to, noted by what places hold.
  *
- * When nothing is enabled, the time goes on to the earliest stamp after it. Most places of a marking hold what they held in many others, so
- * this is noted for each multi-set, which need not be decoded then.
+ * When nothing is enabled, the time goes on to the earliest stamp after it. Most places of a marking hold what they
+ * held in many others, so this is noted for each multi-set, which need not be decoded then.
  */
 #include "explore_local.h"
 
 #include "pn/pn_bag.h"
 
-enum {
-    WAKES = 1 << 12
-};
+enum { WAKES = 1 << 12 };
 
 /* When tokens of a timed place become available: after each time in from .. next the next ones do at `next`. */
 struct ex_wake {

@@ -84,9 +84,10 @@ static bool is_in(const uint64_t *set, uint32_t node)
     return (set == NULL) || (EX_BIT(set, node) != 0U);
 }
 
-/* Breadth first; `parent` is EX_NO_NODE where nothing has been. Gives the node of the goal that was found, EX_NO_NODE: none. */
-static uint32_t search(const ex_queries_t *queries, const uint64_t *through, const uint64_t *goal, uint32_t from, uint32_t *parent,
-                       uint32_t *queue)
+/* Breadth first; `parent` is EX_NO_NODE where nothing has been. Gives the node of the goal that was found, EX_NO_NODE:
+ * none. */
+static uint32_t search(const ex_queries_t *queries, const uint64_t *through, const uint64_t *goal, uint32_t from,
+                       uint32_t *parent, uint32_t *queue)
 {
     const ex_graph_t *const graph = queries->run->graph;
     uint64_t used = 1U;

@@ -1,18 +1,17 @@
 /* SPDX-License-Identifier: MIT
- * explore_words.c - the search where a state is one word: generated functions make the words of all successors of a state, and the store
- * holds them as they are.
+ * explore_words.c - the search where a state is one word: generated functions make the words of all successors of a
+ * state, and the store holds them as they are.
  */
 #include "explore_search.h"
 #include "explore_words.h"
 
 #include <string.h>
 
-
 enum {
     FOUND = EX_BATCH,
     RECENT = 1 << 15, /* a power of two: as many as a cache near the processor holds */
     BATCH = EX_BATCH,
-    LATE = 24         /* of a batch that stay until the next time: their lines are still on the way */
+    LATE = 24 /* of a batch that stay until the next time: their lines are still on the way */
 };
 
 typedef struct late {
@@ -23,7 +22,7 @@ typedef struct late {
 typedef struct ex_words {
     ex_worker_t *worker;
     pn_words_t made;
-    uint64_t drained;   /* words that were taken out of `made` before */
+    uint64_t drained; /* words that were taken out of `made` before */
     bool is_stopped;
     uint32_t pending;
     late_t batch[BATCH + FOUND]; /* as many as a batch, and what was made until that was seen */
@@ -36,8 +35,8 @@ static bool drain(pn_words_t *made);
 bool ex_words_make(ex_worker_t *worker)
 {
     const ex_run_t *run = worker->run;
-    bool is_possible = run->codec->is_word && worker->search->is_exact && (run->reduction == NULL) && !pn_net.timed && (run->owner_of == NULL)
-                             && (run->programs == NULL);
+    bool is_possible = run->codec->is_word && worker->search->is_exact && (run->reduction == NULL) && !pn_net.timed
+                       && (run->owner_of == NULL) && (run->programs == NULL);
     for (uint32_t t = 0U; is_possible && (t < pn_net.transition_count); t++) {
         is_possible = pn_net.transition[t].words != NULL;
     }
@@ -49,12 +48,17 @@ bool ex_words_make(ex_worker_t *worker)
         return false;
     }
     own->worker = worker;
-    own->made = (pn_words_t){ .cx = &worker->cx, .marking = worker->marking, .word = own->word, .room = (uint32_t)FOUND, .is_full = drain, .user = own };
+    own->made = (pn_words_t){ .cx = &worker->cx,
+                              .marking = worker->marking,
+                              .word = own->word,
+                              .room = (uint32_t)FOUND,
+                              .is_full = drain,
+                              .user = own };
     worker->search->words = own;
     return true;
 }
 
-/* --- into the store -------------------------------------------------------------------------------------------------- */
+/* --- into the store ----------------------------------------------------------------------------------------------- */
 
 /* The first of the batch, one by one: so many states that there may be no more of them soon. */
 static bool insert_carefully(ex_worker_t *worker, uint32_t count)
@@ -90,8 +94,8 @@ static bool insert_carefully(ex_worker_t *worker, uint32_t count)
     return true;
 }
 
-/* The first of the batch, with nobody else at it: without a branch on what is new. Gives how many are done: fewer than `count` when a
- * line is full, or the chunk. */
+/* The first of the batch, with nobody else at it: without a branch on what is new. Gives how many are done: fewer than
+ * `count` when a line is full, or the chunk. */
 static uint32_t insert_alone(ex_worker_t *worker, uint32_t count, uint64_t *found)
 {
     ex_words_t *const own = worker->search->words;
@@ -170,8 +174,8 @@ bool ex_words_flush(ex_worker_t *worker)
     return insert(worker, 0U);
 }
 
-/* Takes the words that have been made: those that were met a short while ago are passed over (whether that is so nobody can foretell:
- * there is no branch on it), of the others the lines of the store are sent for. */
+/* Takes the words that have been made: those that were met a short while ago are passed over (whether that is so nobody
+ * can foretell: there is no branch on it), of the others the lines of the store are sent for. */
 static bool drain(pn_words_t *made)
 {
     ex_words_t *const own = made->user;
@@ -204,7 +208,7 @@ static bool drain(pn_words_t *made)
     return true;
 }
 
-/* --- successors ------------------------------------------------------------------------------------------------------ */
+/* --- successors --------------------------------------------------------------------------------------------------- */
 
 ex_found_t ex_words_successors(ex_worker_t *worker, uint64_t word)
 {

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * explore_words.h - the store where keys are one word: lines of eight words, each a key + 1, or 0 where there is none. Words of a line are
- * taken from the first to the last, by a compare-and-swap; what does not fit goes to the next line.
+ * explore_words.h - the store where keys are one word: lines of eight words, each a key + 1, or 0 where there is none.
+ * Words of a line are taken from the first to the last, by a compare-and-swap; what does not fit goes to the next line.
  */
 #ifndef EXPLORE_WORDS_H
 #define EXPLORE_WORDS_H
@@ -24,8 +24,9 @@ static inline ex_line_view_t ex_line_look(const uint64_t *line, uint64_t wanted)
 {
     ex_line_view_t view = { 0U, 0U };
 #ifdef EX_LINE_VECTOR
-    /* Each word is read as a whole, and only once, which `volatile` demands: if a compiler read the line once for what is the same and
-     * once for what is free, a word that another thread enters in between would be neither, and would be entered again behind itself. */
+    /* Each word is read as a whole, and only once, which `volatile` demands: if a compiler read the line once for what
+     * is the same and once for what is free, a word that another thread enters in between would be neither, and would
+     * be entered again behind itself. */
     const __m256i first = *(const volatile __m256i *)(const volatile void *)line;
     const __m256i last = *(const volatile __m256i *)(const volatile void *)&line[4];
     const __m256i all = _mm256_set1_epi64x((long long)wanted);

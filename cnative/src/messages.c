@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
- * messages.c - host: the codec of a generated cell (pn_channel.c with its cell_config.c), asked message by message. What `pn2code verify`
- * and `generate` find in the channels of the state space goes through it; tests compare it with the Python side.
+ * messages.c - host: the codec of a generated cell (pn_channel.c with its cell_config.c), asked message by message.
+ * What `pn2code verify` and `generate` find in the channels of the state space goes through it; tests compare it with
+ * the Python side.
  *
- * Reads commands, one a line, and answers each by a line. A value is a whole number (BOOL, INT, INDEX, UNIT, and the position of an ENUM),
- * a hexadecimal float (REAL), or `x` and bytes in hexadecimal (STRING):
+ * Reads commands, one a line, and answers each by a line. A value is a whole number (BOOL, INT, INDEX, UNIT, and the
+ * position of an ENUM), a hexadecimal float (REAL), or `x` and bytes in hexadecimal (STRING):
  *
  *     write CHANNEL SEQ VALUE ...     the file's bytes in hexadecimal, or `unwritable`
  *     read CHANNEL CONSUMED HEX       `empty`, `message SEQ VALUE ...` (SEQ is `-` without line 2), or `refused REASON`
@@ -96,15 +97,13 @@ static void print_leaf(const pn_scalar_t *scalar, const pn_leaf_t *leaf)
 
 static bool answer_read(const pn_cell_channel_t *channel, const char *consumed, char **rest)
 {
-    static const char *const why[] = {"none",    "missing",  "shape",   "count",    "scalar", "colour",
-                                      "trailer", "checksum", "session", "repeated", "lost",   "overwritten"};
+    static const char *const why[] = { "none",    "missing",  "shape",   "count",    "scalar", "colour",
+                                       "trailer", "checksum", "session", "repeated", "lost",   "overwritten" };
     static char file[PN_CHANNEL_TEXT];
     const char *const hex = strtok_r(NULL, " ", rest);
     const size_t length = from_hex((hex != NULL) ? hex : "", file, sizeof file);
     switch (pn_channel_parse(channel, file, length, SESSION, strtoull(consumed, NULL, 10), &s_message)) {
-    case PN_CHANNEL_EMPTY:
-        (void)printf("empty");
-        return true;
+    case PN_CHANNEL_EMPTY: (void)printf("empty"); return true;
     case PN_CHANNEL_MESSAGE:
         if (s_message.sealed) {
             (void)printf("message %" PRIu64, s_message.seq);
@@ -115,13 +114,10 @@ static bool answer_read(const pn_cell_channel_t *channel, const char *consumed, 
             print_leaf(&channel->scalar[i], &s_message.leaf[i]);
         }
         return true;
-    case PN_CHANNEL_REFUSED:
-        (void)printf("refused %s", why[s_message.refusal]);
-        return true;
+    case PN_CHANNEL_REFUSED: (void)printf("refused %s", why[s_message.refusal]); return true;
     case PN_CHANNEL_UNCHANGED:
     case PN_CHANNEL_BROKEN:
-    default:
-        return false;
+    default: return false;
     }
 }
 

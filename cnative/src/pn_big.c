@@ -8,15 +8,15 @@
 #include "pn/pn_num.h"
 #include "pn/pn_random.h"
 
-#define HEADER 4U
-#define DIGIT 4U /* bytes */
-#define DIGIT_BITS 32U
-#define DIGITS_MAX ((size_t)INT32_MAX / 2U)
+#define HEADER          4U
+#define DIGIT           4U /* bytes */
+#define DIGIT_BITS      32U
+#define DIGITS_MAX      ((size_t)INT32_MAX / 2U)
 #define STEPS_PER_ROUND 4U
 
 static const pn_big_t zero = { 0, NULL };
 
-/* --- digits -------------------------------------------------------------------------------------------------------- */
+/* --- digits ------------------------------------------------------------------------------------------------------- */
 
 static uint32_t load(const uint8_t *at)
 {
@@ -145,7 +145,7 @@ static bool is_affordable(pn_ctx_t *cx, size_t steps, size_t times)
     return pn_goes_on(cx);
 }
 
-/* --- bytes --------------------------------------------------------------------------------------------------------- */
+/* --- bytes -------------------------------------------------------------------------------------------------------- */
 
 size_t pn_big_size(const uint8_t *large)
 {
@@ -160,7 +160,8 @@ bool pn_big_is_valid(const uint8_t *bytes, size_t length)
     view_t v;
     look(&v, (pn_big_t){ 0, bytes });
     const bool fits = (v.count == 2U) && ((digit_of(&v, 1U) >> (DIGIT_BITS - 1U)) == 0U);
-    const bool is_least = v.is_negative && (v.count == 2U) && (digit_of(&v, 1U) == (UINT32_C(1) << 31U)) && (digit_of(&v, 0U) == 0U);
+    const bool is_least =
+        v.is_negative && (v.count == 2U) && (digit_of(&v, 1U) == (UINT32_C(1) << 31U)) && (digit_of(&v, 0U) == 0U);
     return (v.count >= 2U) && (digit_of(&v, v.count - 1U) != 0U) && !fits && !is_least;
 }
 
@@ -173,7 +174,7 @@ pn_big_t pn_big_copy(pn_ctx_t *cx, pn_big_t a)
     return (copy == NULL) ? zero : (pn_big_t){ 0, copy };
 }
 
-/* --- other numbers ------------------------------------------------------------------------------------------------- */
+/* --- other numbers ------------------------------------------------------------------------------------------------ */
 
 static int64_t narrow(pn_ctx_t *cx, pn_big_t a, pn_error_t error)
 {
@@ -243,7 +244,7 @@ pn_big_t pn_big_of_real(pn_ctx_t *cx, double x)
     return pn_big_shift_left(cx, PN_BIG((int64_t)ldexp(mantissa, 62)), (int64_t)exponent - 62);
 }
 
-/* --- order --------------------------------------------------------------------------------------------------------- */
+/* --- order -------------------------------------------------------------------------------------------------------- */
 
 int64_t pn_big_sign(pn_big_t a)
 {
@@ -265,7 +266,7 @@ int pn_big_order_large(pn_big_t a, pn_big_t b)
     return x.is_negative ? order_of_magnitudes(&y, &x) : order_of_magnitudes(&x, &y);
 }
 
-/* --- sums ---------------------------------------------------------------------------------------------------------- */
+/* --- sums --------------------------------------------------------------------------------------------------------- */
 
 static pn_big_t add_magnitudes(pn_ctx_t *cx, const view_t *a, const view_t *b, bool is_negative)
 {
@@ -339,13 +340,13 @@ pn_big_t pn_big_abs(pn_ctx_t *cx, pn_big_t a)
     return (pn_big_sign(a) < 0) ? pn_big_neg(cx, a) : a;
 }
 
-/* --- products ------------------------------------------------------------------------------------------------------ */
+/* --- products ----------------------------------------------------------------------------------------------------- */
 
 pn_big_t pn_big_mul(pn_ctx_t *cx, pn_big_t a, pn_big_t b)
 {
     const int64_t narrow_limit = INT64_C(3037000499); /* squared, it still has 63 bits */
-    if ((a.large == NULL) && (b.large == NULL) && (a.small <= narrow_limit) && (a.small >= -narrow_limit) && (b.small <= narrow_limit)
-        && (b.small >= -narrow_limit)) {
+    if ((a.large == NULL) && (b.large == NULL) && (a.small <= narrow_limit) && (a.small >= -narrow_limit)
+        && (b.small <= narrow_limit) && (b.small >= -narrow_limit)) {
         return PN_BIG(a.small * b.small);
     }
     view_t x;
@@ -385,7 +386,8 @@ static uint32_t *shifted_digits(pn_ctx_t *cx, const view_t *v, uint32_t shift)
     return digits;
 }
 
-/* One digit of the quotient: how often the divisor goes into the digits of the rest from `rest` on, which is taken off. */
+/* One digit of the quotient: how often the divisor goes into the digits of the rest from `rest` on, which is taken off.
+ */
 static uint32_t quotient_digit(uint32_t *rest, const uint32_t *divisor, size_t n)
 {
     const uint64_t base = UINT64_C(1) << DIGIT_BITS;
@@ -423,8 +425,8 @@ static uint32_t quotient_digit(uint32_t *rest, const uint32_t *divisor, size_t n
     return (uint32_t)guess;
 }
 
-/* Quotient rounded towards zero and remainder with the sign of a, of numbers of which one is large, |a| >= |b| > 0: long division
- * (Knuth, The Art of Computer Programming, volume 2, 4.3.1, algorithm D). */
+/* Quotient rounded towards zero and remainder with the sign of a, of numbers of which one is large, |a| >= |b| > 0:
+ * long division (Knuth, The Art of Computer Programming, volume 2, 4.3.1, algorithm D). */
 static void divide_large(pn_ctx_t *cx, const view_t *a, const view_t *b, pn_big_t *quotient, pn_big_t *remainder)
 {
     const size_t n = b->count;
@@ -447,7 +449,8 @@ static void divide_large(pn_ctx_t *cx, const view_t *a, const view_t *b, pn_big_
         set(&q, k - 1U, quotient_digit(&rest[k - 1U], divisor, n));
     }
     for (size_t i = 0U; i < n; i++) {
-        const uint32_t above = (shift > 0U) ? (uint32_t)(((uint64_t)rest[i + 1U] << (DIGIT_BITS - shift)) & UINT32_MAX) : 0U;
+        const uint32_t above =
+            (shift > 0U) ? (uint32_t)(((uint64_t)rest[i + 1U] << (DIGIT_BITS - shift)) & UINT32_MAX) : 0U;
         set(&r, i, (rest[i] >> shift) | above);
     }
     pn_arena_release(cx->arena, mark);
@@ -511,7 +514,7 @@ pn_big_t pn_big_mod(pn_ctx_t *cx, pn_big_t a, pn_big_t b)
     return ((pn_big_sign(remainder) * pn_big_sign(b)) < 0) ? pn_big_add(cx, remainder, b) : remainder;
 }
 
-/* --- bits ---------------------------------------------------------------------------------------------------------- */
+/* --- bits --------------------------------------------------------------------------------------------------------- */
 
 typedef enum bit_operation { BITS_AND, BITS_OR, BITS_XOR } bit_operation_t;
 
@@ -630,7 +633,7 @@ pn_big_t pn_big_shift_right(pn_ctx_t *cx, pn_big_t a, int64_t n)
     return (x.is_negative && !is_exact) ? pn_big_sub(cx, towards_zero, PN_BIG(1)) : towards_zero;
 }
 
-/* --- text ---------------------------------------------------------------------------------------------------------- */
+/* --- text --------------------------------------------------------------------------------------------------------- */
 
 pn_big_t pn_big_of_digits(pn_ctx_t *cx, const char *digits, size_t length, bool is_negative)
 {
@@ -714,7 +717,7 @@ pn_string_t pn_big_string(pn_ctx_t *cx, pn_big_t a)
     return (pn_string_t){ text, (uint32_t)length };
 }
 
-/* --- chance -------------------------------------------------------------------------------------------------------- */
+/* --- chance ------------------------------------------------------------------------------------------------------- */
 
 pn_big_t pn_big_random_below(pn_ctx_t *cx, pn_big_t n)
 {

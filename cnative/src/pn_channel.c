@@ -76,7 +76,7 @@ const char *pn_quote(const char *data, size_t length, char *out, size_t capacity
     return out;
 }
 
-/* --- writing ---------------------------------------------------------------------------------------------------------- */
+/* --- writing ------------------------------------------------------------------------------------------------------ */
 
 /* With `digits` significant digits; whether that reads back to the same number. */
 static bool real_digits(double value, int digits, char *text, size_t capacity)
@@ -88,7 +88,7 @@ static bool real_digits(double value, int digits, char *text, size_t capacity)
 size_t pn_real_format(double value, char *out, size_t capacity)
 {
     const double v = (value == 0.0) ? 0.0 : value; /* no -0.0000 */
-    char text[512]; /* 1e308 with four decimals has 314 characters */
+    char text[512];                                /* 1e308 with four decimals has 314 characters */
     if (!isfinite(v)) {
         return 0U;
     }
@@ -151,12 +151,8 @@ static size_t scalar_format(const pn_scalar_t *scalar, const pn_leaf_t *leaf, ch
 {
     int length = 0;
     switch (scalar->kind) {
-    case PN_SCALAR_UNIT:
-        length = snprintf(out, capacity, "1");
-        break;
-    case PN_SCALAR_BOOL:
-        length = snprintf(out, capacity, "%d", (leaf->integer != 0) ? 1 : 0);
-        break;
+    case PN_SCALAR_UNIT: length = snprintf(out, capacity, "1"); break;
+    case PN_SCALAR_BOOL: length = snprintf(out, capacity, "%d", (leaf->integer != 0) ? 1 : 0); break;
     case PN_SCALAR_INT:
     case PN_SCALAR_INDEX:
         if (!scalar->bounded || ((leaf->integer >= scalar->low) && (leaf->integer <= scalar->high))) {
@@ -176,8 +172,7 @@ static size_t scalar_format(const pn_scalar_t *scalar, const pn_leaf_t *leaf, ch
     case PN_SCALAR_STRING:
         length = (int)string_format(leaf->text, (leaf->text != NULL) ? leaf->length : 0U, out, capacity);
         break;
-    default:
-        break;
+    default: break;
     }
     return ((length > 0) && ((size_t)length < capacity)) ? (size_t)length : 0U;
 }
@@ -217,14 +212,15 @@ size_t pn_channel_compose(const pn_cell_channel_t *channel, const pn_leaf_t *lea
         return 0U;
     }
     const uint32_t crc = seal(out, payload, seq, session);
-    const int tail = snprintf(out + payload, capacity - payload, "\n# %" PRIu64 " %s %08" PRIx32 "\n", seq, session, crc);
+    const int tail =
+        snprintf(out + payload, capacity - payload, "\n# %" PRIu64 " %s %08" PRIx32 "\n", seq, session, crc);
     return ((tail > 0) && ((size_t)tail < capacity - payload)) ? payload + (size_t)tail : 0U;
 }
 
-/* --- reading ---------------------------------------------------------------------------------------------------------- */
+/* --- reading ------------------------------------------------------------------------------------------------------ */
 
-__attribute__((format(printf, 4, 5)))
-static void refuse(pn_message_t *out, pn_refusal_t refusal, size_t column, const char *format, ...)
+__attribute__((format(printf, 4, 5))) static void refuse(pn_message_t *out, pn_refusal_t refusal, size_t column,
+                                                         const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
@@ -298,7 +294,8 @@ static bool integer_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_l
             refuse(out, PN_REFUSAL_SCALAR, word->column, "found %s where `%s` of colour set `%s` should be an integer",
                    pn_quote(word->text, word->length, shown, sizeof shown), scalar->label, scalar->colset);
         } else {
-            refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is not a number; `%s` of colour set `%s` should be an integer",
+            refuse(out, PN_REFUSAL_SCALAR, word->column,
+                   "%s is not a number; `%s` of colour set `%s` should be an integer",
                    pn_quote(word->text, word->length, shown, sizeof shown), scalar->label, scalar->colset);
         }
         return false;
@@ -315,8 +312,8 @@ static bool integer_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_l
     }
     if (scalar->bounded && ((value < scalar->low) || (value > scalar->high))) {
         refuse(out, PN_REFUSAL_SCALAR, word->column,
-               "%lld is out of the colour set `%s` of `%s`, which goes from %" PRId64 " to %" PRId64, value, scalar->colset,
-               scalar->label, scalar->low, scalar->high);
+               "%lld is out of the colour set `%s` of `%s`, which goes from %" PRId64 " to %" PRId64, value,
+               scalar->colset, scalar->label, scalar->low, scalar->high);
         return false;
     }
     leaf->integer = (int64_t)value;
@@ -328,7 +325,8 @@ static bool real_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf
     char shown[160];
     char text[NUMBER_MAX];
     if (!is_number(word->text, word->length, true)) {
-        refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is not a number; `%s` of colour set `%s` should be a real number",
+        refuse(out, PN_REFUSAL_SCALAR, word->column,
+               "%s is not a number; `%s` of colour set `%s` should be a real number",
                pn_quote(word->text, word->length, shown, sizeof shown), scalar->label, scalar->colset);
         return false;
     }
@@ -342,7 +340,8 @@ static bool real_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf
         return false;
     }
     if (scalar->bounded && ((value < scalar->real_low) || (value > scalar->real_high))) {
-        refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is out of the colour set `%s` of `%s`, which goes from %g to %g",
+        refuse(out, PN_REFUSAL_SCALAR, word->column,
+               "%s is out of the colour set `%s` of `%s`, which goes from %g to %g",
                pn_quote(word->text, word->length, shown, sizeof shown), scalar->colset, scalar->label, scalar->real_low,
                scalar->real_high);
         return false;
@@ -370,15 +369,16 @@ static bool enum_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf
 static int hex_value(char c)
 {
     const char *const at = (c != '\0') ? strchr(HEX, c) : NULL;
-    return (at != NULL) ? (int)(at - HEX) : -1;
+    const ptrdiff_t distance = (at != NULL) ? (at - HEX) : -1;
+    return (int)distance;
 }
 
 /* Decodes a quoted string into the message's text. */
 static bool string_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf_t *leaf, pn_message_t *out)
 {
     char shown[160];
-    bool good = (word->length >= 2U) && (word->text[0] == '"') && (word->text[word->length - 1U] == '"') &&
-                (out->text_length + word->length < sizeof out->text);
+    bool good = (word->length >= 2U) && (word->text[0] == '"') && (word->text[word->length - 1U] == '"')
+                && (out->text_length + word->length < sizeof out->text);
     size_t at = out->text_length;
     leaf->text = out->text + at;
     size_t i = 1U;
@@ -388,9 +388,10 @@ static bool string_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_le
             const size_t left = word->length - 1U - i;
             if ((left >= 1U) && ((word->text[i] == '"') || (word->text[i] == '\\'))) {
                 c = word->text[i++];
-            } else if ((left >= 3U) && (word->text[i] == 'x') && (hex_value(word->text[i + 1U]) >= 0) &&
-                       (hex_value(word->text[i + 2U]) >= 0)) {
-                c = (char)((hex_value(word->text[i + 1U]) * 16) + hex_value(word->text[i + 2U]));
+            } else if ((left >= 3U) && (word->text[i] == 'x') && (hex_value(word->text[i + 1U]) >= 0)
+                       && (hex_value(word->text[i + 2U]) >= 0)) {
+                const int code = (hex_value(word->text[i + 1U]) * 16) + hex_value(word->text[i + 2U]);
+                c = (char)code;
                 i += 3U;
             } else {
                 good = false;
@@ -413,10 +414,14 @@ static bool string_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_le
 
 static bool scalar_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf_t *leaf, pn_message_t *out)
 {
-    static const char *const bool_name[2] = {"0", "1"};
-    static const char *const unit_name[1] = {"1"};
-    const pn_scalar_t bool_scalar = {.label = scalar->label, .colset = scalar->colset, .name_count = 2U, .name = bool_name};
-    const pn_scalar_t unit_scalar = {.label = scalar->label, .colset = scalar->colset, .name_count = 1U, .name = unit_name};
+    static const char *const bool_name[2] = { "0", "1" };
+    static const char *const unit_name[1] = { "1" };
+    const pn_scalar_t bool_scalar = {
+        .label = scalar->label, .colset = scalar->colset, .name_count = 2U, .name = bool_name
+    };
+    const pn_scalar_t unit_scalar = {
+        .label = scalar->label, .colset = scalar->colset, .name_count = 1U, .name = unit_name
+    };
     bool good = false;
     leaf->integer = 0;
     leaf->real = 0.0;
@@ -452,9 +457,7 @@ static bool scalar_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_le
         leaf->kind = PN_LEAF_ENUM;
         good = enum_parse(scalar, word, leaf, out);
         break;
-    default:
-        refuse(out, PN_REFUSAL_SCALAR, word->column, "unknown kind of scalar");
-        break;
+    default: refuse(out, PN_REFUSAL_SCALAR, word->column, "unknown kind of scalar"); break;
     }
     return good;
 }
@@ -488,7 +491,7 @@ static bool next_word(const char *line, size_t length, bool strings, size_t *at,
 bool pn_scalars_parse(const pn_scalar_t *scalar, uint32_t count, const char *line, size_t length, pn_message_t *out)
 {
     char shown[160];
-    pn_word_t word = {line, 0U, 1U};
+    pn_word_t word = { line, 0U, 1U };
     size_t at = 0U;
     uint32_t i = 0U;
     while (next_word(line, length, true, &at, &word)) {
@@ -519,8 +522,8 @@ bool pn_scalars_parse(const pn_scalar_t *scalar, uint32_t count, const char *lin
 }
 
 /* Line 2, `# seq session crc`, against the payload. */
-static bool trailer_parse(const char *payload, size_t payload_length, const char *line, size_t length, const char *session,
-                          pn_message_t *out)
+static bool trailer_parse(const char *payload, size_t payload_length, const char *line, size_t length,
+                          const char *session, pn_message_t *out)
 {
     char shown[160];
     char found_session[PN_CHANNEL_SESSION];
@@ -530,11 +533,11 @@ static bool trailer_parse(const char *payload, size_t payload_length, const char
     pn_word_t crc;
     pn_word_t more;
     size_t at = 0U;
-    const bool shaped = next_word(line, length, false, &at, &hash) && next_word(line, length, false, &at, &seq) &&
-                        next_word(line, length, false, &at, &run) && next_word(line, length, false, &at, &crc) &&
-                        !next_word(line, length, false, &at, &more) && (hash.length == 1U) && (hash.text[0] == '#') &&
-                        (seq.length <= 18U) && is_digit(seq.text[0]) && is_number(seq.text, seq.length, false) &&
-                        (run.length < sizeof found_session) && (crc.length == 8U);
+    const bool shaped = next_word(line, length, false, &at, &hash) && next_word(line, length, false, &at, &seq)
+                        && next_word(line, length, false, &at, &run) && next_word(line, length, false, &at, &crc)
+                        && !next_word(line, length, false, &at, &more) && (hash.length == 1U) && (hash.text[0] == '#')
+                        && (seq.length <= 18U) && is_digit(seq.text[0]) && is_number(seq.text, seq.length, false)
+                        && (run.length < sizeof found_session) && (crc.length == 8U);
     uint32_t found_crc = 0U;
     bool hexadecimal = shaped;
     for (size_t i = 0U; hexadecimal && (i < 8U); i++) {
@@ -550,13 +553,15 @@ static bool trailer_parse(const char *payload, size_t payload_length, const char
     (void)memcpy(found_session, run.text, run.length);
     found_session[run.length] = '\0';
     for (size_t i = 0U; i < seq.length; i++) {
-        out->seq = (out->seq * 10U) + (uint64_t)(seq.text[i] - '0');
+        const int digit = seq.text[i] - '0';
+        out->seq = (out->seq * 10U) + (uint64_t)digit;
     }
     out->sealed = true;
     const uint32_t expected = seal(payload, payload_length, out->seq, found_session);
     if (expected != found_crc) {
-        refuse(out, PN_REFUSAL_CHECKSUM, 1U, "checksum %08" PRIx32 " where %08" PRIx32 " is expected: %s is torn or altered",
-               found_crc, expected, pn_quote(payload, payload_length, shown, sizeof shown));
+        refuse(out, PN_REFUSAL_CHECKSUM, 1U,
+               "checksum %08" PRIx32 " where %08" PRIx32 " is expected: %s is torn or altered", found_crc, expected,
+               pn_quote(payload, payload_length, shown, sizeof shown));
         return false;
     }
     if (strcmp(found_session, session) != 0) {
@@ -570,7 +575,8 @@ static bool trailer_parse(const char *payload, size_t payload_length, const char
 static size_t line_length(const char *text, size_t length)
 {
     const char *const end = memchr(text, '\n', length);
-    size_t n = (end != NULL) ? (size_t)(end - text) : length;
+    const ptrdiff_t distance = (end != NULL) ? (end - text) : 0;
+    size_t n = (end != NULL) ? (size_t)distance : length;
     return n;
 }
 
@@ -591,8 +597,8 @@ bool pn_channel_is_empty(const char *text, size_t length)
     return is_last && (trimmed(text, first) == 1U) && (text[0] == '0');
 }
 
-pn_channel_state_t pn_channel_parse(const pn_cell_channel_t *channel, const char *text, size_t length, const char *session,
-                                    uint64_t consumed, pn_message_t *out)
+pn_channel_state_t pn_channel_parse(const pn_cell_channel_t *channel, const char *text, size_t length,
+                                    const char *session, uint64_t consumed, pn_message_t *out)
 {
     char shown[160];
     out->count = 0U;
@@ -636,8 +642,8 @@ pn_channel_state_t pn_channel_parse(const pn_cell_channel_t *channel, const char
         return PN_CHANNEL_REFUSED;
     }
     if (out->sealed && (out->seq != consumed + 1U)) {
-        refuse(out, PN_REFUSAL_LOST, 1U, "message %" PRIu64 " where %" PRIu64 " is expected: one has been lost", out->seq,
-               consumed + 1U);
+        refuse(out, PN_REFUSAL_LOST, 1U, "message %" PRIu64 " where %" PRIu64 " is expected: one has been lost",
+               out->seq, consumed + 1U);
         return PN_CHANNEL_REFUSED;
     }
     return PN_CHANNEL_MESSAGE;

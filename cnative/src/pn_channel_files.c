@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * pn_channel_files.c - the transport of shared files. I1..I10 are the invariants of docs/protocol.md.
  *
- * Making a file costs as much as all the rest of an answer (measured on tmpfs: create 3 us, write 2, rename 4). So the temporary
- * files of the next messages are made while there is nothing to do (`prepare`), and an answer only writes and renames. The same
- * holds for the look whether an outgoing file is empty (I3): it is done when the notice comes that its reader has emptied it.
+ * Making a file costs as much as all the rest of an answer (measured on tmpfs: create 3 us, write 2, rename 4). So the
+ * temporary files of the next messages are made while there is nothing to do (`prepare`), and an answer only writes and
+ * renames. The same holds for the look whether an outgoing file is empty (I3): it is done when the notice comes that
+ * its reader has emptied it.
  */
 #include "pn/pn_channel.h"
 #include "pn/pn_port.h"
@@ -16,23 +17,24 @@
 
 #define NAME_SIZE 256U
 
-static const char EMPTY[] = "0\n"; /* the content of a channel without a message; all that is ever written to an incoming one */
+static const char EMPTY[] =
+    "0\n"; /* the content of a channel without a message; all that is ever written to an incoming one */
 
 static const uint64_t NS_PER_MS = 1000000U;
 static const uint64_t STALE_PEER_WAIT_MS = 1000U; /* a robot of an earlier run notices within 100 ms that we are new */
 
 typedef struct file_channel {
-    bool dirty;         /* may have changed since the last look */
-    bool accepted;      /* in: the file's message is a token and has not been cleared yet */
-    bool sealed;        /* in: the accepted (or last read) message had a seq */
-    uint32_t content;   /* in: CRC of the whole file at the last look */
-    uint64_t last_seq;  /* in: of the message read last */
-    uint64_t seq;       /* in: last one consumed; out: last one written */
-    bool empty;         /* out: seen empty, and nothing has been written there since */
-    int prepared;       /* the temporary file, made and opened beforehand; -1: none */
-    int spent;          /* the descriptor of the last publication, to be closed at leisure; -1: none */
-    int held;           /* of the file that the next publication replaces; -1: none */
-    uint32_t own;       /* in: notices of our own clearing that are still to come */
+    bool dirty;        /* may have changed since the last look */
+    bool accepted;     /* in: the file's message is a token and has not been cleared yet */
+    bool sealed;       /* in: the accepted (or last read) message had a seq */
+    uint32_t content;  /* in: CRC of the whole file at the last look */
+    uint64_t last_seq; /* in: of the message read last */
+    uint64_t seq;      /* in: last one consumed; out: last one written */
+    bool empty;        /* out: seen empty, and nothing has been written there since */
+    int prepared;      /* the temporary file, made and opened beforehand; -1: none */
+    int spent;         /* the descriptor of the last publication, to be closed at leisure; -1: none */
+    int held;          /* of the file that the next publication replaces; -1: none */
+    uint32_t own;      /* in: notices of our own clearing that are still to come */
     char temporary[NAME_SIZE];
 } file_channel_t;
 
@@ -40,8 +42,8 @@ static struct {
     const pn_cell_t *cell;
     pn_files_options_t options;
     int directory;
-    int status;  /* our own status file, locked */
-    int watch;   /* -1: look every time */
+    int status; /* our own status file, locked */
+    int watch;  /* -1: look every time */
     char session[PN_CHANNEL_SESSION];
     char buffer[PN_CHANNEL_TEXT];
     pn_transport_fault_t fault;
@@ -53,8 +55,7 @@ const char *pn_files_session(void)
     return s_files.session;
 }
 
-__attribute__((format(printf, 2, 3)))
-static bool fail(bool io, const char *format, ...)
+__attribute__((format(printf, 2, 3))) static bool fail(bool io, const char *format, ...)
 {
     va_list arguments;
     va_start(arguments, format);
@@ -81,7 +82,7 @@ static bool fail_errno(const char *doing, const char *name, int error)
     return fail(true, "cannot %s %s/%s: %s%s", doing, s_files.options.directory, name, strerror(error), advice);
 }
 
-/* --- channels --------------------------------------------------------------------------------------------------------- */
+/* --- channels ----------------------------------------------------------------------------------------------------- */
 
 static pn_channel_state_t files_read(void *self, uint32_t index, pn_message_t *out)
 {
@@ -103,7 +104,8 @@ static pn_channel_state_t files_read(void *self, uint32_t index, pn_message_t *o
         }
         out->refusal = PN_REFUSAL_MISSING;
         out->column = 0U;
-        (void)snprintf(out->report, sizeof out->report, "the file is missing; an empty channel is a file that holds `0`");
+        (void)snprintf(out->report, sizeof out->report,
+                       "the file is missing; an empty channel is a file that holds `0`");
         state->content = 0U;
         state->dirty = true; /* look again: the directory itself may be going */
         return PN_CHANNEL_REFUSED;
@@ -120,12 +122,14 @@ static pn_channel_state_t files_read(void *self, uint32_t index, pn_message_t *o
         char shown[160];
         out->refusal = PN_REFUSAL_OVERWRITTEN;
         out->column = 0U;
-        (void)snprintf(out->report, sizeof out->report, "changed to %s before the message in it was consumed (channel-overrun)",
+        (void)snprintf(out->report, sizeof out->report,
+                       "changed to %s before the message in it was consumed (channel-overrun)",
                        pn_quote(s_files.buffer, length, shown, sizeof shown));
         return PN_CHANNEL_REFUSED;
     }
     state->content = content;
-    const pn_channel_state_t found = pn_channel_parse(channel, s_files.buffer, length, s_files.session, state->seq, out);
+    const pn_channel_state_t found =
+        pn_channel_parse(channel, s_files.buffer, length, s_files.session, state->seq, out);
     state->sealed = out->sealed;
     state->last_seq = out->seq;
     return found;
@@ -156,7 +160,8 @@ static bool put_file(uint32_t index, const char *data, size_t length)
     file_channel_t *const state = &s_files.channel[index];
     int error;
     if (state->prepared >= 0) {
-        const size_t left = (s_files.cell->channel[index].direction == PN_CHANNEL_IN) ? 0U : length; /* it holds EMPTY */
+        const size_t left =
+            (s_files.cell->channel[index].direction == PN_CHANNEL_IN) ? 0U : length; /* it holds EMPTY */
         error = pn_port_publish_prepared(s_files.directory, file, state->temporary, state->prepared, data, left);
         state->spent = state->prepared;
         state->prepared = -1;
@@ -178,8 +183,8 @@ static void prepare(void)
             state->held = -1;
         }
         const size_t length = (s_files.cell->channel[i].direction == PN_CHANNEL_IN) ? sizeof EMPTY - 1U : 0U;
-        if ((state->prepared < 0) &&
-            (pn_port_prepare(s_files.directory, state->temporary, EMPTY, length, &state->prepared) != 0)) {
+        if ((state->prepared < 0)
+            && (pn_port_prepare(s_files.directory, state->temporary, EMPTY, length, &state->prepared) != 0)) {
             state->prepared = -1;
         }
     }
@@ -252,14 +257,18 @@ static bool files_write(void *self, uint32_t index, const pn_leaf_t *leaf)
     }
     if (!empty) { /* I3 */
         char shown[160];
-        return fail(false, "channel-overrun: %s still holds %s, which %s has not taken; the next message cannot be written",
+        return fail(false,
+                    "channel-overrun: %s still holds %s, which %s has not taken; the next message cannot be written",
                     channel->file, pn_quote(s_files.buffer, strlen(s_files.buffer), shown, sizeof shown),
                     s_files.cell->peer[channel->peer].name);
     }
     const size_t length = pn_channel_compose(channel, leaf, state->seq + 1U, s_files.session, text, sizeof text);
     if (length == 0U) {
-        return fail(false, "the token of place `%s` cannot be written to %s: a value is not finite or out of its range, or the message has "
-                    "more than %u bytes", channel->place_name, channel->file, PN_CHANNEL_PAYLOAD);
+        return fail(false,
+                    "the token of place `%s` cannot be written to %s: a value is not finite or out of its range, or "
+                    "the message has "
+                    "more than %u bytes",
+                    channel->place_name, channel->file, PN_CHANNEL_PAYLOAD);
     }
     if (!put_file(index, text, length)) {
         return false;
@@ -269,9 +278,9 @@ static bool files_write(void *self, uint32_t index, const pn_leaf_t *leaf)
     return true;
 }
 
-/* --- liveness and status (I8, I9) ------------------------------------------------------------------------------------- */
+/* --- liveness and status (I8, I9) --------------------------------------------------------------------------------- */
 
-static const char *const STATE_NAME[] = {"absent", "running", "finished", "stopped", "dead"};
+static const char *const STATE_NAME[] = { "absent", "running", "finished", "stopped", "dead" };
 
 static void status_name(const char *side, char *out, size_t capacity)
 {
@@ -337,8 +346,8 @@ static void files_party(void *self, uint32_t peer, pn_party_t *out)
     /* The lock first: who gives it up has said why before, so a status read after that is the last word. */
     const int error = pn_port_probe(s_files.directory, name, &exists, &locked);
     status_read(side, &status);
-    const bool announced = exists && (error == 0) && (status.state != PN_PARTY_ABSENT) &&
-                           (strcmp(status.session, s_files.session) == 0);
+    const bool announced =
+        exists && (error == 0) && (status.state != PN_PARTY_ABSENT) && (strcmp(status.session, s_files.session) == 0);
     out->state = announced ? status.state : PN_PARTY_ABSENT;
     out->pid = status.pid;
     if (announced && !locked && (status.state == PN_PARTY_RUNNING)) {
@@ -353,8 +362,8 @@ static bool files_announce(void *self, pn_party_state_t state, const char *reaso
     char text[512];
     char line[256];
     (void)take_line((reason != NULL) ? reason : "", line, sizeof line); /* one line, whatever it was */
-    const int length = snprintf(text, sizeof text, "%s\n%s %" PRIu64 "\n%s\n", STATE_NAME[state], s_files.session, pn_port_pid(),
-                                line);
+    const int length = snprintf(text, sizeof text, "%s\n%s %" PRIu64 "\n%s\n", STATE_NAME[state], s_files.session,
+                                pn_port_pid(), line);
     const int error = pn_port_rewrite(s_files.status, text, (length > 0) ? (size_t)length : 0U);
     if (error != 0) {
         char name[NAME_SIZE];
@@ -364,7 +373,7 @@ static bool files_announce(void *self, pn_party_state_t state, const char *reaso
     return true;
 }
 
-/* --- waiting ---------------------------------------------------------------------------------------------------------- */
+/* --- waiting ------------------------------------------------------------------------------------------------------ */
 
 typedef struct change {
     bool incoming;
@@ -410,7 +419,7 @@ static pn_wait_t files_wait(void *self, uint64_t timeout_ns)
 {
     (void)self;
     const uint64_t begin = pn_port_now();
-    change_t change = {false};
+    change_t change = { false };
     uint64_t spent = 0U;
     bool over = false;
     if (s_files.watch < 0) {
@@ -457,7 +466,7 @@ static void files_close(void *self)
     s_files.directory = -1;
 }
 
-/* --- opening (I7) ----------------------------------------------------------------------------------------------------- */
+/* --- opening (I7) ------------------------------------------------------------------------------------------------- */
 
 static void notice(const char *text)
 {
@@ -478,10 +487,12 @@ static bool take_lock(void)
     }
     if (error == EWOULDBLOCK) {
         status_read(s_files.cell->side, &other);
-        return fail(true, "another %s (pid %" PRIu64 ") is running in %s; stop it, or choose another directory with --dir",
+        return fail(true,
+                    "another %s (pid %" PRIu64 ") is running in %s; stop it, or choose another directory with --dir",
                     s_files.cell->side, other.pid, s_files.options.directory);
     }
-    return (error == 0) || fail_errno("write", name, error); /* it is empty now: an old `running` is not taken for ours */
+    return (error == 0)
+           || fail_errno("write", name, error); /* it is empty now: an old `running` is not taken for ours */
 }
 
 /* Robots of an earlier run have to be gone: they might act on what we write. */
@@ -561,7 +572,8 @@ static bool open_all(void)
     if (s_files.options.watch) {
         error = pn_port_watch(s_files.options.directory, &s_files.watch);
         if (error != 0) {
-            (void)snprintf(s_files.buffer, sizeof s_files.buffer, "no notifications of changes in %s (%s): polling every %" PRIu64 " ms",
+            (void)snprintf(s_files.buffer, sizeof s_files.buffer,
+                           "no notifications of changes in %s (%s): polling every %" PRIu64 " ms",
                            s_files.options.directory, strerror(error), s_files.options.poll_ns / NS_PER_MS);
             notice(s_files.buffer);
         }
@@ -591,7 +603,8 @@ bool pn_files_open(const pn_cell_t *cell, const pn_files_options_t *options, pn_
     out->close = files_close;
     (void)snprintf(s_files.session, sizeof s_files.session, "%08" PRIx32, pn_port_unique());
     for (uint32_t i = 0U; i < cell->channel_count; i++) {
-        const int length = snprintf(s_files.channel[i].temporary, NAME_SIZE, ".%s.%s.tmp", cell->channel[i].file, cell->side);
+        const int length =
+            snprintf(s_files.channel[i].temporary, NAME_SIZE, ".%s.%s.tmp", cell->channel[i].file, cell->side);
         if ((length < 0) || ((size_t)length >= NAME_SIZE) || (strchr(cell->channel[i].file, '/') != NULL)) {
             return fail(true, "`%s` cannot be the name of a channel's file", cell->channel[i].file);
         }

@@ -22,8 +22,8 @@
 static char s_root[PATH_MAX]; /* "" : no folder is allowed */
 static char s_here[PATH_MAX];
 static FILE *s_output;
-static bool s_has_output;     /* the host has said where; else the standard error output */
-static int s_problem;         /* errno of the last operation, 0 if it worked */
+static bool s_has_output; /* the host has said where; else the standard error output */
+static int s_problem;     /* errno of the last operation, 0 if it worked */
 
 bool pn_file_allow(const char *folder)
 {
@@ -62,8 +62,8 @@ static bool is_below_root(const char *path)
     return (strncmp(path, s_root, n) == 0) && ((n == 1U) || (path[n] == '/') || (path[n] == '\0'));
 }
 
-/* Where a file or folder of that name is, without links in the path: `path` has PATH_MAX bytes. The last part need not exist. False
- * when it is not below the allowed folder. */
+/* Where a file or folder of that name is, without links in the path: `path` has PATH_MAX bytes. The last part need not
+ * exist. False when it is not below the allowed folder. */
 static bool find(pn_string_t name, char *path)
 {
     s_problem = 0;
@@ -117,7 +117,7 @@ static bool find_existing(pn_string_t name, char *path, struct stat *about)
     return find(name, path) && note(stat(path, about) == 0);
 }
 
-/* --- reading and writing ------------------------------------------------------------------------------------------- */
+/* --- reading and writing ------------------------------------------------------------------------------------------ */
 
 pn_string_t pn_file_read(pn_ctx_t *cx, pn_string_t name)
 {
@@ -189,7 +189,7 @@ void pn_file_close(pn_ctx_t *cx, int64_t handle)
     }
 }
 
-/* --- folders ------------------------------------------------------------------------------------------------------- */
+/* --- folders ------------------------------------------------------------------------------------------------------ */
 
 bool pn_file_change(pn_ctx_t *cx, int64_t what, pn_string_t name)
 {
@@ -240,7 +240,8 @@ bool pn_file_may(pn_ctx_t *cx, pn_string_t name, int64_t modes)
 {
     char path[PATH_MAX];
     struct stat about;
-    const int wanted = (((modes & 1) != 0) ? R_OK : 0) | (((modes & 2) != 0) ? W_OK : 0) | (((modes & 4) != 0) ? X_OK : 0);
+    const int wanted =
+        (((modes & 1) != 0) ? R_OK : 0) | (((modes & 2) != 0) ? W_OK : 0) | (((modes & 4) != 0) ? X_OK : 0);
     return pn_ok(cx) && find_existing(name, path, &about) && (access(path, (wanted == 0) ? F_OK : wanted) == 0);
 }
 
@@ -265,7 +266,8 @@ static bool next_name(DIR *folder, const char *after, char *name)
     for (const struct dirent *entry = readdir(folder); entry != NULL; entry = readdir(folder)) {
         const char *here = entry->d_name;
         const bool is_own = (strcmp(here, ".") == 0) || (strcmp(here, "..") == 0);
-        if (!is_own && (strcmp(here, after) > 0) && (!is_found || (strcmp(here, name) < 0)) && (strlen(here) < PATH_MAX)) {
+        if (!is_own && (strcmp(here, after) > 0) && (!is_found || (strcmp(here, name) < 0))
+            && (strlen(here) < PATH_MAX)) {
             (void)strcpy(name, here);
             is_found = true;
         }
@@ -296,7 +298,7 @@ pn_string_t pn_file_names(pn_ctx_t *cx, pn_string_t name)
     return names;
 }
 
-/* --- problems ------------------------------------------------------------------------------------------------------ */
+/* --- problems ----------------------------------------------------------------------------------------------------- */
 
 bool pn_file_has_failed(void)
 {

@@ -6,36 +6,29 @@
 #include "pn/pn_type.h"
 #include "pn_type_impl.h"
 
-/* --- how many, and on which lines ---------------------------------------------------------------------------------- */
+/* --- how many, and on which lines --------------------------------------------------------------------------------- */
+
+/* Whether a value is one scalar. */
+static bool is_scalar(const pn_type_t *type)
+{
+    return (type->kind != PN_KIND_CHAR) && (type->kind != PN_KIND_LIST) && (type->kind != PN_KIND_UNION)
+           && (type->kind != PN_KIND_REF) && (type->kind != PN_KIND_RECORD);
+}
 
 uint32_t pn_leaf_count(const pn_type_t *type)
 {
     uint32_t count = 0U;
-    switch (type->kind) {
-    case PN_KIND_BOOL:
-    case PN_KIND_INT:
-    case PN_KIND_BIG:
-    case PN_KIND_REAL:
-    case PN_KIND_STRING:
-    case PN_KIND_ENUM:
-    case PN_KIND_UNIT:
-        return 1U;
-    case PN_KIND_RECORD:
-        for (uint32_t i = 0U; i < type->count; i++) {
-            const uint32_t part = pn_leaf_count(type->field[i].type);
-            if (part == 0U) {
-                return 0U;
-            }
-            count += part;
+    for (uint32_t i = 0U; i < parts_of(type); i++) {
+        const pn_type_t *const one = part_at(type, i).type;
+        if (is_scalar(one)) {
+            count++;
+        } else if (one->kind != PN_KIND_RECORD) {
+            return 0U;
+        } else {
+            /* a record that is a subset: its parts have been counted */
         }
-        return count;
-    case PN_KIND_CHAR:
-    case PN_KIND_LIST:
-    case PN_KIND_UNION:
-    case PN_KIND_REF:
-    default:
-        return 0U;
     }
+    return count;
 }
 
 uint32_t pn_line_count(const pn_type_t *type)
@@ -52,7 +45,7 @@ uint32_t pn_line_leaves(const pn_type_t *type, uint32_t line)
     return (pn_line_count(type) > 1U) ? pn_leaf_count(type->field[line].type) : pn_leaf_count(type);
 }
 
-/* --- there and back ------------------------------------------------------------------------------------------------ */
+/* --- there and back ----------------------------------------------------------------------------------------------- */
 
 static bool push_leaf(pn_leaf_t *leaf, uint32_t capacity, uint32_t *used, pn_leaf_t value)
 {
@@ -64,7 +57,7 @@ static bool push_leaf(pn_leaf_t *leaf, uint32_t capacity, uint32_t *used, pn_lea
     return true;
 }
 
-static bool leaves_of(const pn_type_t *type, const void *value, pn_leaf_t *leaf, uint32_t capacity, uint32_t *used)
+static bool leaf_of(const pn_type_t *type, const void *value, pn_leaf_t *leaf, uint32_t capacity, uint32_t *used)
 {
     pn_leaf_t one = { PN_LEAF_ENUM, 0, 0.0, NULL, 0U };
     switch (type->kind) {
@@ -93,28 +86,26 @@ static bool leaves_of(const pn_type_t *type, const void *value, pn_leaf_t *leaf,
         one.integer = (int64_t)load_tag(value);
         one.text = type->name_of_value[load_tag(value)];
         return push_leaf(leaf, capacity, used, one);
-    case PN_KIND_UNIT:
-        return push_leaf(leaf, capacity, used, one);
-    case PN_KIND_RECORD:
-        for (uint32_t i = 0U; i < type->count; i++) {
-            if (!leaves_of(type->field[i].type, part(value, type->field[i].offset), leaf, capacity, used)) {
-                return false;
-            }
-        }
-        return true;
+    case PN_KIND_UNIT: return push_leaf(leaf, capacity, used, one);
+    case PN_KIND_RECORD: return true; /* its parts have been taken */
     case PN_KIND_CHAR:
     case PN_KIND_LIST:
     case PN_KIND_UNION:
     case PN_KIND_REF:
-    default:
-        return false;
+    default: return false;
     }
 }
 
 uint32_t pn_to_leaves(const pn_type_t *type, const void *value, pn_leaf_t *leaf, uint32_t capacity)
 {
     uint32_t used = 0U;
-    return leaves_of(type, value, leaf, capacity, &used) ? used : 0U;
+    for (uint32_t i = 0U; i < parts_of(type); i++) {
+        const pn_part_t one = part_at(type, i);
+        if (!leaf_of(one.type, part(value, one.offset), leaf, capacity, &used)) {
+            return 0U;
+        }
+    }
+    return used;
 }
 
 static bool enum_from_leaf(const pn_type_t *type, const pn_leaf_t *leaf, void *value)
@@ -131,17 +122,11 @@ static bool enum_from_leaf(const pn_type_t *type, const pn_leaf_t *leaf, void *v
     return tag < type->count;
 }
 
-static bool value_from(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn_leaf_t *leaf, uint32_t leaves, uint32_t *used)
+static bool part_from(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn_leaf_t *leaf, uint32_t leaves,
+                      uint32_t *used)
 {
     if (type->kind == PN_KIND_RECORD) {
-        (void)memset(value, 0, type->size);
-        for (uint32_t i = 0U; i < type->count; i++) {
-            void *member = part_of(value, type->field[i].offset);
-            if (!value_from(cx, type->field[i].type, member, leaf, leaves, used)) {
-                return false;
-            }
-        }
-        return true;
+        return true; /* its parts are there */
     }
     if (*used >= leaves) {
         return false;
@@ -155,9 +140,7 @@ static bool value_from(pn_ctx_t *cx, const pn_type_t *type, void *value, const p
         (void)memcpy(value, &flag, sizeof flag);
         return one->kind == PN_LEAF_BOOL;
     }
-    case PN_KIND_INT:
-        (void)memcpy(value, &one->integer, sizeof one->integer);
-        return is_integer;
+    case PN_KIND_INT: (void)memcpy(value, &one->integer, sizeof one->integer); return is_integer;
     case PN_KIND_BIG: {
         const pn_big_t number = PN_BIG(one->integer);
         (void)memcpy(value, &number, sizeof number);
@@ -176,25 +159,27 @@ static bool value_from(pn_ctx_t *cx, const pn_type_t *type, void *value, const p
         (void)memcpy(value, &text, sizeof text);
         return true;
     }
-    case PN_KIND_ENUM:
-        return (one->kind == PN_LEAF_ENUM) && enum_from_leaf(type, one, value);
-    case PN_KIND_UNIT:
-        (void)memset(value, 0, type->size);
-        return one->kind == PN_LEAF_ENUM;
+    case PN_KIND_ENUM: return (one->kind == PN_LEAF_ENUM) && enum_from_leaf(type, one, value);
+    case PN_KIND_UNIT: (void)memset(value, 0, type->size); return one->kind == PN_LEAF_ENUM;
     case PN_KIND_CHAR:
     case PN_KIND_RECORD:
     case PN_KIND_LIST:
     case PN_KIND_UNION:
     case PN_KIND_REF:
-    default:
-        return false;
+    default: return false;
     }
 }
 
 bool pn_from_leaves(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn_leaf_t *leaf, uint32_t leaves)
 {
     uint32_t used = 0U;
-    if (!value_from(cx, type, value, leaf, leaves, &used) || (used != leaves)) {
+    bool is_good = true;
+    (void)memset(value, 0, type->size);
+    for (uint32_t i = 0U; is_good && (i < parts_of(type)); i++) {
+        const pn_part_t one = part_at(type, i);
+        is_good = part_from(cx, one.type, part_of(value, one.offset), leaf, leaves, &used);
+    }
+    if (!is_good || (used != leaves)) {
         pn_raise(cx, PN_ERR_COLOUR, NULL);
     }
     return pn_ok(cx);

@@ -108,7 +108,7 @@ static size_t scientific(char *text, size_t length, double x, int64_t places, si
 
 pn_string_t pn_real_styled(pn_ctx_t *cx, int64_t style, int64_t digits, double x)
 {
-    char text[1600]; /* the largest number has 309 digits in front of the point */
+    char text[1600];           /* the largest number has 309 digits in front of the point */
     const int64_t most = 1100; /* all further ones are zeros: Real.sml appends them */
     if (!isfinite(x) || (style == 2)) {
         return pn_string_make(cx, text, pn_real_general(text, sizeof text, x, digits));

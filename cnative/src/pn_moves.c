@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * A firing is worked out as a list of moves and then done as a whole, or not at all.
  *
- * Timed places: of several admissible tokens of one value the one with the latest stamp is taken (Jensen's rule), moves with the
- * earliest limit first, so that a move with a later limit never takes what only an earlier one could have used.
+ * Timed places: of several admissible tokens of one value the one with the latest stamp is taken (Jensen's rule), moves
+ * with the earliest limit first, so that a move with a later limit never takes what only an earlier one could have
+ * used.
  */
 #include <string.h>
 
@@ -19,7 +20,8 @@ void pn_moves_init(pn_moves_t *moves, pn_ctx_t *cx)
     moves->last = NULL;
 }
 
-static void add(pn_moves_t *moves, pn_move_kind_t kind, const pn_bag_t *bag, const void *value, uint32_t count, pn_time_t time)
+static void add(pn_moves_t *moves, pn_move_kind_t kind, const pn_bag_t *bag, const void *value, uint32_t count,
+                pn_time_t time)
 {
     pn_move_t *move = pn_arena_alloc(moves->cx, sizeof *move);
     if (move == NULL) {
@@ -64,7 +66,8 @@ void pn_moves_take(pn_moves_t *moves, const pn_bag_t *bag, const void *value, in
     }
 }
 
-void pn_moves_take_list(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t *list, const void *multiset, pn_time_t limit)
+void pn_moves_take_list(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t *list, const void *multiset,
+                        pn_time_t limit)
 {
     for (const void *rest = multiset; (rest != NULL) && pn_ok(moves->cx); rest = pn_list_tail(rest)) {
         add(moves, PN_MOVE_TAKE, bag, pn_list_head(list, rest), 1U, limit);
@@ -86,7 +89,8 @@ void pn_moves_put(pn_moves_t *moves, const pn_bag_t *bag, const void *value, int
     add(moves, PN_MOVE_PUT, bag, stored, n, stamp);
 }
 
-void pn_moves_put_list(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t *list, const void *multiset, pn_time_t stamp)
+void pn_moves_put_list(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t *list, const void *multiset,
+                       pn_time_t stamp)
 {
     for (const void *rest = multiset; (rest != NULL) && pn_ok(moves->cx); rest = pn_list_tail(rest)) {
         pn_moves_put(moves, bag, pn_list_head(list, rest), 1, stamp);
@@ -104,7 +108,8 @@ static pn_time_t later(pn_ctx_t *cx, bool is_real_time, pn_time_t time, pn_time_
     return sum;
 }
 
-void pn_moves_put_timed(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t *list, const void *multiset, pn_time_t delay)
+void pn_moves_put_timed(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t *list, const void *multiset,
+                        pn_time_t delay)
 {
     const pn_field_t *value = &list->element->field[0];
     const pn_field_t *stamp = &list->element->field[1];
@@ -121,7 +126,7 @@ void pn_moves_reset(pn_moves_t *moves, const pn_bag_t *bag, pn_time_t now)
     add(moves, PN_MOVE_RESET, bag, NULL, 0U, now);
 }
 
-/* --- enabling ------------------------------------------------------------------------------------------------------ */
+/* --- enabling ----------------------------------------------------------------------------------------------------- */
 
 /* Whether two moves want the same value of the same place. */
 static bool is_rival(const pn_move_t *a, const pn_move_t *b)
@@ -142,9 +147,9 @@ bool pn_moves_are_possible(const pn_moves_t *moves, const void *marking)
         }
         uint64_t wanted = 0U;
         for (const pn_move_t *other = moves->first; other != NULL; other = other->next) {
-            const bool counts = is_rival(move, other)
-                                && (!move->bag->is_timed
-                                    || (pn_time_order(move->bag->is_real_time, other->time, move->time) <= 0));
+            const bool counts =
+                is_rival(move, other)
+                && (!move->bag->is_timed || (pn_time_order(move->bag->is_real_time, other->time, move->time) <= 0));
             wanted += counts ? other->count : 0U;
         }
         if (wanted > pn_bag_count(move->bag, marking, move->value, move->time)) {
@@ -154,7 +159,7 @@ bool pn_moves_are_possible(const pn_moves_t *moves, const void *marking)
     return true;
 }
 
-/* --- doing --------------------------------------------------------------------------------------------------------- */
+/* --- doing -------------------------------------------------------------------------------------------------------- */
 
 /* The next move of a kind that is not done: in order; takes from timed places by limit. */
 static pn_move_t *next_move(const pn_moves_t *moves, pn_move_kind_t kind)
@@ -177,7 +182,7 @@ static pn_move_t *next_move(const pn_moves_t *moves, pn_move_kind_t kind)
 static bool take(pn_ctx_t *cx, pn_move_t *move, void *marking)
 {
     const pn_bag_t *bag = move->bag;
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         const bool is_taken = pn_bag_take_packed(bag, marking, move->value, move->count);
         if (!is_taken) {
             pn_raise(cx, PN_ERR_SUBTRACT, NULL);
@@ -224,7 +229,7 @@ static void undo_move(pn_ctx_t *cx, const pn_move_t *move, void *marking)
         (void)pn_bag_add(cx, bag, marking, move->value, move->count, move->taken);
         return;
     }
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         (void)pn_bag_take_packed(bag, marking, move->value, move->count);
         return;
     }
@@ -261,7 +266,8 @@ static void reset(const pn_move_t *move, void *marking)
     }
     for (uint32_t i = pn_bag_used(bag, marking); i > 0U; i--) {
         const void *entry = pn_bag_entry(bag, marking, i - 1U);
-        const bool stays = bag->is_timed && (pn_time_order(bag->is_real_time, pn_bag_stamp_of(bag, entry), move->time) > 0);
+        const bool stays =
+            bag->is_timed && (pn_time_order(bag->is_real_time, pn_bag_stamp_of(bag, entry), move->time) > 0);
         if (!stays) {
             pn_bag_remove_at(bag, marking, i - 1U, pn_bag_count_of(bag, entry));
         }

@@ -54,8 +54,7 @@ bool pn_is_exception(const pn_ctx_t *cx)
     case PN_ERR_EMPTY:
     case PN_ERR_DOMAIN:
     case PN_ERR_SUBTRACT:
-    case PN_ERR_RAISED:
-        return true;
+    case PN_ERR_RAISED: return true;
     case PN_OK:
     case PN_ERR_COLOUR:
     case PN_ERR_CAPACITY:
@@ -65,8 +64,7 @@ bool pn_is_exception(const pn_ctx_t *cx)
     case PN_ERR_LARGE:
     case PN_ERR_UNSUPPORTED:
     case PN_ERR_INTERNAL:
-    default:
-        return false;
+    default: return false;
     }
 }
 
@@ -83,7 +81,7 @@ void pn_clear_error(pn_ctx_t *cx)
     cx->exception = NULL;
 }
 
-/* --- integers ------------------------------------------------------------------------------------------------------ */
+/* --- integers ----------------------------------------------------------------------------------------------------- */
 
 int64_t pn_int_overflow(pn_ctx_t *cx)
 {
@@ -214,7 +212,7 @@ int64_t pn_wide_abs(pn_ctx_t *cx, int64_t a)
     return (a < 0) ? negate(cx, a) : a;
 }
 
-/* --- reals --------------------------------------------------------------------------------------------------------- */
+/* --- reals -------------------------------------------------------------------------------------------------------- */
 
 double pn_real_round_even(double x)
 {
@@ -392,8 +390,8 @@ double pn_real_latest(double now, double early)
     return real_of_rank(first);
 }
 
-/* The shortest digits that read back to x > 0: 15 digits always come back from decimal, 17 from binary; below the normal
- * range fewer than 15 may do. Gives d.ddd...e[+-]xx as printf writes it. */
+/* The shortest digits that read back to x > 0: 15 digits always come back from decimal, 17 from binary; below the
+ * normal range fewer than 15 may do. Gives d.ddd...e[+-]xx as printf writes it. */
 static void shortest_digits(char *out, double x)
 {
     const int least = (x < 2.2250738585072014e-308) ? 0 : 14;

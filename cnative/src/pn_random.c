@@ -170,7 +170,8 @@ double pn_random_beta(pn_ctx_t *cx, double a, double b)
 
 double pn_random_weibull(pn_ctx_t *cx, double shape, double scale)
 {
-    return require(cx, (shape > 0.0) && (scale > 0.0), "Weibull") ? (scale * pow(-log(pn_random_unit(cx)), 1.0 / shape)) : 0.0;
+    return require(cx, (shape > 0.0) && (scale > 0.0), "Weibull") ? (scale * pow(-log(pn_random_unit(cx)), 1.0 / shape))
+                                                                  : 0.0;
 }
 
 double pn_random_rayleigh(pn_ctx_t *cx, double scale)

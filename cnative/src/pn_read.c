@@ -38,7 +38,8 @@ bool pn_read_accept(pn_string_t text, int64_t *at, pn_string_t word)
     }
     skip(text, at);
     const int64_t left = (int64_t)text.length - *at;
-    if ((word.length == 0U) || ((int64_t)word.length > left) || (memcmp(&text.bytes[*at], word.bytes, word.length) != 0)) {
+    if ((word.length == 0U) || ((int64_t)word.length > left)
+        || (memcmp(&text.bytes[*at], word.bytes, word.length) != 0)) {
         return false;
     }
     const int64_t end = *at + (int64_t)word.length;
@@ -161,7 +162,7 @@ double pn_read_number(pn_ctx_t *cx, pn_string_t text, int64_t *at)
     return is_minus ? -number : number;
 }
 
-/* --- values -------------------------------------------------------------------------------------------------------- */
+/* --- values ------------------------------------------------------------------------------------------------------- */
 
 static void input(pn_ctx_t *cx, const pn_type_t *type, void *value, pn_string_t text, int64_t *at);
 
@@ -280,9 +281,7 @@ static void input(pn_ctx_t *cx, const pn_type_t *type, void *value, pn_string_t 
             expect(cx, text, at, PN_STRING("()"));
         }
         break;
-    case PN_KIND_BOOL:
-        input_bool(cx, type, value, text, at);
-        break;
+    case PN_KIND_BOOL: input_bool(cx, type, value, text, at); break;
     case PN_KIND_INT: {
         if (type->is_index) {
             expect(cx, text, at, named(type->name_of_value[0]));
@@ -301,23 +300,15 @@ static void input(pn_ctx_t *cx, const pn_type_t *type, void *value, pn_string_t 
         (void)memcpy(value, &number, sizeof number);
         break;
     }
-    case PN_KIND_STRING:
-        input_string(cx, value, text, at);
-        break;
+    case PN_KIND_STRING: input_string(cx, value, text, at); break;
     case PN_KIND_ENUM: {
         const uint32_t tag = one_of(cx, type, text, at);
         (void)memcpy(value, &tag, sizeof tag);
         break;
     }
-    case PN_KIND_RECORD:
-        input_record(cx, type, value, text, at);
-        break;
-    case PN_KIND_LIST:
-        input_list(cx, type, value, text, at);
-        break;
-    case PN_KIND_UNION:
-        input_union(cx, type, value, text, at);
-        break;
+    case PN_KIND_RECORD: input_record(cx, type, value, text, at); break;
+    case PN_KIND_LIST: input_list(cx, type, value, text, at); break;
+    case PN_KIND_UNION: input_union(cx, type, value, text, at); break;
     case PN_KIND_CHAR:
     case PN_KIND_REF:
     default:

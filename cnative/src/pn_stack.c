@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * pn_stack.c - how far functions of the net may recurse: as far as the stack reaches, where the system tells how far that is.
+ * pn_stack.c - how far functions of the net may recurse: as far as the stack reaches, where the system tells how far
+ * that is.
  */
 #define _POSIX_C_SOURCE 200809L
 

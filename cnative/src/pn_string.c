@@ -93,8 +93,7 @@ pn_string_t pn_string_of_char(pn_ctx_t *cx, uint8_t c)
 
 bool pn_string_is_prefix(pn_string_t part, pn_string_t s)
 {
-    return (part.length == 0U)
-           || ((part.length <= s.length) && (memcmp(part.bytes, s.bytes, part.length) == 0));
+    return (part.length == 0U) || ((part.length <= s.length) && (memcmp(part.bytes, s.bytes, part.length) == 0));
 }
 
 bool pn_string_is_suffix(pn_string_t part, pn_string_t s)
@@ -237,7 +236,8 @@ size_t pn_real_general(char *out, size_t capacity, double value, int64_t digits)
     const int length = snprintf(out, capacity, "%s%s", sign, digit);
     const size_t zeros = (size_t)(exponent + 1 - count);
     (void)memset(&out[length], '0', zeros);
-    return (size_t)length + zeros + (size_t)snprintf(&out[(size_t)length + zeros], capacity - (size_t)length - zeros, ".0");
+    return (size_t)length + zeros
+           + (size_t)snprintf(&out[(size_t)length + zeros], capacity - (size_t)length - zeros, ".0");
 }
 
 /* SML/NJ's Real.toString: 12 significant digits, at least one decimal, E notation outside 1E~04 .. 1E12. */

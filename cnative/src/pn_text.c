@@ -184,15 +184,9 @@ void pn_text_json_real(pn_text_t *text, double value)
 void pn_text_json_leaf(pn_text_t *text, const pn_leaf_t *leaf)
 {
     switch (leaf->kind) {
-    case PN_LEAF_BOOL:
-        pn_text_str(text, (leaf->integer != 0) ? "true" : "false");
-        break;
-    case PN_LEAF_REAL:
-        pn_text_json_real(text, leaf->real);
-        break;
-    case PN_LEAF_STRING:
-        pn_text_json_string(text, leaf->text, leaf->length);
-        break;
+    case PN_LEAF_BOOL: pn_text_str(text, (leaf->integer != 0) ? "true" : "false"); break;
+    case PN_LEAF_REAL: pn_text_json_real(text, leaf->real); break;
+    case PN_LEAF_STRING: pn_text_json_string(text, leaf->text, leaf->length); break;
     case PN_LEAF_ENUM:
         if (leaf->text != NULL) {
             pn_text_json_str(text, leaf->text);
@@ -201,8 +195,6 @@ void pn_text_json_leaf(pn_text_t *text, const pn_leaf_t *leaf)
         }
         break;
     case PN_LEAF_INT:
-    default:
-        pn_text_int(text, leaf->integer);
-        break;
+    default: pn_text_int(text, leaf->integer); break;
     }
 }

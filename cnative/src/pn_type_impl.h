@@ -103,6 +103,19 @@ static inline const pn_field_t *constructor_of(const pn_type_t *type, const void
     return field;
 }
 
+/* Number of parts of a value, and part i: of a record as its table says, of anything else itself. Bindings have no
+ * parts. */
+static inline uint32_t parts_of(const pn_type_t *type)
+{
+    return (type->kind == PN_KIND_RECORD) ? type->part_count : 1U;
+}
+
+static inline pn_part_t part_at(const pn_type_t *type, uint32_t i)
+{
+    const pn_part_t whole = { type, 0U };
+    return (type->kind == PN_KIND_RECORD) ? type->part[i] : whole;
+}
+
 /* The header of the cell with these contents. */
 static inline unsigned char *cell_of(const void *contents)
 {
@@ -122,10 +135,12 @@ typedef struct pn_cells {
 } pn_cells_t;
 
 /* pn_encode and pn_decode of types in which there may be references; encoding begins at `at`. NULL: there are none. */
-size_t pn_encode_with(pn_cells_t *cells, const pn_type_t *type, const void *value, uint8_t *out, size_t room, size_t at);
-size_t pn_decode_with(pn_ctx_t *cx, pn_cells_t *cells, const pn_type_t *type, void *value, const uint8_t *in, size_t length);
+size_t pn_encode_with(pn_cells_t *cells, const pn_type_t *type, const void *value, uint8_t *out, size_t room,
+                      size_t at);
+size_t pn_decode_with(pn_ctx_t *cx, pn_cells_t *cells, const pn_type_t *type, void *value, const uint8_t *in,
+                      size_t length);
 
 /* Enumerations and union tags are C enums, which gcc and clang store as unsigned int. */
-_Static_assert(sizeof(enum pn_kind_probe { PN_KIND_PROBE = 0 }) == sizeof(uint32_t), "enums must have 32 bits");
+_Static_assert(sizeof(enum pn_kind_probe{ PN_KIND_PROBE = 0 }) == sizeof(uint32_t), "enums must have 32 bits");
 
 #endif /* PN_TYPE_IMPL_H */

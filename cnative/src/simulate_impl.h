@@ -14,14 +14,14 @@
 typedef struct sim_options {
     uint64_t steps;
     uint64_t seed;
-    uint64_t memory;     /* bytes for lists and strings */
-    uint64_t choice;     /* of the choices after a replay */
+    uint64_t memory; /* bytes for lists and strings */
+    uint64_t choice; /* of the choices after a replay */
     bool has_choice;
-    const char *trace;   /* NULL: none */
-    const char *report;  /* NULL: none */
-    const char *files;   /* folder for the net's files; NULL: none */
-    const char *replay;  /* NULL: none; "-": the standard input */
-    double progress_s;   /* seconds between two progress lines of the report; 0: none */
+    const char *trace;  /* NULL: none */
+    const char *report; /* NULL: none */
+    const char *files;  /* folder for the net's files; NULL: none */
+    const char *replay; /* NULL: none; "-": the standard input */
+    double progress_s;  /* seconds between two progress lines of the report; 0: none */
     pn_time_t until;
     bool has_until;
     bool shows_enabled;
@@ -41,33 +41,34 @@ typedef struct sim {
     sim_options_t options;
     pn_ctx_t cx;
     void *marking;
-    void *binding;       /* of the occurrence that is being worked on */
-    uint32_t *enabled;   /* room for the indices of all transitions */
+    void *binding;     /* of the occurrence that is being worked on */
+    uint32_t *enabled; /* room for the indices of all transitions */
     uint32_t enabled_count;
     uint32_t *level_end; /* for each place in the order of trying: where the transitions of its priority end */
-    uint64_t *ready;     /* the set of those that are known to be enabled; a bit for each place in the order of trying */
-    uint64_t *unsure;    /* the set of those of which it is not known; in neither set: not enabled */
-    uint64_t *touched;   /* for each transition the set of those of which nothing is known after it has occurred */
+    uint64_t *ready;   /* the set of those that are known to be enabled; a bit for each place in the order of trying */
+    uint64_t *unsure;  /* the set of those of which it is not known; in neither set: not enabled */
+    uint64_t *touched; /* for each transition the set of those of which nothing is known after it has occurred */
     unsigned char *found; /* bindings of one transition, one after the other, as many as there is room for */
     size_t found_size;
     pn_trace_t trace;
     FILE *report;
-    uint64_t steps;      /* occurrences, replayed ones included */
+    uint64_t steps; /* occurrences, replayed ones included */
     uint64_t replayed;
-    const char *why;     /* see print_help in simulate.c */
-    const char *doing;   /* "" or what went wrong while ... */
-    char message[512];   /* of a replay that is refused */
-    int64_t transition;  /* that went wrong; -1: none */
-    bool has_binding;    /* `binding` is of that transition */
-    bool is_watched;     /* there are monitors */
-    bool time_grew;      /* in the last sim_settle */
-    int64_t watch;       /* the monitor that stopped the run, or that failed; -1: none */
+    const char *why;         /* see print_help in simulate.c */
+    const char *doing;       /* "" or what went wrong while ... */
+    char message[512];       /* of a replay that is refused */
+    int64_t transition;      /* that went wrong; -1: none */
+    bool has_binding;        /* `binding` is of that transition */
+    bool is_watched;         /* there are monitors */
+    bool time_grew;          /* in the last sim_settle */
+    int64_t watch;           /* the monitor that stopped the run, or that failed; -1: none */
     const char *watch_limit; /* "watch": its numbers became too large */
 } sim_t;
 
 /* --- simulate_play.c: the search and the steps --- */
 
-/* Moves time on to where something is enabled, if nothing is now; fills `enabled` with the transitions of the best priority. */
+/* Moves time on to where something is enabled, if nothing is now; fills `enabled` with the transitions of the best
+ * priority. */
 sim_next_t sim_settle(sim_t *sim);
 /* The first half of it: fills `enabled` with what is enabled now. False after an error. */
 bool sim_find_enabled(sim_t *sim);
@@ -84,7 +85,8 @@ void sim_fail(sim_t *sim, const char *doing, int64_t transition, bool has_bindin
 
 /* --- simulate.c --- */
 
-/* Zeroed memory, of which only what is used costs anything; NULL if there is none. Never given back: the program ends. */
+/* Zeroed memory, of which only what is used costs anything; NULL if there is none. Never given back: the program ends.
+ */
 void *sim_reserve(uint64_t size);
 /* Writes an occurrence to the trace; false after an error, `why` is "trace". */
 bool sim_trace_step(sim_t *sim, uint32_t transition, const void *binding);
@@ -109,8 +111,8 @@ bool sim_replay(sim_t *sim);
 bool sim_watch_add(const char *text);
 /* Whether there are any. */
 bool sim_watch_is_needed(void);
-/* Before the first step, after a step, after model time went on while something is enabled, after the last step. False: the run ends
- * here, `why` says why. */
+/* Before the first step, after a step, after model time went on while something is enabled, after the last step. False:
+ * the run ends here, `why` says why. */
 bool sim_watch_start(sim_t *sim);
 bool sim_watch_step(sim_t *sim, uint32_t transition);
 bool sim_watch_time(sim_t *sim);

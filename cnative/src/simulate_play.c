@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT
  * simulate_play.c - what is enabled, one of them drawn, its occurrence.
  *
- * The draw is that of pn_random.h: a number below the number of enabled transitions of the best priority, then a number below
- * the number of its bindings. A transition counts as enabled as soon as one binding is found; the others are looked for only
- * when it has been drawn. What is known of a transition stays known until something occurs that may change it.
+ * The draw is that of pn_random.h: a number below the number of enabled transitions of the best priority, then a number
+ * below the number of its bindings. A transition counts as enabled as soon as one binding is found; the others are
+ * looked for only when it has been drawn. What is known of a transition stays known until something occurs that may
+ * change it.
  *
- * Compiled by itself, this file calls the net through the table of pn_net.h. With -DPN_NET_SOURCE='"net.c"' the net becomes part of
- * this file: each transition has its own copies of `look` and `occur`, into which the compiler puts the net's functions. The steps
- * are the same, several times as fast.
+ * Compiled by itself, this file calls the net through the table of pn_net.h. With -DPN_NET_SOURCE='"net.c"' the net
+ * becomes part of this file: each transition has its own copies of `look` and `occur`, into which the compiler puts the
+ * net's functions. The steps are the same, several times as fast.
  */
 #if defined(__GNUC__)
 #define SIM_INLINE inline __attribute__((always_inline))
@@ -40,7 +41,7 @@ void sim_fail(sim_t *sim, const char *doing, int64_t transition, bool has_bindin
     sim->has_binding = has_binding;
 }
 
-/* --- what is known ------------------------------------------------------------------------------------------------- */
+/* --- what is known ------------------------------------------------------------------------------------------------ */
 
 static uint32_t sim_words(void)
 {
@@ -122,7 +123,7 @@ static SIM_INLINE void sim_forget_touched(sim_t *sim, uint32_t transition)
     }
 }
 
-/* --- search -------------------------------------------------------------------------------------------------------- */
+/* --- search ------------------------------------------------------------------------------------------------------- */
 
 static SIM_INLINE bool sim_stop_at_first(void *user, uint32_t transition, const void *binding)
 {
@@ -190,10 +191,10 @@ static SIM_INLINE bool sim_count(void *user, uint32_t transition, const void *bi
 }
 #endif
 
-/* --- draws --------------------------------------------------------------------------------------------------------- */
+/* --- draws -------------------------------------------------------------------------------------------------------- */
 
-/* A number below `count` from the stream of the choice, which is started when the first is needed: of one thing there is no
- * choice, and no number is drawn. */
+/* A number below `count` from the stream of the choice, which is started when the first is needed: of one thing there
+ * is no choice, and no number is drawn. */
 static SIM_INLINE uint64_t sim_choose(const sim_t *sim, uint64_t count, uint64_t *state)
 {
     if (count <= 1U) {
@@ -270,7 +271,8 @@ static SIM_INLINE bool sim_occur(sim_t *sim, uint32_t transition, uint64_t state
 }
 
 #ifdef PN_NET_SOURCE
-/* The same where each choice of tokens is a binding: the compiler makes products of the loops that count, so nothing is kept. */
+/* The same where each choice of tokens is a binding: the compiler makes products of the loops that count, so nothing is
+ * kept. */
 static SIM_INLINE bool sim_occur_plain(sim_t *sim, uint32_t transition, uint64_t state, sim_enumerate_t enumerate,
                                        sim_fire_t fire, size_t size)
 {
@@ -289,32 +291,32 @@ bool sim_fire(sim_t *sim, uint32_t transition)
     return sim_fire_with(sim, transition, t->fire, sim->binding, t->binding->size);
 }
 
-/* --- the net's own, or those of its table -------------------------------------------------------------------------- */
+/* --- the net's own, or those of its table ------------------------------------------------------------------------- */
 
 #ifdef PN_NET_SOURCE
 
 /* A binding is kept by assignment: the compiler then leaves out what it need not put together first. */
 #define SIM_TRANSITION(index, code, is_plain)                                                                   \
     static SIM_INLINE bool sim_keep_##index(void *user, uint32_t transition, const void *binding)               \
-    {                                                                                                          \
-        code##_binding_t *const at = sim_next_kept(user, sizeof *at);                                          \
-        (void)transition;                                                                                      \
-        if (at != NULL) {                                                                                      \
-            *at = *(const code##_binding_t *)binding;                                                          \
-        }                                                                                                      \
-        return true;                                                                                           \
-    }                                                                                                          \
+    {                                                                                                           \
+        code##_binding_t *const at = sim_next_kept(user, sizeof *at);                                           \
+        (void)transition;                                                                                       \
+        if (at != NULL) {                                                                                       \
+            *at = *(const code##_binding_t *)binding;                                                           \
+        }                                                                                                       \
+        return true;                                                                                            \
+    }                                                                                                           \
     static bool sim_look_##index(sim_t *sim)                                                                    \
-    {                                                                                                          \
-        return sim_look(sim, index, code##_enumerate);                                                         \
-    }                                                                                                          \
+    {                                                                                                           \
+        return sim_look(sim, index, code##_enumerate);                                                          \
+    }                                                                                                           \
     static bool sim_occur_##index(sim_t *sim, uint64_t state)                                                   \
-    {                                                                                                          \
-        if (is_plain) {                                                                                        \
+    {                                                                                                           \
+        if (is_plain) {                                                                                         \
             return sim_occur_plain(sim, index, state, code##_enumerate, code##_fire, sizeof(code##_binding_t)); \
-        }                                                                                                      \
+        }                                                                                                       \
         return sim_occur(sim, index, state, code##_enumerate, sim_keep_##index, code##_fire,                    \
-                         sizeof(code##_binding_t));                                                            \
+                         sizeof(code##_binding_t));                                                             \
     }
 #define SIM_ROW(index, code, is_plain) { sim_look_##index, sim_occur_##index },
 #ifndef NET_TRANSITIONS /* there is none */
@@ -365,7 +367,7 @@ static bool sim_occur_at(sim_t *sim, uint32_t transition, uint64_t state)
 
 #endif
 
-/* --- steps --------------------------------------------------------------------------------------------------------- */
+/* --- steps -------------------------------------------------------------------------------------------------------- */
 
 /* Fills `enabled` with the transitions of the best priority that are enabled now. False after an error. */
 static SIM_INLINE bool sim_find_them(sim_t *sim)
@@ -425,7 +427,8 @@ static sim_next_t sim_move_on(sim_t *sim)
     bool is_fine = true;
     const pn_time_t start = pn_now(&pn_net, sim->marking);
     pn_time_t next = start;
-    while (is_fine && (sim->enabled_count == 0U) && pn_net.timed && pn_next_time(&pn_net, &sim->cx, sim->marking, &next)) {
+    while (is_fine && (sim->enabled_count == 0U) && pn_net.timed
+           && pn_next_time(&pn_net, &sim->cx, sim->marking, &next)) {
         pn_set_now(&pn_net, sim->marking, next);
         sim_forget(sim);
         is_fine = sim_find_enabled(sim);
@@ -477,15 +480,10 @@ static SIM_INLINE bool sim_step(sim_t *sim)
             return sim_occur_at(sim, sim->enabled[drawn], state);
         }
         return false;
-    case SIM_FINISHED:
-        sim->why = "finished";
-        return false;
-    case SIM_BEYOND:
-        sim->why = "until";
-        return false;
+    case SIM_FINISHED: sim->why = "finished"; return false;
+    case SIM_BEYOND: sim->why = "until"; return false;
     case SIM_FAILED:
-    default:
-        return false;
+    default: return false;
     }
 }
 
@@ -495,9 +493,7 @@ static void end_at_limit(sim_t *sim)
     const pn_time_t now = pn_now(&pn_net, sim->marking);
     sim->cx.step = sim->steps;
     switch (sim_settle_here(sim)) {
-    case SIM_FINISHED:
-        sim->why = "finished";
-        break;
+    case SIM_FINISHED: sim->why = "finished"; break;
     case SIM_FOUND:
     case SIM_BEYOND:
         if (pn_net.timed) {
@@ -506,8 +502,7 @@ static void end_at_limit(sim_t *sim)
         }
         break;
     case SIM_FAILED:
-    default:
-        break;
+    default: break;
     }
 }
 

@@ -5,9 +5,10 @@
  *
  *     INDEX TIME PREFIX BINDING
  *
- * INDEX of the transition; TIME as a JSON number, or nothing when any will do; BINDING as the JSON object of a trace, outputs of the
- * code segment included, or nothing; PREFIX: what BINDING starts with, as far as the variables go that are bound before the code
- * segment runs, without the closing brace. JSON as pn_text.h writes it: texts are compared, not values.
+ * INDEX of the transition; TIME as a JSON number, or nothing when any will do; BINDING as the JSON object of a trace,
+ * outputs of the code segment included, or nothing; PREFIX: what BINDING starts with, as far as the variables go that
+ * are bound before the code segment runs, without the closing brace. JSON as pn_text.h writes it: texts are compared,
+ * not values.
  */
 #include <errno.h>
 #include <stdlib.h>

@@ -5,10 +5,11 @@
  *     {"steps": 1000, "t": 12}                                                                          progress
  *     {"why": "finished", "steps": 1200, "replayed": 0, "t": 14, "marking": {"Top.P": [[1, 5]]}}        the end
  *
- * After an error the end also has "error", "origin", "doing", and where they are known "transition" (its index) and "binding";
- * when it was one of the program and not of the net, "limit": "room" (a place is full), "memory" (of lists and strings), "numbers"
- * (a model time beyond 64 bits) or "watch" (numbers of a monitor); after a replay that was refused "message"; after a breakpoint, or when a monitor failed, "watch": its index.
- * "watched" has what each monitor of --watch has collected.
+ * After an error the end also has "error", "origin", "doing", and where they are known "transition" (its index) and
+ * "binding"; when it was one of the program and not of the net, "limit": "room" (a place is full), "memory" (of lists
+ * and strings), "numbers" (a model time beyond 64 bits) or "watch" (numbers of a monitor); after a replay that was
+ * refused "message"; after a breakpoint, or when a monitor failed, "watch": its index. "watched" has what each monitor
+ * of --watch has collected.
  */
 #include <inttypes.h>
 #include <string.h>

@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
- * simulate_signal.c - what reaches the simulator from outside between two steps: it shall end, or a line of progress is due.
+ * simulate_signal.c - what reaches the simulator from outside between two steps: it shall end, or a line of progress is
+ * due.
  */
 #define _POSIX_C_SOURCE 200809L /* sigaction */
-#define _XOPEN_SOURCE 700       /* setitimer */
+#define _XOPEN_SOURCE   700     /* setitimer */
 
 #include <signal.h>
 #include <string.h>

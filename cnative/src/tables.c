@@ -3,8 +3,8 @@
  *
  *     tables FILE METHOD SECONDS MIB SEED
  *
- * METHOD is walk, explore, count, reach, ctl or ltl. The exit code is 0 when the method came to its end, 2 if the tables are wrong,
- * 4 if memory ran out.
+ * METHOD is walk, explore, count, reach, ctl or ltl. The exit code is 0 when the method came to its end, 2 if the
+ * tables are wrong, 4 if memory ran out.
  */
 #include "tables.h"
 

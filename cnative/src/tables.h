@@ -1,8 +1,10 @@
 /* SPDX-License-Identifier: MIT
- * tables.h - place/transition nets as tables, for questions that are asked once: nothing is generated, nothing is compiled.
+ * tables.h - place/transition nets as tables, for questions that are asked once: nothing is generated, nothing is
+ * compiled.
  *
- * A net is read from text (tables_read.c), a cursor stands in one of its markings and knows what is enabled there (tables_cursor.c),
- * a store keeps markings as packed words (tables_store.c). Everything else is a method that answers questions with these three.
+ * A net is read from text (tables_read.c), a cursor stands in one of its markings and knows what is enabled there
+ * (tables_cursor.c), a store keeps markings as packed words (tables_store.c). Everything else is a method that answers
+ * questions with these three.
  */
 #ifndef PN_TABLES_H
 #define PN_TABLES_H
@@ -42,11 +44,11 @@ typedef struct tb_net {
     uint32_t places;
     uint32_t transitions;
     tb_count_t *initial;
-    tb_arcs_t takes;         /* transition -> places */
-    tb_arcs_t puts;          /* transition -> places */
-    tb_changes_t changes;    /* transition -> places */
-    tb_arcs_t takers;        /* place -> transitions that need tokens there */
-    tb_changes_t changers;   /* place -> transitions that change it */
+    tb_arcs_t takes;       /* transition -> places */
+    tb_arcs_t puts;        /* transition -> places */
+    tb_changes_t changes;  /* transition -> places */
+    tb_arcs_t takers;      /* place -> transitions that need tokens there */
+    tb_changes_t changers; /* place -> transitions that change it */
 } tb_net_t;
 
 /* --- questions ------------------------------------------------------------------------------------------------------------------- */
@@ -60,7 +62,14 @@ typedef enum tb_op {
     TB_SUM,     /* the sum of coefficient * tokens is at most `limit` */
     TB_ENABLED, /* one of the transitions is enabled */
     TB_DEAD,    /* none is */
-    TB_EX, TB_AX, TB_EF, TB_AF, TB_EG, TB_AG, TB_EU, TB_AU
+    TB_EX,
+    TB_AX,
+    TB_EF,
+    TB_AF,
+    TB_EG,
+    TB_AG,
+    TB_EU,
+    TB_AU
 } tb_op_t;
 
 typedef struct tb_term {
@@ -71,13 +80,13 @@ typedef struct tb_term {
 /* A formula as a tree. */
 typedef struct tb_formula {
     tb_op_t op;
-    uint32_t count;                  /* of parts, terms or transitions */
-    struct tb_formula **part;        /* NOT, AND, OR and the operators of time */
-    tb_term_t *term;                 /* SUM */
-    uint32_t *transition;            /* ENABLED */
-    int64_t limit;                   /* SUM */
-    uint32_t number;                 /* among all formulas of its question, children first */
-    bool is_temporal;                /* an operator of time is in it */
+    uint32_t count;           /* of parts, terms or transitions */
+    struct tb_formula **part; /* NOT, AND, OR and the operators of time */
+    tb_term_t *term;          /* SUM */
+    uint32_t *transition;     /* ENABLED */
+    int64_t limit;            /* SUM */
+    uint32_t number;          /* among all formulas of its question, children first */
+    bool is_temporal;         /* an operator of time is in it */
 } tb_formula_t;
 
 typedef enum tb_kind {
@@ -115,7 +124,7 @@ typedef struct tb_question {
     tb_automaton_t automaton; /* LTL */
     uint32_t formulas;        /* numbers given in `formula` */
     tb_answer_t answer;
-    int64_t least;            /* BOUND: seen */
+    int64_t least; /* BOUND: seen */
 } tb_question_t;
 
 typedef struct tb_job {
@@ -137,7 +146,7 @@ void tb_limit_memory(uint64_t bytes);
 bool tb_has_room(uint64_t bytes);
 void tb_start_clock(double seconds);
 double tb_elapsed(void);
-bool tb_is_over(void); /* looks at the clock once in some thousand calls */
+bool tb_is_over(void);            /* looks at the clock once in some thousand calls */
 void tb_limit_time(double until); /* seconds since tb_start_clock */
 _Noreturn void tb_fail(int code, const char *format, ...) __attribute__((format(printf, 2, 3)));
 
@@ -179,15 +188,15 @@ int64_t tb_sum(const tb_formula_t *sum, const tb_count_t *marking);
 
 typedef struct tb_store {
     uint32_t places;
-    uint8_t *width;     /* place -> bits */
-    uint32_t *at;       /* place -> first bit; a place lies within one word */
-    uint32_t words;     /* of a record */
+    uint8_t *width; /* place -> bits */
+    uint32_t *at;   /* place -> first bit; a place lies within one word */
+    uint32_t words; /* of a record */
     uint64_t *record;
     uint64_t records;
-    uint64_t room;      /* records that fit */
-    uint32_t *slot;     /* hash -> record + 1 */
-    uint64_t slots;     /* a power of two */
-    uint64_t *packed;   /* one record, in the making */
+    uint64_t room;    /* records that fit */
+    uint32_t *slot;   /* hash -> record + 1 */
+    uint64_t slots;   /* a power of two */
+    uint64_t *packed; /* one record, in the making */
 } tb_store_t;
 
 /* `most`: for each place a bound that is known, or 0. */
@@ -207,16 +216,16 @@ typedef struct tb_graph {
     const tb_net_t *net;
     tb_store_t store;
     tb_cursor_t cursor;
-    uint64_t *first;    /* marking -> index of its first successor + 1; 0: not looked up */
-    uint32_t *count;    /* marking -> successors, each once */
-    uint64_t room;      /* markings for which there are entries */
+    uint64_t *first; /* marking -> index of its first successor + 1; 0: not looked up */
+    uint32_t *count; /* marking -> successors, each once */
+    uint64_t room;   /* markings for which there are entries */
     uint32_t *successor;
     uint64_t successors;
     uint64_t successor_room;
-    uint32_t at;        /* the marking at the cursor */
+    uint32_t at; /* the marking at the cursor */
     tb_count_t *marking;
     uint32_t *fire;
-    bool is_full;       /* memory is exhausted, a place is, or the time is over: successors are missing */
+    bool is_full; /* memory is exhausted, a place is, or the time is over: successors are missing */
 } tb_graph_t;
 
 void tb_graph_init(tb_graph_t *g, const tb_net_t *net);
@@ -235,7 +244,8 @@ static inline uint32_t tb_successor(const tb_graph_t *g, uint32_t marking, uint3
 
 /* --- stubborn sets --------------------------------------------------------------------------------------------------------------- */
 
-/* What has to be looked at in a marking, so that no marking is missed in which a formula is true (tables_stubborn.c). */
+/* What has to be looked at in a marking, so that no marking is missed in which a formula is true (tables_stubborn.c).
+ */
 typedef struct tb_stubborn {
     const tb_net_t *net;
     uint32_t *is_in; /* transition -> the number of the set it was last in */
@@ -247,8 +257,10 @@ typedef struct tb_stubborn {
 void tb_stubborn_init(tb_stubborn_t *s, const tb_net_t *net);
 void tb_stubborn_free(tb_stubborn_t *s);
 
-/* The enabled transitions that suffice, in `fire`; how many. `f` is not as wanted here; NULL with `sum`: it is to become larger. */
-uint32_t tb_stubborn(tb_stubborn_t *s, const tb_cursor_t *c, const tb_formula_t *f, const tb_formula_t *sum, uint32_t *fire);
+/* The enabled transitions that suffice, in `fire`; how many. `f` is not as wanted here; NULL with `sum`: it is to
+ * become larger. */
+uint32_t tb_stubborn(tb_stubborn_t *s, const tb_cursor_t *c, const tb_formula_t *f, const tb_formula_t *sum,
+                     uint32_t *fire);
 
 /* --- answers --------------------------------------------------------------------------------------------------------------------- */
 

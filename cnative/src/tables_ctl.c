@@ -1,15 +1,18 @@
 /* SPDX-License-Identifier: MIT
  * tables_ctl.c - formulas of computation tree logic, looked at only where the answer depends on it.
  *
- * The value of a formula in a marking is worked out when it is asked for, and kept. Three operators are searches, depth first; the
- * others are written with them: EF, AF, EG, AG. A path that ends in a dead marking is a path: EX is false there, AX true, and AF p is p.
+ * The value of a formula in a marking is worked out when it is asked for, and kept. Three operators are searches, depth
+ * first; the others are written with them: EF, AF, EG, AG. A path that ends in a dead marking is a path: EX is false
+ * there, AX true, and AF p is p.
  *
- * E[p U q]  a marking with q is looked for through markings with p. Those whose strongly connected component was left in vain are false
- *           (Tarjan 1972); when q is found, all that are still open are true, since each leads to the marking at which the search is.
- * A[p U q]  a path is looked for that avoids q for ever, or meets neither p nor q before it: it ends in such a marking, in a dead one, or
- *           in a marking that the search has not left yet. Then all on the path are false; what the search leaves without one is true.
+ * E[p U q]  a marking with q is looked for through markings with p. Those whose strongly connected component was left
+ * in vain are false (Tarjan 1972); when q is found, all that are still open are true, since each leads to the marking
+ * at which the search is. A[p U q]  a path is looked for that avoids q for ever, or meets neither p nor q before it: it
+ * ends in such a marking, in a dead one, or in a marking that the search has not left yet. Then all on the path are
+ * false; what the search leaves without one is true.
  *
- * If successors are missing, since memory or time has come to its end, the value is not known, and nothing is kept that depends on it.
+ * If successors are missing, since memory or time has come to its end, the value is not known, and nothing is kept that
+ * depends on it.
  */
 #include "tables.h"
 
@@ -108,7 +111,7 @@ typedef struct until {
     const tb_formula_t *formula;
     const tb_formula_t *p; /* NULL: true */
     const tb_formula_t *q;
-    bool is_negated;       /* q is wanted to be false */
+    bool is_negated; /* q is wanted to be false */
 } until_t;
 
 static tb_answer_t of_q(checker_t *c, uint32_t marking, const until_t *u)
@@ -140,7 +143,7 @@ static tb_answer_t at_once(checker_t *c, uint32_t marking, const until_t *u, boo
 typedef struct met {
     uint32_t *index; /* marking -> index + 1 */
     uint64_t room;
-    stack_t all;     /* the markings met */
+    stack_t all; /* the markings met */
 } met_t;
 
 static uint32_t *index_of(met_t *m, const checker_t *c, uint32_t marking)
@@ -175,9 +178,9 @@ static void set_all(checker_t *c, const stack_t *markings, uint64_t from, const 
 /* The search for q through p. */
 static tb_answer_t exists_until(checker_t *c, uint32_t from, const until_t *u)
 {
-    met_t met = {NULL, 0U, {NULL, sizeof(uint32_t), 0U, 0U}};
-    stack_t path = {NULL, sizeof(frame_t), 0U, 0U};
-    stack_t open = {NULL, sizeof(uint32_t), 0U, 0U};
+    met_t met = { NULL, 0U, { NULL, sizeof(uint32_t), 0U, 0U } };
+    stack_t path = { NULL, sizeof(frame_t), 0U, 0U };
+    stack_t open = { NULL, sizeof(uint32_t), 0U, 0U };
     bool is_lost = false;
     bool is_found = false;
     enter(c, &met, &path, &open, from);
@@ -233,9 +236,9 @@ static tb_answer_t exists_until(checker_t *c, uint32_t from, const until_t *u)
 /* The search for a path that never comes to q through p. */
 static tb_answer_t always_until(checker_t *c, uint32_t from, const until_t *u)
 {
-    met_t met = {NULL, 0U, {NULL, sizeof(uint32_t), 0U, 0U}};
-    stack_t path = {NULL, sizeof(frame_t), 0U, 0U};
-    stack_t on_path = {NULL, sizeof(uint32_t), 0U, 0U};
+    met_t met = { NULL, 0U, { NULL, sizeof(uint32_t), 0U, 0U } };
+    stack_t path = { NULL, sizeof(frame_t), 0U, 0U };
+    stack_t on_path = { NULL, sizeof(uint32_t), 0U, 0U };
     bool is_lost = false;
     bool is_avoided = false;
     enter(c, &met, &path, &on_path, from);
@@ -294,7 +297,7 @@ static tb_answer_t of_time(checker_t *c, uint32_t marking, const tb_formula_t *f
     const bool is_until = (f->op == TB_EU) || (f->op == TB_AU);
     const bool is_turned = (f->op == TB_EG) || (f->op == TB_AG);
     const bool is_existential = (f->op == TB_EU) || (f->op == TB_EF) || (f->op == TB_AG);
-    const until_t u = {f, is_until ? f->part[0] : NULL, is_until ? f->part[1] : f->part[0], is_turned};
+    const until_t u = { f, is_until ? f->part[0] : NULL, is_until ? f->part[1] : f->part[0], is_turned };
     const tb_answer_t a = searched(c, marking, &u, is_existential);
     if (a != TB_UNKNOWN) {
         *value_of(c, marking, f) = (uint8_t)a;
@@ -342,7 +345,8 @@ void tb_ctl(tb_job_t *job, double seconds)
         if (q->kind != TB_CTL) {
             continue;
         }
-        tb_limit_time(tb_elapsed() + ((seconds - tb_elapsed()) / (double)open)); /* what one leaves over the others get */
+        tb_limit_time(tb_elapsed()
+                      + ((seconds - tb_elapsed()) / (double)open)); /* what one leaves over the others get */
         open--;
         c.formulas = q->formulas;
         c.rows = 1024U;

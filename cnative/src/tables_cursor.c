@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * tables_cursor.c - a marking, and what is enabled in it.
  *
- * For each transition the input places with too few tokens are counted. When a place changes, only the transitions that need tokens
- * there are looked at; so a step costs what it changes, however large the net is.
+ * For each transition the input places with too few tokens are counted. When a place changes, only the transitions that
+ * need tokens there are looked at; so a step costs what it changes, however large the net is.
  */
 #include "tables.h"
 
@@ -132,10 +132,8 @@ static bool one_is_enabled(const tb_formula_t *f, const tb_cursor_t *c)
 bool tb_holds(const tb_formula_t *f, const tb_cursor_t *c)
 {
     switch (f->op) {
-    case TB_TRUE:
-        return true;
-    case TB_NOT:
-        return !tb_holds(f->part[0], c);
+    case TB_TRUE: return true;
+    case TB_NOT: return !tb_holds(f->part[0], c);
     case TB_AND:
         for (uint32_t i = 0U; i < f->count; i++) {
             if (!tb_holds(f->part[i], c)) {
@@ -150,13 +148,9 @@ bool tb_holds(const tb_formula_t *f, const tb_cursor_t *c)
             }
         }
         return false;
-    case TB_SUM:
-        return tb_sum(f, c->marking) <= f->limit;
-    case TB_ENABLED:
-        return one_is_enabled(f, c);
-    case TB_DEAD:
-        return c->enabled_count == 0U;
-    default:
-        return false;
+    case TB_SUM: return tb_sum(f, c->marking) <= f->limit;
+    case TB_ENABLED: return one_is_enabled(f, c);
+    case TB_DEAD: return c->enabled_count == 0U;
+    default: return false;
     }
 }

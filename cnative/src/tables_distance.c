@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * tables_distance.c - how far a marking is from one in which a formula is true: a guess that leads a search.
  *
- * Of a comparison it is what is missing to the limit, of `enabled` the tokens that are missing; of a conjunction the sum.
+ * Of a comparison it is what is missing to the limit, of `enabled` the tokens that are missing; of a conjunction the
+ * sum.
  */
 #include "tables.h"
 
@@ -54,20 +55,13 @@ static double parts_distance(const tb_formula_t *f, const tb_cursor_t *c, bool w
 double tb_distance(const tb_formula_t *f, const tb_cursor_t *c, bool wanted)
 {
     switch (f->op) {
-    case TB_NOT:
-        return tb_distance(f->part[0], c, !wanted);
+    case TB_NOT: return tb_distance(f->part[0], c, !wanted);
     case TB_AND:
-    case TB_OR:
-        return parts_distance(f, c, wanted);
-    case TB_SUM:
-        return sum_distance(f, c, wanted);
-    case TB_ENABLED:
-        return enabled_distance(f, c, wanted);
-    case TB_DEAD:
-        return wanted ? (double)c->enabled_count : ((c->enabled_count == 0U) ? 1.0 : 0.0);
-    case TB_TRUE:
-        return wanted ? 0.0 : 1e18;
-    default:
-        return wanted ? 1e18 : 0.0;
+    case TB_OR: return parts_distance(f, c, wanted);
+    case TB_SUM: return sum_distance(f, c, wanted);
+    case TB_ENABLED: return enabled_distance(f, c, wanted);
+    case TB_DEAD: return wanted ? (double)c->enabled_count : ((c->enabled_count == 0U) ? 1.0 : 0.0);
+    case TB_TRUE: return wanted ? 0.0 : 1e18;
+    default: return wanted ? 1e18 : 0.0;
     }
 }

@@ -62,7 +62,7 @@ void tb_explore(tb_job_t *job, bool count)
     const tb_net_t *net = &job->net;
     tb_store_t store;
     tb_cursor_t c;
-    totals_t totals = {0U, 0U, 0U, 0U};
+    totals_t totals = { 0U, 0U, 0U, 0U };
     uint32_t number = 0U;
     bool is_whole = true;
     tb_store_init(&store, net, NULL);
@@ -98,11 +98,12 @@ void tb_explore(tb_job_t *job, bool count)
     if (is_whole && is_wanted) {
         answer_all(job);
         if (count) {
-            (void)printf("space %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 "\n", store.records, totals.arcs,
-                totals.in_place, totals.in_marking, totals.dead);
+            (void)printf("space %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 " %" PRIu64 "\n", store.records,
+                         totals.arcs, totals.in_place, totals.in_marking, totals.dead);
         }
     }
-    (void)printf("seen %" PRIu64 " markings, %" PRIu64 " arcs, %" PRIu32 " words each\n", store.records, totals.arcs, store.words);
+    (void)printf("seen %" PRIu64 " markings, %" PRIu64 " arcs, %" PRIu32 " words each\n", store.records, totals.arcs,
+                 store.words);
     tb_free(marking, net->places, sizeof *marking);
     tb_free(fire, net->transitions, sizeof *fire);
     tb_cursor_free(&c);

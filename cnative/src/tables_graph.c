@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * tables_graph.c - the state space as a graph that grows where it is looked at.
  *
- * The initial marking is number 0. A marking in which nothing is enabled has no successors; what that means is the asker's business.
+ * The initial marking is number 0. A marking in which nothing is enabled has no successors; what that means is the
+ * asker's business.
  */
 #include "tables.h"
 

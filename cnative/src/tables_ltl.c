@@ -1,9 +1,10 @@
 /* SPDX-License-Identifier: MIT
  * tables_ltl.c - whether a Buechi automaton accepts a run of the net.
  *
- * Pairs of a marking and a state of the automaton are searched depth first (Couvreur 1999): the strongly connected components of the
- * path so far are kept as its roots, with a mark where one has an accepting state. As soon as an arc closes a component with a mark, a
- * run is found; so a yes seldom needs much of the state space. A dead marking follows itself.
+ * Pairs of a marking and a state of the automaton are searched depth first (Couvreur 1999): the strongly connected
+ * components of the path so far are kept as its roots, with a mark where one has an accepting state. As soon as an arc
+ * closes a component with a mark, a run is found; so a yes seldom needs much of the state space. A dead marking follows
+ * itself.
  */
 #include "tables.h"
 
@@ -57,13 +58,13 @@ static uint64_t room_for(uint64_t room)
     return (room > 0U) ? (2U * room) : 1024U;
 }
 
-#define GROW(array, count, room)                                                      \
-    do {                                                                              \
-        if ((count) == (room)) {                                                      \
-            const uint64_t more = room_for(room);                                     \
+#define GROW(array, count, room)                                                        \
+    do {                                                                                \
+        if ((count) == (room)) {                                                        \
+            const uint64_t more = room_for(room);                                       \
             (array) = tb_grown((array), (size_t)(room), (size_t)more, sizeof *(array)); \
-            (room) = more;                                                            \
-        }                                                                             \
+            (room) = more;                                                              \
+        }                                                                               \
     } while (false)
 
 static uint64_t hash_of(uint32_t marking, uint32_t state)
@@ -94,7 +95,7 @@ static uint32_t number_of(product_t *p, uint32_t marking, uint32_t state, bool *
         return p->slot[at] - 1U;
     }
     GROW(p->pair, p->pairs, p->pair_room);
-    const pair_t made = {marking, state, 0U};
+    const pair_t made = { marking, state, 0U };
     p->pair[p->pairs] = made;
     p->pairs++;
     p->slot[at] = (uint32_t)p->pairs;
@@ -130,13 +131,13 @@ static void enter(product_t *p, uint32_t pair)
     GROW(p->path, p->steps, p->step_room);
     GROW(p->root, p->roots, p->root_room);
     GROW(p->active, p->actives, p->active_room);
-    const step_t step = {pair, p->automaton->first[p->pair[pair].state], 0U};
+    const step_t step = { pair, p->automaton->first[p->pair[pair].state], 0U };
     p->path[p->steps] = step;
     p->steps++;
     p->active[p->actives] = pair;
     p->actives++;
     p->pair[pair].index = (uint32_t)p->actives;
-    const root_t root = {(uint32_t)p->actives, p->automaton->is_accepting[p->pair[pair].state]};
+    const root_t root = { (uint32_t)p->actives, p->automaton->is_accepting[p->pair[pair].state] };
     p->root[p->roots] = root;
     p->roots++;
 }
@@ -249,7 +250,8 @@ void tb_ltl(tb_job_t *job, double seconds)
     for (uint32_t i = 0U; i < job->questions; i++) {
         tb_question_t *q = &job->question[i];
         if (q->kind == TB_LTL) {
-            tb_limit_time(tb_elapsed() + ((seconds - tb_elapsed()) / (double)open)); /* what one leaves over the others get */
+            tb_limit_time(tb_elapsed()
+                          + ((seconds - tb_elapsed()) / (double)open)); /* what one leaves over the others get */
             open--;
             graph.is_full = false;
             answer(&graph, q);

@@ -1,9 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * tables_reach.c - one question after the other, each by a search of its own over stubborn sets.
  *
- * The markings that seem nearest to the formula come first (tables_distance.c), so that a yes is found early; a no takes all of them.
- * The largest value of a sum needs one search, too: with the transitions that enlarge the sum as seeds, a marking with the largest
- * value stays reachable, whatever that value is.
+ * The markings that seem nearest to the formula come first (tables_distance.c), so that a yes is found early; a no
+ * takes all of them. The largest value of a sum needs one search, too: with the transitions that enlarge the sum as
+ * seeds, a marking with the largest value stays reachable, whatever that value is.
  */
 #include "tables.h"
 
@@ -33,7 +33,7 @@ static void push(heap_t *h, double distance, uint32_t number)
         h->item = tb_grown(h->item, h->room, room, sizeof *h->item);
         h->room = room;
     }
-    const waiting_t item = {distance, number};
+    const waiting_t item = { distance, number };
     uint32_t at = h->count;
     h->count++;
     while ((at > 0U) && comes_before(&item, &h->item[(at - 1U) / 2U])) {

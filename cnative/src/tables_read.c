@@ -8,10 +8,10 @@
  *     for each question: its number, and
  *         reach FORMULA | bound SUM | ctl FORMULA | ltl AUTOMATON
  *
- *     FORMULA    true | false | dead | not F | and N F.. | or N F.. | sum N (place factor).. limit | enabled N transition..
- *                EX F | AX F | EF F | AF F | EG F | AG F | EU F F | AU F F
- *     AUTOMATON  atoms FORMULA.. states, for each state: whether it accepts (0 or 1), how many moves, (target TRUE FALSE)..,
- *                where TRUE and FALSE are numbers with the bits of the atoms that must be so
+ *     FORMULA    true | false | dead | not F | and N F.. | or N F.. | sum N (place factor).. limit | enabled N
+ * transition.. EX F | AX F | EF F | AF F | EG F | AG F | EU F F | AU F F AUTOMATON  atoms FORMULA.. states, for each
+ * state: whether it accepts (0 or 1), how many moves, (target TRUE FALSE).., where TRUE and FALSE are numbers with the
+ * bits of the atoms that must be so
  *
  * The text comes from pn2code itself, so that an error in it is an error of the program; it is found all the same.
  */
@@ -84,7 +84,8 @@ static void read_arcs(reader_t *r, growing_t *g)
 }
 
 /* Arcs by their other end. */
-static void turn(const uint32_t *first, const uint32_t *node, size_t stride, uint32_t from, uint32_t to, uint32_t *turned)
+static void turn(const uint32_t *first, const uint32_t *node, size_t stride, uint32_t from, uint32_t to,
+                 uint32_t *turned)
 {
     for (uint32_t i = 0U; i < first[from]; i++) {
         const uint32_t target = *(const uint32_t *)(const void *)((const char *)node + ((size_t)i * stride));
@@ -106,7 +107,7 @@ static void make_takers(tb_net_t *net)
     for (uint32_t t = 0U; t < net->transitions; t++) {
         for (uint32_t i = net->takes.first[t]; i < net->takes.first[t + 1U]; i++) {
             const tb_arc_t arc = net->takes.arc[i];
-            const tb_arc_t back = {t, arc.weight};
+            const tb_arc_t back = { t, arc.weight };
             net->takers.arc[next[arc.node]] = back;
             next[arc.node]++;
         }
@@ -120,12 +121,13 @@ static void make_changers(tb_net_t *net)
     net->changers.first = tb_new((size_t)net->places + 1U, sizeof(uint32_t));
     net->changers.change = tb_new(count, sizeof(tb_change_t));
     uint32_t *next = tb_new((size_t)net->places + 1U, sizeof(uint32_t));
-    turn(net->changes.first, &net->changes.change->node, sizeof(tb_change_t), net->transitions, net->places, net->changers.first);
+    turn(net->changes.first, &net->changes.change->node, sizeof(tb_change_t), net->transitions, net->places,
+         net->changers.first);
     (void)memcpy(next, net->changers.first, ((size_t)net->places + 1U) * sizeof *next);
     for (uint32_t t = 0U; t < net->transitions; t++) {
         for (uint32_t i = net->changes.first[t]; i < net->changes.first[t + 1U]; i++) {
             const tb_change_t change = net->changes.change[i];
-            const tb_change_t back = {t, change.by};
+            const tb_change_t back = { t, change.by };
             net->changers.change[next[change.node]] = back;
             next[change.node]++;
         }
@@ -142,7 +144,7 @@ static void make_changes(tb_net_t *net)
     net->changes.change = tb_new(most, sizeof(tb_change_t));
     uint32_t made = 0U;
     for (uint32_t t = 0U; t < net->transitions; t++) {
-        const tb_arcs_t *sides[2] = {&net->takes, &net->puts};
+        const tb_arcs_t *sides[2] = { &net->takes, &net->puts };
         for (uint32_t side = 0U; side < 2U; side++) {
             for (uint32_t i = sides[side]->first[t]; i < sides[side]->first[t + 1U]; i++) {
                 const int64_t weight = (int64_t)sides[side]->arc[i].weight;
@@ -174,8 +176,8 @@ static void read_net(reader_t *r)
     for (uint32_t p = 0U; p < net->places; p++) {
         net->initial[p] = (tb_count_t)number(r, 0, (int64_t)TB_MOST_TOKENS);
     }
-    growing_t takes = {NULL, 0U, 0U};
-    growing_t puts = {NULL, 0U, 0U};
+    growing_t takes = { NULL, 0U, 0U };
+    growing_t puts = { NULL, 0U, 0U };
     append(&takes, 0U, 0U); /* so that there is an array even without arcs */
     append(&puts, 0U, 0U);
     takes.count = 0U;
@@ -202,8 +204,9 @@ static const struct {
     tb_op_t op;
     uint32_t parts; /* UINT32_MAX: their number is written */
 } operators[] = {
-    {"not", TB_NOT, 1U}, {"and", TB_AND, UINT32_MAX}, {"or", TB_OR, UINT32_MAX}, {"EX", TB_EX, 1U}, {"AX", TB_AX, 1U},
-    {"EF", TB_EF, 1U}, {"AF", TB_AF, 1U}, {"EG", TB_EG, 1U}, {"AG", TB_AG, 1U}, {"EU", TB_EU, 2U}, {"AU", TB_AU, 2U},
+    { "not", TB_NOT, 1U }, { "and", TB_AND, UINT32_MAX }, { "or", TB_OR, UINT32_MAX }, { "EX", TB_EX, 1U },
+    { "AX", TB_AX, 1U },   { "EF", TB_EF, 1U },           { "AF", TB_AF, 1U },         { "EG", TB_EG, 1U },
+    { "AG", TB_AG, 1U },   { "EU", TB_EU, 2U },           { "AU", TB_AU, 2U },
 };
 
 static tb_formula_t *formula(reader_t *r, uint32_t *numbers);
@@ -332,7 +335,7 @@ static void read_question(reader_t *r, tb_question_t *q)
 
 void tb_read(tb_job_t *job, const char *path)
 {
-    reader_t r = {fopen(path, "r"), {0}, &job->net, 0U};
+    reader_t r = { fopen(path, "r"), { 0 }, &job->net, 0U };
     if (r.file == NULL) {
         tb_fail(TB_EXIT_WRONG, "cannot read `%s`", path);
     }

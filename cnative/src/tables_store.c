@@ -1,18 +1,15 @@
 /* SPDX-License-Identifier: MIT
  * tables_store.c - known markings, packed into words.
  *
- * Each place has as many bits as its largest number of tokens so far needs. When a marking does not fit, the place gets twice as many
- * bits and all records are packed anew: that happens a few times at the beginning, and no bound has to be known beforehand.
+ * Each place has as many bits as its largest number of tokens so far needs. When a marking does not fit, the place gets
+ * twice as many bits and all records are packed anew: that happens a few times at the beginning, and no bound has to be
+ * known beforehand.
  */
 #include "tables.h"
 
 #include <string.h>
 
-enum {
-    FIRST_ROOM = 1 << 10,
-    WORD = 64,
-    WIDEST = 32
-};
+enum { FIRST_ROOM = 1 << 10, WORD = 64, WIDEST = 32 };
 
 static void lay_out(tb_store_t *s)
 {

@@ -1,14 +1,14 @@
 /* SPDX-License-Identifier: MIT
  * tables_stubborn.c - of the transitions that are enabled in a marking, those that have to be looked at.
  *
- * A stubborn set for the question whether a formula becomes true somewhere (Schmidt 1999; Bonneland, Jensen, Larsen, Muniz, Srba 2019).
- * It begins with the transitions of which one is on every way to such a marking, and is closed:
+ * A stubborn set for the question whether a formula becomes true somewhere (Schmidt 1999; Bonneland, Jensen, Larsen,
+ * Muniz, Srba 2019). It begins with the transitions of which one is on every way to such a marking, and is closed:
  *
  * - with an enabled transition, for each place from which it takes more than it puts: all that need tokens there,
  * - with a disabled one: for one place with too few tokens, all that put more there than they take.
  *
- * The first transition of the set on a way to the formula is then enabled here, and could occur at once: what comes before it needs
- * nothing that it takes. The rest of the way is shorter by one, so nothing is put off for ever.
+ * The first transition of the set on a way to the formula is then enabled here, and could occur at once: what comes
+ * before it needs nothing that it takes. The rest of the way is shorter by one, so nothing is put off for ever.
  */
 #include "tables.h"
 
@@ -136,30 +136,22 @@ static void seed_parts(tb_stubborn_t *s, const tb_cursor_t *c, const tb_formula_
 static void seed(tb_stubborn_t *s, const tb_cursor_t *c, const tb_formula_t *f, bool wanted)
 {
     switch (f->op) {
-    case TB_NOT:
-        seed(s, c, f->part[0], !wanted);
-        break;
+    case TB_NOT: seed(s, c, f->part[0], !wanted); break;
     case TB_AND:
-    case TB_OR:
-        seed_parts(s, c, f, wanted);
-        break;
-    case TB_SUM:
-        seed_sum(s, f, !wanted);
-        break;
-    case TB_ENABLED:
-        seed_enabled(s, c, f, wanted);
-        break;
+    case TB_OR: seed_parts(s, c, f, wanted); break;
+    case TB_SUM: seed_sum(s, f, !wanted); break;
+    case TB_ENABLED: seed_enabled(s, c, f, wanted); break;
     case TB_DEAD:
         if (wanted) {
             add_thieves(s, c->enabled[0]);
         }
         break;
-    default:
-        break; /* nothing makes `false` true */
+    default: break; /* nothing makes `false` true */
     }
 }
 
-uint32_t tb_stubborn(tb_stubborn_t *s, const tb_cursor_t *c, const tb_formula_t *f, const tb_formula_t *sum, uint32_t *fire)
+uint32_t tb_stubborn(tb_stubborn_t *s, const tb_cursor_t *c, const tb_formula_t *f, const tb_formula_t *sum,
+                     uint32_t *fire)
 {
     s->set++;
     s->todo_count = 0U;

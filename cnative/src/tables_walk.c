@@ -1,15 +1,15 @@
 /* SPDX-License-Identifier: MIT
  * tables_walk.c - random walks, which find quickly what is found in many places.
  *
- * Every other walk is drawn towards one of the open questions: among a few enabled transitions the one is taken that brings its formula
- * nearest (tables_distance.c).
+ * Every other walk is drawn towards one of the open questions: among a few enabled transitions the one is taken that
+ * brings its formula nearest (tables_distance.c).
  */
 #include "tables.h"
 
 enum {
-    LENGTH = 20000,     /* steps of a walk at most */
+    LENGTH = 20000, /* steps of a walk at most */
     CANDIDATES = 6,
-    PLAIN_STEPS = 4     /* one in so many steps of a drawn walk is random */
+    PLAIN_STEPS = 4 /* one in so many steps of a drawn walk is random */
 };
 
 static uint64_t state = 1U;

@@ -104,8 +104,9 @@ def generate(
         return None
 
     version = pn2code.__version__
+    net_files = emit_c.emit(with_rooms(ir, proofs.rooms), version)
     files = [
-        *emit_c.emit(with_rooms(ir, proofs.rooms), version),
+        *net_files,
         *emit_supervisor.emit(
             partition,
             name=net.name,
@@ -114,6 +115,7 @@ def generate(
             version=version,
             verdicts=proofs.verdicts,
             arena=proofs.arena,
+            net_c=net_files[0].text,
         ),
         *emit_tdl.emit(robots, source=Path(net.file).name, digest=digest, version=version),
         *runtime.emit("supervisor", "simulate"),

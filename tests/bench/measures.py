@@ -20,6 +20,7 @@ from tests.helpers.netbuilder import cpn
 
 from pn2code import pipeline
 from pn2code.diagnostics import Diagnostics, render
+from pn2code.emission import c_flags
 from pn2code.net import front
 from pn2code.semantics.game import Game
 from pn2code.simulate import programs
@@ -289,11 +290,10 @@ def _memory_folder() -> Iterator[Path]:
 def latency(bench: Bench) -> dict[str, list[float]]:
     """Microseconds: `bare p50`, `published p50`, `woken p50` and the same with p99; see cnative/tests/latency.c."""
     program, supervisor = bench.folder / "latency", bench.folder / "quick"
-    sources = [f"pn_{name}.c" for name in ("arena", "num", "string", "text", "trace")]
-    sources += ["supervisor*.c", "pn_channel*.c", "port_*.c"]
+    sources = ["supervisor*.c", "pn_*.c", "port_*.c"]
     host = [f for pattern in sources for f in sorted((CNATIVE / "src").glob(pattern))]
     tests = CNATIVE / "tests"
-    compiler = ("cc", "-std=c11", "-O2", "-I", CNATIVE / "include")
+    compiler = ("cc", c_flags.STANDARD, *c_flags.FLOATS, "-O2", "-I", CNATIVE / "include")
     bench.timed(*compiler, tests / "latency.c", "-o", program)
     hand = (tests / "hand_net.c", tests / "hand_cell.c")
     bench.timed(*compiler, "-DHAND_DELAY=0", *host, *hand, "-lm", "-o", supervisor)

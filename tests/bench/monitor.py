@@ -1,4 +1,4 @@
-"""What the run-time monitor costs: `./supervisor --dry-run` without and with it, in turn, in one run.
+"""What the run-time monitor costs: `./supervisor.traced --dry-run` without and with it, in turn, in one run.
 
 A dry run plays the whole cell in memory: nothing else takes time, so the ratio is the largest there can be. In a cell
 a cycle is mostly waiting for robots; what it costs there is the time for a firing.
@@ -87,8 +87,8 @@ def _cost(bench: m.Bench, name: str, source: Path, options: tuple[str, ...], run
     print(f"bench: monitor, {name}", file=sys.stderr)
     folder = bench.fresh()
     bench.pn2code("generate", source, "-o", folder)
-    bench.timed("make", "-s", "-j2", "supervisor", "monitor", cwd=folder)
-    programs = [str(folder / program) for program in ("supervisor", "supervisor.monitor")]
+    bench.timed("make", "-s", "-j2", "supervisor.traced", "monitor", cwd=folder)
+    programs = [str(folder / program) for program in ("supervisor.traced", "supervisor.monitor")]
     trace = folder / "run.trace.jsonl"
     seen = []
     for program in programs:

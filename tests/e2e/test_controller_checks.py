@@ -585,11 +585,18 @@ def test_more_than_the_bound_stops_the_supervisor(tmp_path: Path) -> None:
     out = tmp_path / "out"
     write(out, generated.files)
     made = subprocess.run(
-        ["make", "-C", out, "CFLAGS=-O0", "supervisor"], capture_output=True, text=True, check=False
+        ["make", "-C", out, "CFLAGS=-O0", "supervisor.traced"],
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert made.returncode == 0, made.stderr
     done = subprocess.run(
-        [out / "supervisor", "--dry-run"], cwd=out, capture_output=True, text=True, check=False
+        [out / "supervisor.traced", "--dry-run"],
+        cwd=out,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert done.returncode == 1, done.stdout
     assert "place `Cell.Supervisor.Spare` is full: it would hold 4 tokens" in done.stderr

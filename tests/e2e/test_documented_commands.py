@@ -58,6 +58,7 @@ NEVER = {
     "./dev bench --states": "the same",
     "./dev bench --monitor": "the same",
     "./dev bench --database-15": "the same, and gigabytes",
+    "make misra": "test_misra does it",
     "make mutation": "twenty minutes; test_conform changes programs, too",
     ". .venv/bin/activate": "the environment of the tests is one of another place",
 }

@@ -19,6 +19,7 @@ from typing import Any
 from pn2code.cell.config import CellConfig
 from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
+from pn2code.emission import c_flags
 from pn2code.emission.c import emit
 from pn2code.lowering.ir import NetIR
 from pn2code.lowering.net import lower
@@ -35,7 +36,7 @@ from pn2code.semantics.marking import (
 from pn2code.toolchain import programs
 
 WARNINGS = (
-    "-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion", "-Wsign-conversion",
+    c_flags.STANDARD, *c_flags.FLOATS, "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion", "-Wsign-conversion",
     "-Wshadow", "-Wstrict-prototypes", "-Wmissing-prototypes", "-Wundef", "-Wcast-qual",
     "-Wswitch-enum", "-Wvla",
     "-Wno-tautological-compare",  # a net may well say `n < n`

@@ -25,6 +25,7 @@ COMMANDS = (
     "make",
     "./supervisor",
     "generated/riveting/supervisor",
+    "generated/riveting/supervisor.traced",
     "spin",
     ".",
     "cd",
@@ -127,7 +128,9 @@ class Desk:
         self.project.mkdir(parents=True)
         for part in self.PARTS:
             if (root / part).is_dir():
-                ignored = shutil.ignore_patterns("run", "build", "*.o", "supervisor", "simulate")
+                ignored = shutil.ignore_patterns(
+                    "run", "build", "*.o", "supervisor", "supervisor.*[!ch]", "simulate"
+                )
                 shutil.copytree(root / part, self.project / part, ignore=ignored)
             else:
                 shutil.copy2(root / part, self.project / part)

@@ -19,6 +19,7 @@ from typing import Any
 from helpers.compiled import WARNINGS
 from helpers.graph_facts import Facts
 from pn2code.diagnostics import Diagnostics
+from pn2code.emission import c_flags
 from pn2code.emission.runtime import HOSTS
 from pn2code.net.flat import FlatNet
 from pn2code.resources import cnative_folder
@@ -110,7 +111,14 @@ class Explorers:
         return made
 
     def _run(self, folder: Path, *arguments: str) -> None:
-        command = [self.compiler, "-std=c11", "-ffp-contract=off", "-pthread", "-fPIC", *self.flags]
+        command = [
+            self.compiler,
+            c_flags.STANDARD,
+            *c_flags.FLOATS,
+            "-pthread",
+            "-fPIC",
+            *self.flags,
+        ]
         command += [f"-I{cnative_folder() / 'include'}", f"-I{folder}", *arguments]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr[-3000:]

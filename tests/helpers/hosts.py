@@ -26,7 +26,11 @@ from pn2code.semantics.files import Files
 from pn2code.semantics.replay import replay
 from pn2code.verify.programs import Sizes
 
-HOSTS = {"simulate": (), "supervisor": (), "monitor": ("-DPN_MONITOR",)}
+HOSTS = {
+    "simulate": (),
+    "supervisor": ("-DPN_TRACE",),
+    "monitor": ("-DPN_TRACE", "-DPN_MONITOR"),
+}
 FIRINGS = 150
 ROOM = 512
 """Different tokens that a place can hold."""
@@ -90,7 +94,12 @@ class Hosts:
         found = re.search(r'\.digest = "(\w+)"', (folder / "net.c").read_text())
         assert found is not None
         emitted = emit(
-            partition, name=net.name, reply_timeout_s=0.0, digest=found[1], version="test"
+            partition,
+            name=net.name,
+            reply_timeout_s=0.0,
+            digest=found[1],
+            version="test",
+            net_c=(folder / "net.c").read_text(),
         )
         (config,) = (f for f in emitted if f.path == "cell_config.c")
         (folder / "cell_config.c").write_text(config.text)

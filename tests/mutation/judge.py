@@ -21,12 +21,14 @@ from pn2code.conform.cell import ProgramComparison
 from pn2code.conform.folder import PROGRAM
 from pn2code.conform.probe import HOST, ProbeError
 from pn2code.diagnostics import Diagnostics
+from pn2code.emission import c_flags
 from pn2code.pipeline import Generated, generate
 from pn2code.tdl.interpret import Request
 
 SECONDS = 10.0
 """A mutant that takes longer for one answer does not come to rest."""
-FLAGS = ("-std=c11", "-O0", "-w", "-ffp-contract=off")
+FLAGS = (c_flags.STANDARD, "-O0", "-w", *c_flags.FLOATS)
+MONITOR = "-DPN_MONITOR"
 SURVIVED = "survived"
 NONE = "no mutant"
 
@@ -51,7 +53,10 @@ def judge_of(cell: Path, *flags: str) -> Iterator[Judge]:
     made = generate(cell, d)
     assert made is not None, [str(i) for i in d]
     with tempfile.TemporaryDirectory(prefix="pn2code-") as room:
-        yield Judge(cell, made, Path(room), (*FLAGS, *flags))
+        own = (
+            () if MONITOR in flags else HOST.net
+        )  # the monitored program has the net.o of all transitions
+        yield Judge(cell, made, Path(room), (*FLAGS, *HOST.flags, *own, *flags))
 
 
 class Judge:

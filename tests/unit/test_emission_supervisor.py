@@ -10,6 +10,7 @@ import pytest
 
 from pn2code.cell.partition import Channel, ChannelKind, Input, Owner, OwnerKind, Partition
 from pn2code.diagnostics import NOWHERE
+from pn2code.emission import c_flags
 from pn2code.emission.environment import c_comment, c_float, c_int, c_string
 from pn2code.emission.supervisor import emit
 from pn2code.ml.colsets import Colset, Kind
@@ -54,7 +55,7 @@ def partition() -> Partition:
 
 
 def config(p: Partition) -> str:
-    files = emit(p, name="cell", reply_timeout_s=120.0, digest="d" * 64, version="9.9")
+    files = emit(p, name="cell", reply_timeout_s=120.0, digest="d" * 64, version="9.9", net_c="")
     assert [f.path for f in files] == ["cell_config.c", "Makefile"]
     return files[0].text
 
@@ -84,7 +85,9 @@ def test_same_input_same_bytes() -> None:
 
 
 def test_blocks_name_the_channels_lines() -> None:
-    files = emit(partition(), name="cell", reply_timeout_s=1.0, digest="d" * 64, version="9.9")
+    files = emit(
+        partition(), name="cell", reply_timeout_s=1.0, digest="d" * 64, version="9.9", net_c=""
+    )
     lines = files[0].text.splitlines()
     blocks = {b.element: b for b in files[0].blocks}
     block = blocks["Top.done"]
@@ -120,7 +123,9 @@ def test_c_literals() -> None:
 
 def test_sums_are_rounded_everywhere_alike(tmp_path: Path) -> None:
     """Whatever the caller's CFLAGS say, the last word is that of the token game and the explorer."""
-    files = emit(partition(), name="cell", reply_timeout_s=1.0, digest="d" * 64, version="9.9")
+    files = emit(
+        partition(), name="cell", reply_timeout_s=1.0, digest="d" * 64, version="9.9", net_c=""
+    )
 
     (makefile,) = [f for f in files if f.path == "Makefile"]
     (tmp_path / "Makefile").write_text(makefile.text)
@@ -128,9 +133,31 @@ def test_sums_are_rounded_everywhere_alike(tmp_path: Path) -> None:
         (tmp_path / name).touch()
     for target in ("net.o", "supervisor.monitor", "supervisor.sanitize"):
         done = subprocess.run(
-            ["make", "-n", target, "CFLAGS=-O3 -ffp-contract=fast"],
+            ["make", "-n", target, "CFLAGS=-O3 -ffast-math -ffp-contract=fast"],
             cwd=tmp_path, capture_output=True, text=True, check=True,
         )  # fmt: skip
         commands = [line for line in done.stdout.splitlines() if "net.c" in line or "net.o" in line]
-        said = [word for word in commands[-1].split() if word.startswith("-ffp-contract")]
-        assert said[-1] == "-ffp-contract=off" and said[-1] in FLAGS
+        words = commands[-1].split()
+        assert c_flags.STANDARD in words and c_flags.STANDARD in FLAGS
+        for flag, undone in zip(c_flags.FLOATS, ("-ffp-contract=fast", "-ffast-math"), strict=True):
+            assert words.index(flag) > words.index(undone) and flag in FLAGS
+
+
+def test_flags_are_written_down_once(root: Path) -> None:
+    """Whoever compiles C has them from `c_flags`; only the explorer's own code is made for this machine."""
+    sources = [
+        p
+        for name in ("src", "templates", "tests")
+        for p in (root / name).rglob("*")
+        if p.suffix in (".py", ".j2")
+    ]
+    sources.remove(Path(__file__))
+    said = {
+        word: sorted(p.relative_to(root).as_posix() for p in sources if word in p.read_text())
+        for word in ('"-std=c11"', "-ffp-contract", "-march=")
+    }
+    assert said == {
+        '"-std=c11"': ["src/pn2code/emission/c_flags.py"],
+        "-ffp-contract": ["src/pn2code/emission/c_flags.py", "tests/e2e/test_verify_stress.py"],
+        "-march=": ["src/pn2code/verify/programs.py"],
+    }

@@ -27,6 +27,8 @@ from pn2code.toolchain.programs import Host
 
 HOST = Host(
     "conform",
+    flags=("-DPN_TRACE",),  # the header of its trace says what it has read from its input files
+    net=("-DPN_OWN_ONLY",),
     libraries=("-Wl,--wrap=sup_run_cell", "-lm"),
     also=("supervisor",),
     instead=("port_posix.c",),

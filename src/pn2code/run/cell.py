@@ -146,7 +146,7 @@ def prepare(path: Path, options: RunOptions, d: Diagnostics) -> Prepared | None:
         return None
     folder = options.out / "program"
     write(folder, generated.files)
-    program = build.build(folder, generated.files, d)
+    program = build.build(folder, generated.files, d, target="supervisor.traced")
     if program is None:
         return None
     return Prepared(generated, config, robot_cell, scripts, program)

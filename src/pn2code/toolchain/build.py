@@ -74,7 +74,7 @@ def build(
     Args:
         folder: where the files were written.
         files: the generated files, for their blocks.
-        target: "supervisor" or "simulate".
+        target: "supervisor", which is deployed; "supervisor.traced", the same with `--trace`; or "simulate".
 
     Returns:
         The program, or None after a diagnostic.

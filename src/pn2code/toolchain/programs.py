@@ -29,7 +29,7 @@ from pathlib import Path
 
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.codes import register
-from pn2code.emission import runtime
+from pn2code.emission import c_flags, runtime
 from pn2code.emission.output import OutputFile
 from pn2code.os_reason import os_reason
 from pn2code.private_folder import private_folder, without_folder
@@ -50,8 +50,8 @@ CACHE_UNUSABLE = register(
     "only. Set XDG_CACHE_HOME to a folder of your own.",
 )
 
-FLAGS = ("-std=c11", "-O2", "-pipe", "-ffp-contract=off")
-"""`-ffp-contract=off`: sums of products are rounded as in the token game, on every processor."""
+FLAGS = (c_flags.STANDARD, "-O2", "-pipe", *c_flags.FLOATS)
+"""For all that is compiled here: what decides about the results is what the generated Makefile has, too."""
 LARGE = 1_000_000
 """Characters of generated C beyond which a net is not compiled in one piece with its host."""
 MOST_PROGRAMS = 64
@@ -69,6 +69,7 @@ class Host:
     Args:
         name: the beginning of its sources' names, of its programs', and what diagnostics call it.
         flags: for the C compiler, added to `FLAGS`.
+        own: those for the host's own sources alone, after the others, not for what computes the values of a net.
         net: those for the net alone, after the others; the runtime is compiled without them.
         libraries: for the linker.
         without: what to do without a C compiler, the end of a sentence.
@@ -80,6 +81,7 @@ class Host:
 
     name: str
     flags: tuple[str, ...] = ()
+    own: tuple[str, ...] = ()
     net: tuple[str, ...] = ()
     libraries: tuple[str, ...] = ("-lm",)
     without: str = ""
@@ -237,6 +239,7 @@ class _Builder:
         self.files = tuple(files)
         self.runtime = host.runtime()
         tools = [*compiler.command, compiler.version, *self.flags, *host.libraries]
+        tools += ["own", *host.own] if host.own else []
         self.library = folder / f"{host.name}-runtime-{_digest(tools, self.runtime)}.a"
         tools += ["net", *host.net] if host.net else []
         self.program = folder / f"{host.name}-{_digest(tools, [*self.runtime, *self.files])}"
@@ -298,7 +301,8 @@ class _Builder:
         sources.sort(key=lambda name: -(room / name).stat().st_size)
 
         def compiled(source: str) -> bool:
-            return self._compiler(room, "-Iruntime/include", "-c", source, d=d)
+            own = self.host.own if self._is_own(source) else ()
+            return self._compiler(room, *own, "-Iruntime/include", "-c", source, d=d)
 
         with ThreadPoolExecutor(max(os.cpu_count() or 1, 1)) as pool:
             if not all(list(pool.map(compiled, sources))):
@@ -316,6 +320,9 @@ class _Builder:
             return False
         made.replace(self.library)
         return True
+
+    def _is_own(self, source: str) -> bool:
+        return Path(source).name.startswith(self.host.name)
 
     def _net(self, room: Path, d: Diagnostics) -> bool:
         """net.o: the net in one piece with the host's source that calls it, or alone.

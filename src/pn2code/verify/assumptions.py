@@ -7,9 +7,10 @@ from typing import Final
 
 NET: Final = (
     "The answers are about the net as it stands: supervisor, robots, devices and people do what their pages say.",
-    "The explorer has the net in a form of its own: with packed places, arrays of other sizes and other compiler flags "
-    "than the generated net.o, which the supervisor and the simulator run.",
-    "This report does not show that net.o, the supervisor and the scripts do what the net does. `pn2code conform` "
+    "The object that was verified is the explorer's own, made from the net with packed places and arrays of other "
+    "sizes. The object that is deployed is net_own.o of the generated folder, in its `supervisor`: net.c without the "
+    "transitions of robots. Both are compiled with the same standard and the same floating-point flags.",
+    "This report does not show that net_own.o, the supervisor and the scripts do what the net does. `pn2code conform` "
     "compares them and the explorer's graph with the token game, state by state.",
     "The reference token game, which shares no code with the explorer, has replayed the runs that are shown.",
 )

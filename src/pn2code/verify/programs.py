@@ -28,8 +28,9 @@ from pn2code.structure.bounds import PlaceBound
 from pn2code.toolchain import programs
 from pn2code.toolchain.programs import Host
 
-HOST = Host("explore", flags=("-pthread", "-march=native"), libraries=("-pthread", "-lm"))
-"""Explorers run where they are compiled, so they may use all that the processor has."""
+HOST = Host("explore", flags=("-pthread",), own=("-march=native",), libraries=("-pthread", "-lm"))
+"""Explorers run where they are compiled, so the search and its store may use all that the processor has. The net,
+and the runtime that computes its values, are compiled as everywhere else."""
 QUICK = replace(HOST, net=("-O0",))
 """For small spaces: compiled in a fifth of the time. Only the net is slower, up to three times; the explorer is not."""
 LARGE = replace(HOST, net=("-DPN_MANY",))

@@ -16,7 +16,7 @@ int pn_time_order(bool is_real_time, pn_time_t a, pn_time_t b)
     return is_real_time ? pn_real_order(a.real, b.real) : pn_int_order(a.integer, b.integer);
 }
 
-/* --- entries ------------------------------------------------------------------------------------------------------- */
+/* --- entries ------------------------------------------------------------------------------------------------------ */
 
 uint32_t pn_bag_used(const pn_bag_t *bag, const void *marking)
 {
@@ -37,7 +37,7 @@ static void set_used(const pn_bag_t *bag, void *marking, uint32_t used)
 
 void pn_bag_begin(const pn_bag_t *bag, void *marking)
 {
-    if (!bag->is_packed) {
+    if (!PN_IS_PACKED(bag)) {
         set_used(bag, marking, 0U);
     }
 }
@@ -92,7 +92,8 @@ uint32_t pn_bag_lower_bound(const pn_bag_t *bag, const void *marking, const void
 
 bool pn_bag_is_at(const pn_bag_t *bag, const void *marking, uint32_t i, const void *value)
 {
-    return (i < pn_bag_used(bag, marking)) && pn_same(bag->type, part(pn_bag_entry(bag, marking, i), bag->value), value);
+    return (i < pn_bag_used(bag, marking))
+           && pn_same(bag->type, part(pn_bag_entry(bag, marking, i), bag->value), value);
 }
 
 static bool is_after(const pn_bag_t *bag, const void *entry, pn_time_t limit)
@@ -100,7 +101,7 @@ static bool is_after(const pn_bag_t *bag, const void *entry, pn_time_t limit)
     return bag->is_timed && (pn_time_order(bag->is_real_time, pn_bag_stamp_of(bag, entry), limit) > 0);
 }
 
-/* --- packed places: the counters ----------------------------------------------------------------------------------- */
+/* --- packed places: the counters ---------------------------------------------------------------------------------- */
 
 static uint32_t packed_next(const pn_bag_t *bag, const void *marking, uint32_t from)
 {
@@ -159,7 +160,8 @@ bool pn_bag_colour_json(const pn_bag_t *bag, uint32_t number, pn_text_t *out)
     return true;
 }
 
-pn_sum_state_t pn_sum_make(pn_ctx_t *cx, const pn_bag_t *bag, const pn_type_t *list, const void *multiset, uint64_t *sum)
+pn_sum_state_t pn_sum_make(pn_ctx_t *cx, const pn_bag_t *bag, const pn_type_t *list, const void *multiset,
+                           uint64_t *sum)
 {
     const uint32_t start = bag->bit % 64U;
     (void)memset(sum, 0, PN_SUM_WORDS(bag->bit, bag->colours, bag->width) * sizeof *sum);
@@ -175,11 +177,11 @@ pn_sum_state_t pn_sum_make(pn_ctx_t *cx, const pn_bag_t *bag, const pn_type_t *l
     return pn_ok(cx) ? PN_SUM_KNOWN : PN_SUM_UNKNOWN;
 }
 
-/* --- counting ------------------------------------------------------------------------------------------------------ */
+/* --- counting ----------------------------------------------------------------------------------------------------- */
 
 uint64_t pn_bag_total(const pn_bag_t *bag, const void *marking)
 {
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         return packed_total(bag, marking);
     }
     uint64_t total = 0U;
@@ -191,7 +193,7 @@ uint64_t pn_bag_total(const pn_bag_t *bag, const void *marking)
 
 uint64_t pn_bag_available(const pn_bag_t *bag, const void *marking, pn_time_t now)
 {
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         return packed_total(bag, marking);
     }
     uint64_t total = 0U;
@@ -204,7 +206,7 @@ uint64_t pn_bag_available(const pn_bag_t *bag, const void *marking, pn_time_t no
 
 uint64_t pn_bag_count(const pn_bag_t *bag, const void *marking, const void *value, pn_time_t limit)
 {
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         const uint32_t number = bag->number_of(value);
         return (number != PN_NO_COLOUR) ? packed_count(bag, marking, number) : 0U;
     }
@@ -216,7 +218,7 @@ uint64_t pn_bag_count(const pn_bag_t *bag, const void *marking, const void *valu
     return total;
 }
 
-/* --- change -------------------------------------------------------------------------------------------------------- */
+/* --- change ------------------------------------------------------------------------------------------------------- */
 
 bool pn_fail_missing(pn_ctx_t *cx)
 {
@@ -246,7 +248,7 @@ void pn_bag_check(pn_ctx_t *cx, const pn_bag_t *bag, void *value)
 
 bool pn_bag_add(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const void *value, uint32_t count, pn_time_t stamp)
 {
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         return packed_add(cx, bag, marking, value, count);
     }
     if (bag->is_slot && ((count > 1U) || (pn_bag_used(bag, marking) > 0U))) {
@@ -306,7 +308,7 @@ void pn_bag_remove_at(const pn_bag_t *bag, void *marking, uint32_t i, uint32_t c
 
 void pn_bag_clear(const pn_bag_t *bag, void *marking)
 {
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         packed_clear(bag, marking);
         return;
     }
@@ -343,7 +345,7 @@ void pn_bag_age(const pn_bag_t *bag, void *marking, pn_time_t by)
     set_used(bag, marking, kept);
 }
 
-/* --- seen from outside --------------------------------------------------------------------------------------------- */
+/* --- seen from outside -------------------------------------------------------------------------------------------- */
 
 static void consider(const pn_bag_t *bag, pn_time_t time, pn_time_t now, bool *found, pn_time_t *next)
 {
@@ -355,7 +357,8 @@ static void consider(const pn_bag_t *bag, pn_time_t time, pn_time_t now, bool *f
 }
 
 /* When a token becomes available to an arc that takes it so much before its stamp. */
-static void consider_early(const pn_bag_t *bag, pn_time_t stamp, pn_time_t early, pn_time_t now, bool *found, pn_time_t *next)
+static void consider_early(const pn_bag_t *bag, pn_time_t stamp, pn_time_t early, pn_time_t now, bool *found,
+                           pn_time_t *next)
 {
     if (bag->is_real_time) {
         consider(bag, (pn_time_t){ .real = stamp.real - early.real }, now, found, next);
@@ -367,7 +370,8 @@ static void consider_early(const pn_bag_t *bag, pn_time_t stamp, pn_time_t early
     }
 }
 
-void pn_bag_threshold(const pn_bag_t *bag, const void *marking, pn_time_t now, pn_time_t early, bool *found, pn_time_t *next)
+void pn_bag_threshold(const pn_bag_t *bag, const void *marking, pn_time_t now, pn_time_t early, bool *found,
+                      pn_time_t *next)
 {
     for (uint32_t i = 0U; bag->is_timed && (i < pn_bag_used(bag, marking)); i++) {
         consider_early(bag, pn_bag_stamp_of(bag, pn_bag_entry(bag, marking, i)), early, now, found, next);
@@ -405,7 +409,7 @@ static void packed_json(const pn_bag_t *bag, const void *marking, pn_text_t *out
 
 void pn_bag_json(const pn_bag_t *bag, const void *marking, pn_text_t *out)
 {
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         packed_json(bag, marking, out);
         return;
     }
@@ -432,7 +436,7 @@ void pn_bag_json(const pn_bag_t *bag, const void *marking, pn_text_t *out)
 
 uint32_t pn_bag_token(const pn_bag_t *bag, const void *marking, uint32_t i, pn_leaf_t *leaf, uint32_t capacity)
 {
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         pn_colour_t colour;
         uint32_t number = packed_next(bag, marking, 0U);
         for (uint32_t k = 0U; (k < i) && (number < bag->colours); k++) {
@@ -466,10 +470,11 @@ bool pn_bag_put(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const pn_leaf_
     return is_put;
 }
 
-/* --- bytes and arena ----------------------------------------------------------------------------------------------- */
+/* --- bytes and arena ---------------------------------------------------------------------------------------------- */
 
-/* How many multi-set entries there are, then of each how many tokens, and its value. In a timed place their stamps follow, in the same
- * order, and before all there is the length of what is not stamps (PN_STAMPS_AT): stamps vary more than what they are of. */
+/* How many multi-set entries there are, then of each how many tokens, and its value. In a timed place their stamps
+ * follow, in the same order, and before all there is the length of what is not stamps (PN_STAMPS_AT): stamps vary more
+ * than what they are of. */
 static size_t encode_entries(const pn_bag_t *bag, const void *marking, uint8_t *out, size_t room, size_t at)
 {
     const uint32_t used = pn_bag_used(bag, marking);
@@ -513,7 +518,7 @@ static bool get_stamp(const pn_bag_t *bag, const uint8_t *in, size_t length, siz
 
 size_t pn_bag_encode(const pn_bag_t *bag, const void *marking, uint8_t *out, size_t room)
 {
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         return packed_encode(bag, marking, out, room);
     }
     if (!bag->is_timed) {
@@ -534,8 +539,8 @@ typedef struct source {
     size_t length;
     size_t at;
     size_t stamp_at;
-    size_t end;     /* of the values */
-    uint64_t used;  /* entries */
+    size_t end;    /* of the values */
+    uint64_t used; /* entries */
 } source_t;
 
 static bool open_source(source_t *s, const pn_bag_t *bag, const uint8_t *in, size_t length)
@@ -576,7 +581,7 @@ static size_t source_end(const pn_bag_t *bag, const source_t *s)
 
 size_t pn_bag_decode(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uint8_t *in, size_t length)
 {
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         packed_clear(bag, marking);
         return pn_bag_add_bytes(cx, bag, marking, in, length);
     }
@@ -622,7 +627,8 @@ size_t pn_bag_add_bytes(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const 
         uint32_t count = 0U;
         pn_time_t stamp = { 0 };
         (void)memset(value, 0, bag->type->size);
-        if (!read_entry(cx, bag, &source, value, &count, &stamp) || !pn_bag_add(cx, bag, marking, value, count, stamp)) {
+        if (!read_entry(cx, bag, &source, value, &count, &stamp)
+            || !pn_bag_add(cx, bag, marking, value, count, stamp)) {
             return SIZE_MAX;
         }
     }
@@ -631,7 +637,7 @@ size_t pn_bag_add_bytes(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const 
 
 void pn_bag_relocate(pn_ctx_t *cx, const pn_bag_t *bag, void *marking)
 {
-    if (bag->is_packed) {
+    if (PN_IS_PACKED(bag)) {
         return; /* a colour of few refers to nothing */
     }
     for (uint32_t i = 0U; i < pn_bag_used(bag, marking); i++) {

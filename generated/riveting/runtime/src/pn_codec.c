@@ -7,7 +7,7 @@
 #include "pn_bytes_impl.h"
 #include "pn_type_impl.h"
 
-/* --- bytes --------------------------------------------------------------------------------------------------------- */
+/* --- bytes -------------------------------------------------------------------------------------------------------- */
 
 /* What a reference refers to: nothing, a root, a cell that comes with it, one that has come before. */
 enum {
@@ -17,9 +17,11 @@ enum {
     CELL_KNOWN = 3 /* and its number */
 };
 
-static size_t encode_at(pn_cells_t *cells, const pn_type_t *type, const void *value, uint8_t *out, size_t room, size_t at);
+static size_t encode_at(pn_cells_t *cells, const pn_type_t *type, const void *value, uint8_t *out, size_t room,
+                        size_t at);
 
-static size_t encode_cell(pn_cells_t *cells, const pn_type_t *type, const void *contents, uint8_t *out, size_t room, size_t at)
+static size_t encode_cell(pn_cells_t *cells, const pn_type_t *type, const void *contents, uint8_t *out, size_t room,
+                          size_t at)
 {
     if (contents == NULL) {
         return put_number(out, room, at, CELL_NONE);
@@ -42,7 +44,8 @@ static size_t encode_cell(pn_cells_t *cells, const pn_type_t *type, const void *
     return encode_at(cells, type->element, contents, out, room, put_number(out, room, at, CELL_NEW));
 }
 
-static size_t encode_at(pn_cells_t *cells, const pn_type_t *type, const void *value, uint8_t *out, size_t room, size_t at)
+static size_t encode_at(pn_cells_t *cells, const pn_type_t *type, const void *value, uint8_t *out, size_t room,
+                        size_t at)
 {
     size_t end = at;
     switch (type->kind) {
@@ -50,14 +53,10 @@ static size_t encode_at(pn_cells_t *cells, const pn_type_t *type, const void *va
         const uint8_t flag = load_bool(value) ? 1U : 0U;
         return put_bytes(out, room, at, &flag, 1U);
     }
-    case PN_KIND_INT:
-        return put_integer(out, room, at, load_int(value));
-    case PN_KIND_REAL:
-        return put_real(out, room, at, load_real(value));
-    case PN_KIND_CHAR:
-        return put_bytes(out, room, at, value, type->size);
-    case PN_KIND_ENUM:
-        return put_number(out, room, at, load_tag(value));
+    case PN_KIND_INT: return put_integer(out, room, at, load_int(value));
+    case PN_KIND_REAL: return put_real(out, room, at, load_real(value));
+    case PN_KIND_CHAR: return put_bytes(out, room, at, value, type->size);
+    case PN_KIND_ENUM: return put_number(out, room, at, load_tag(value));
     case PN_KIND_BIG: {
         const pn_big_t number = load_big(value);
         const size_t size = (number.large == NULL) ? 0U : pn_big_size(number.large);
@@ -88,11 +87,9 @@ static size_t encode_at(pn_cells_t *cells, const pn_type_t *type, const void *va
         end = put_number(out, room, at, load_tag(value));
         return (argument == NULL) ? end : encode_at(cells, constructor->type, argument, out, room, end);
     }
-    case PN_KIND_REF:
-        return (cells != NULL) ? encode_cell(cells, type, load_pointer(value), out, room, at) : end;
+    case PN_KIND_REF: return (cells != NULL) ? encode_cell(cells, type, load_pointer(value), out, room, at) : end;
     case PN_KIND_UNIT:
-    default:
-        return end;
+    default: return end;
     }
 }
 
@@ -255,7 +252,8 @@ static void decode_cell(reader_t *r, const pn_type_t *type, void *value)
         const bool is_there = (what == (uint64_t)CELL_ROOT) ? (number < most) : ((number > 0U) && (number <= most));
         r->failed = r->failed || (what > (uint64_t)CELL_KNOWN) || !is_there;
         if (!r->failed) {
-            contents = (what == (uint64_t)CELL_ROOT) ? r->cells->root[number].variable : r->cells->contents[number - 1U];
+            contents =
+                (what == (uint64_t)CELL_ROOT) ? r->cells->root[number].variable : r->cells->contents[number - 1U];
         }
     }
     store_pointer(value, contents);
@@ -282,39 +280,25 @@ static void decode_value(reader_t *r, const pn_type_t *type, void *value)
         (void)memcpy(value, &number, sizeof number);
         break;
     }
-    case PN_KIND_CHAR:
-        get_bytes(r, value, type->size);
-        break;
+    case PN_KIND_CHAR: get_bytes(r, value, type->size); break;
     case PN_KIND_ENUM: {
         const uint32_t tag = read_tag(r, type);
         (void)memcpy(value, &tag, sizeof tag);
         break;
     }
-    case PN_KIND_BIG:
-        decode_big(r, value);
-        break;
-    case PN_KIND_STRING:
-        decode_string(r, value);
-        break;
+    case PN_KIND_BIG: decode_big(r, value); break;
+    case PN_KIND_STRING: decode_string(r, value); break;
     case PN_KIND_RECORD:
         (void)memset(value, 0, type->size);
         for (uint32_t i = 0U; i < type->count; i++) {
             decode_value(r, type->field[i].type, part_of(value, type->field[i].offset));
         }
         break;
-    case PN_KIND_LIST:
-        decode_list(r, type, value);
-        break;
-    case PN_KIND_UNION:
-        decode_union(r, type, value);
-        break;
-    case PN_KIND_REF:
-        decode_cell(r, type, value);
-        break;
+    case PN_KIND_LIST: decode_list(r, type, value); break;
+    case PN_KIND_UNION: decode_union(r, type, value); break;
+    case PN_KIND_REF: decode_cell(r, type, value); break;
     case PN_KIND_UNIT:
-    default:
-        (void)memset(value, 0, type->size);
-        break;
+    default: (void)memset(value, 0, type->size); break;
     }
 }
 
@@ -323,7 +307,8 @@ size_t pn_decode(pn_ctx_t *cx, const pn_type_t *type, void *value, const uint8_t
     return pn_decode_with(cx, NULL, type, value, in, length);
 }
 
-size_t pn_decode_with(pn_ctx_t *cx, pn_cells_t *cells, const pn_type_t *type, void *value, const uint8_t *in, size_t length)
+size_t pn_decode_with(pn_ctx_t *cx, pn_cells_t *cells, const pn_type_t *type, void *value, const uint8_t *in,
+                      size_t length)
 {
     reader_t r = { cx, in, length, 0U, false, cells };
     decode_value(&r, type, value);
@@ -331,7 +316,7 @@ size_t pn_decode_with(pn_ctx_t *cx, pn_cells_t *cells, const pn_type_t *type, vo
     return (r.failed || !pn_ok(cx)) ? SIZE_MAX : r.at;
 }
 
-/* --- moving between halves ----------------------------------------------------------------------------------------- */
+/* --- moving between halves ---------------------------------------------------------------------------------------- */
 
 static void relocate_list(pn_ctx_t *cx, const pn_type_t *type, void *value)
 {
@@ -366,7 +351,8 @@ static void relocate_ref(pn_ctx_t *cx, const pn_type_t *type, void *value)
     const pn_arena_t *arena = cx->arena;
     const unsigned char *contents = load_pointer(value);
     const unsigned char *active = &arena->memory[arena->permanent + (arena->active * arena->half)];
-    if ((contents == NULL) || !is_within(contents, arena->memory, arena->size) || is_within(contents, active, arena->half)) {
+    if ((contents == NULL) || !is_within(contents, arena->memory, arena->size)
+        || is_within(contents, active, arena->half)) {
         return;
     }
     unsigned char *left = &arena->memory[(size_t)(contents - arena->memory) - PN_REF_HEADER];

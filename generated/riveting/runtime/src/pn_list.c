@@ -372,7 +372,8 @@ const void *pn_ms_subtract(pn_ctx_t *cx, const pn_type_t *type, const void *a, c
 const void *pn_ms_times(pn_ctx_t *cx, const pn_type_t *type, int64_t n, const void *multiset)
 {
     const void *result = NULL;
-    for (const void *rest = pn_list_reverse(cx, type, multiset); (rest != NULL) && pn_ok(cx); rest = pn_list_tail(rest)) {
+    for (const void *rest = pn_list_reverse(cx, type, multiset); (rest != NULL) && pn_ok(cx);
+         rest = pn_list_tail(rest)) {
         for (int64_t k = 0; (k < n) && pn_ok(cx); k++) {
             result = pn_list_cons(cx, type, pn_list_head(type, rest), result);
         }
@@ -399,7 +400,7 @@ const void *pn_ms_random_cell(pn_ctx_t *cx, const void *multiset)
     return pn_list_nth_cell(cx, multiset, pn_random_below(cx, length));
 }
 
-/* --- functions of a colour set ------------------------------------------------------------------------------------- */
+/* --- functions of a colour set ------------------------------------------------------------------------------------ */
 
 static bool is_small(pn_ctx_t *cx, const pn_type_t *type)
 {

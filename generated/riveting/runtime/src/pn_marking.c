@@ -45,7 +45,8 @@ bool pn_marking_init(const pn_net_t *net, pn_ctx_t *cx, void *marking)
     return pn_ok(cx);
 }
 
-bool pn_marking_put(const pn_net_t *net, pn_ctx_t *cx, void *marking, uint32_t place, const pn_leaf_t *leaf, uint32_t leaves)
+bool pn_marking_put(const pn_net_t *net, pn_ctx_t *cx, void *marking, uint32_t place, const pn_leaf_t *leaf,
+                    uint32_t leaves)
 {
     cx->now = pn_now(net, marking);
     return pn_bag_put(cx, net->place[place].bag, marking, leaf, leaves);

@@ -8,10 +8,12 @@
 #include "pn/pn_text.h"
 #include "pn_type_impl.h"
 
-/* --- order --------------------------------------------------------------------------------------------------------- */
+/* --- order -------------------------------------------------------------------------------------------------------- */
 
 /* -1, 0, 1 of two reals: what differs between the order of tokens, that of `lt`, and equality. */
 typedef int (*reals_t)(double, double);
+
+#ifndef PN_FLAT_TYPES
 
 static int compare(const pn_type_t *type, const void *a, const void *b, reals_t reals);
 
@@ -42,43 +44,56 @@ static int compare_unions(const pn_type_t *type, const void *a, const void *b, r
     return (argument_a == NULL) ? 0 : compare(constructor_a->type, argument_a, argument_b, reals);
 }
 
-static int compare(const pn_type_t *type, const void *a, const void *b, reals_t reals)
+#endif
+
+/* Two values that are no records. */
+static int compare_part(const pn_type_t *type, const void *a, const void *b, reals_t reals)
 {
     switch (type->kind) {
-    case PN_KIND_BOOL:
-        return (int)load_bool(a) - (int)load_bool(b);
-    case PN_KIND_INT:
-        return pn_int_order(load_int(a), load_int(b));
-    case PN_KIND_BIG:
-        return pn_big_order(load_big(a), load_big(b));
-    case PN_KIND_REAL:
-        return reals(load_real(a), load_real(b));
-    case PN_KIND_STRING:
-        return pn_string_order(load_string(a), load_string(b));
-    case PN_KIND_CHAR:
-        return (int)load_byte(a) - (int)load_byte(b);
-    case PN_KIND_ENUM:
-        return pn_int_order((int64_t)load_tag(a), (int64_t)load_tag(b));
-    case PN_KIND_RECORD:
-        for (uint32_t i = 0U; i < type->count; i++) {
-            const pn_field_t *field = &type->field[i];
-            const int order = compare(field->type, part(a, field->offset), part(b, field->offset), reals);
-            if (order != 0) {
-                return order;
-            }
-        }
-        return 0;
+    case PN_KIND_BOOL: return (int)load_bool(a) - (int)load_bool(b);
+    case PN_KIND_INT: return pn_int_order(load_int(a), load_int(b));
+    case PN_KIND_BIG: return pn_big_order(load_big(a), load_big(b));
+    case PN_KIND_REAL: return reals(load_real(a), load_real(b));
+    case PN_KIND_STRING: return pn_string_order(load_string(a), load_string(b));
+    case PN_KIND_CHAR: return (int)load_byte(a) - (int)load_byte(b);
+    case PN_KIND_ENUM: return pn_int_order((int64_t)load_tag(a), (int64_t)load_tag(b));
+#ifndef PN_FLAT_TYPES
+    case PN_KIND_LIST: return compare_lists(type, a, b, reals);
+    case PN_KIND_UNION: return compare_unions(type, a, b, reals);
+#else
     case PN_KIND_LIST:
-        return compare_lists(type, a, b, reals);
     case PN_KIND_UNION:
-        return compare_unions(type, a, b, reals);
+#endif
     case PN_KIND_REF:
         /* Equality is all that matters, but it is an order as well. */
         return (load_pointer(a) == load_pointer(b)) ? 0 : 1;
+    case PN_KIND_RECORD: /* a subset: its parts have been compared */
     case PN_KIND_UNIT:
-    default:
-        return 0;
+    default: return 0;
     }
+}
+
+static int compare_parts(const pn_type_t *type, const void *a, const void *b, reals_t reals)
+{
+    int order = 0;
+    for (uint32_t i = 0U; (order == 0) && (i < parts_of(type)); i++) {
+        const pn_part_t one = part_at(type, i);
+        order = compare_part(one.type, part(a, one.offset), part(b, one.offset), reals);
+    }
+    return order;
+}
+
+static int compare(const pn_type_t *type, const void *a, const void *b, reals_t reals)
+{
+    if ((type->kind != PN_KIND_RECORD) || (type->part_count > 0U)) {
+        return compare_parts(type, a, b, reals);
+    }
+    int order = 0;
+    for (uint32_t i = 0U; (order == 0) && (i < type->count); i++) { /* a binding: its variables */
+        const pn_field_t *const field = &type->field[i];
+        order = compare_parts(field->type, part(a, field->offset), part(b, field->offset), reals);
+    }
+    return order;
 }
 
 int pn_compare(const pn_type_t *type, const void *a, const void *b)
@@ -112,7 +127,7 @@ bool pn_equal(const pn_type_t *type, const void *a, const void *b)
     return compare(type, a, b, real_differs) == 0;
 }
 
-/* --- text ---------------------------------------------------------------------------------------------------------- */
+/* --- text --------------------------------------------------------------------------------------------------------- */
 
 static void json_record(const pn_type_t *type, const void *value, pn_text_t *out)
 {
@@ -169,18 +184,10 @@ static void text_big(pn_big_t value, char minus, pn_text_t *out)
 void pn_json(const pn_type_t *type, const void *value, pn_text_t *out)
 {
     switch (type->kind) {
-    case PN_KIND_BOOL:
-        pn_text_str(out, load_bool(value) ? "true" : "false");
-        break;
-    case PN_KIND_INT:
-        pn_text_int(out, load_int(value));
-        break;
-    case PN_KIND_BIG:
-        text_big(load_big(value), '-', out);
-        break;
-    case PN_KIND_REAL:
-        pn_text_json_real(out, load_real(value));
-        break;
+    case PN_KIND_BOOL: pn_text_str(out, load_bool(value) ? "true" : "false"); break;
+    case PN_KIND_INT: pn_text_int(out, load_int(value)); break;
+    case PN_KIND_BIG: text_big(load_big(value), '-', out); break;
+    case PN_KIND_REAL: pn_text_json_real(out, load_real(value)); break;
     case PN_KIND_STRING: {
         const pn_string_t text = load_string(value);
         pn_text_json_string(out, text.bytes, text.length);
@@ -196,20 +203,12 @@ void pn_json(const pn_type_t *type, const void *value, pn_text_t *out)
         pn_text_json_str(out, type->name_of_value[load_tag(value)]);
         pn_text_str(out, type->is_tuple ? "]" : "");
         break;
-    case PN_KIND_RECORD:
-        json_record(type, value, out);
-        break;
-    case PN_KIND_LIST:
-        json_list(type, value, out);
-        break;
-    case PN_KIND_UNION:
-        json_union(type, value, out);
-        break;
+    case PN_KIND_RECORD: json_record(type, value, out); break;
+    case PN_KIND_LIST: json_list(type, value, out); break;
+    case PN_KIND_UNION: json_union(type, value, out); break;
     case PN_KIND_REF:
     case PN_KIND_UNIT:
-    default:
-        pn_text_str(out, "null");
-        break;
+    default: pn_text_str(out, "null"); break;
     }
 }
 
@@ -273,12 +272,8 @@ void pn_mkstr(const pn_type_t *type, const void *value, pn_text_t *out)
             pn_text_str(out, load_bool(value) ? "true" : "false");
         }
         break;
-    case PN_KIND_INT:
-        mkstr_int(type, load_int(value), out);
-        break;
-    case PN_KIND_BIG:
-        text_big(load_big(value), '~', out);
-        break;
+    case PN_KIND_INT: mkstr_int(type, load_int(value), out); break;
+    case PN_KIND_BIG: text_big(load_big(value), '~', out); break;
     case PN_KIND_REAL: {
         char digits[40];
         (void)pn_real_sml(digits, sizeof digits, load_real(value));
@@ -297,23 +292,13 @@ void pn_mkstr(const pn_type_t *type, const void *value, pn_text_t *out)
         pn_text_char(out, (char)load_byte(value));
         pn_text_char(out, '"');
         break;
-    case PN_KIND_ENUM:
-        pn_text_str(out, type->name_of_value[load_tag(value)]);
-        break;
-    case PN_KIND_RECORD:
-        mkstr_record(type, value, out);
-        break;
-    case PN_KIND_LIST:
-        mkstr_list(type, value, out);
-        break;
-    case PN_KIND_UNION:
-        mkstr_union(type, value, out);
-        break;
+    case PN_KIND_ENUM: pn_text_str(out, type->name_of_value[load_tag(value)]); break;
+    case PN_KIND_RECORD: mkstr_record(type, value, out); break;
+    case PN_KIND_LIST: mkstr_list(type, value, out); break;
+    case PN_KIND_UNION: mkstr_union(type, value, out); break;
     case PN_KIND_REF:
     case PN_KIND_UNIT:
-    default:
-        pn_text_str(out, (type->name_of_value != NULL) ? type->name_of_value[0] : "()");
-        break;
+    default: pn_text_str(out, (type->name_of_value != NULL) ? type->name_of_value[0] : "()"); break;
     }
 }
 
@@ -339,7 +324,7 @@ pn_string_t pn_mkstr_string(pn_ctx_t *cx, const pn_type_t *type, const void *val
     return pn_string_make(cx, buffer, text.length);
 }
 
-/* --- references and exceptions ------------------------------------------------------------------------------------- */
+/* --- references and exceptions ------------------------------------------------------------------------------------ */
 
 void *pn_ref_new(pn_ctx_t *cx, const void *value, size_t size)
 {
@@ -361,7 +346,8 @@ void *pn_ref_new(pn_ctx_t *cx, const void *value, size_t size)
 static pn_error_t error_of(const char *name)
 {
     static const pn_error_t known[] = {
-        PN_ERR_OVERFLOW, PN_ERR_DIV, PN_ERR_MATCH, PN_ERR_BIND, PN_ERR_SUBSCRIPT, PN_ERR_EMPTY, PN_ERR_DOMAIN, PN_ERR_SUBTRACT,
+        PN_ERR_OVERFLOW,  PN_ERR_DIV,   PN_ERR_MATCH,  PN_ERR_BIND,
+        PN_ERR_SUBSCRIPT, PN_ERR_EMPTY, PN_ERR_DOMAIN, PN_ERR_SUBTRACT,
     };
     for (size_t i = 0U; i < (sizeof known / sizeof known[0]); i++) {
         if (strcmp(pn_error_name(known[i]), name) == 0) {
@@ -388,7 +374,7 @@ pn_string_t pn_exception_name(const pn_type_t *type, const void *exception)
     return text;
 }
 
-/* --- legality ------------------------------------------------------------------------------------------------------ */
+/* --- legality ----------------------------------------------------------------------------------------------------- */
 
 static bool is_legal_string(const pn_type_t *type, pn_string_t text)
 {
@@ -404,6 +390,8 @@ static bool is_legal_string(const pn_type_t *type, pn_string_t text)
     return true;
 }
 
+#ifndef PN_FLAT_TYPES
+
 static bool is_legal_list(pn_ctx_t *cx, const pn_type_t *type, const void *list)
 {
     int64_t length = 0;
@@ -416,8 +404,18 @@ static bool is_legal_list(pn_ctx_t *cx, const pn_type_t *type, const void *list)
     return !type->has_range || ((length >= type->low) && (length <= type->high));
 }
 
-static bool has_legal_parts(pn_ctx_t *cx, const pn_type_t *type, const void *value)
+static bool is_legal_union(pn_ctx_t *cx, const pn_type_t *type, const void *value)
 {
+    const void *argument = NULL;
+    const pn_field_t *constructor = constructor_of(type, value, &argument);
+    return (argument == NULL) || pn_is_legal(cx, constructor->type, argument);
+}
+
+#endif
+
+static bool is_legal_part(pn_ctx_t *cx, const pn_type_t *type, const void *value)
+{
+    (void)cx; /* only lists and unions look at it */
     switch (type->kind) {
     case PN_KIND_INT: {
         const int64_t number = load_int(value);
@@ -425,44 +423,45 @@ static bool has_legal_parts(pn_ctx_t *cx, const pn_type_t *type, const void *val
     }
     case PN_KIND_BIG: {
         const pn_big_t number = load_big(value);
-        return !type->has_range || ((pn_big_order(number, type->big_low) >= 0) && (pn_big_order(number, type->big_high) <= 0));
+        return !type->has_range
+               || ((pn_big_order(number, type->big_low) >= 0) && (pn_big_order(number, type->big_high) <= 0));
     }
     case PN_KIND_REAL: {
         const double number = load_real(value);
         const bool is_in_range = !type->has_range || ((number >= type->real_low) && (number <= type->real_high));
         return is_in_range && (!type->is_float32 || isfinite(number));
     }
-    case PN_KIND_STRING:
-        return is_legal_string(type, load_string(value));
-    case PN_KIND_ENUM:
-        return load_tag(value) < type->count;
-    case PN_KIND_RECORD:
-        for (uint32_t i = 0U; i < type->count; i++) {
-            if (!pn_is_legal(cx, type->field[i].type, part(value, type->field[i].offset))) {
-                return false;
-            }
-        }
-        return true;
+    case PN_KIND_STRING: return is_legal_string(type, load_string(value));
+    case PN_KIND_ENUM: return load_tag(value) < type->count;
+#ifndef PN_FLAT_TYPES
+    case PN_KIND_LIST: return is_legal_list(cx, type, load_pointer(value));
+    case PN_KIND_UNION: return is_legal_union(cx, type, value);
+#else
     case PN_KIND_LIST:
-        return is_legal_list(cx, type, load_pointer(value));
-    case PN_KIND_UNION: {
-        const void *argument = NULL;
-        const pn_field_t *constructor = constructor_of(type, value, &argument);
-        return (argument == NULL) || pn_is_legal(cx, constructor->type, argument);
-    }
+    case PN_KIND_UNION:
+#endif
+    case PN_KIND_RECORD: /* its parts come before it */
     case PN_KIND_UNIT:
     case PN_KIND_BOOL:
     case PN_KIND_CHAR:
     case PN_KIND_REF:
-    default:
-        return true;
+    default: return true;
     }
 }
 
 bool pn_is_legal(pn_ctx_t *cx, const pn_type_t *type, const void *value)
 {
-    return has_legal_parts(cx, type, value) && ((type->member == NULL) || type->member(cx, value));
+    for (uint32_t i = 0U; i < parts_of(type); i++) {
+        const pn_part_t one = part_at(type, i);
+        const void *const at = part(value, one.offset);
+        if (!is_legal_part(cx, one.type, at) || ((one.type->member != NULL) && !one.type->member(cx, at))) {
+            return false;
+        }
+    }
+    return (type->kind != PN_KIND_RECORD) || (type->member == NULL) || type->member(cx, value);
 }
+
+#ifndef PN_FLAT_TYPES
 
 static void narrow_list(pn_ctx_t *cx, const pn_type_t *type, void *value)
 {
@@ -475,7 +474,17 @@ static void narrow_list(pn_ctx_t *cx, const pn_type_t *type, void *value)
     }
 }
 
-void pn_narrow(pn_ctx_t *cx, const pn_type_t *type, void *value)
+static void narrow_union(pn_ctx_t *cx, const pn_type_t *type, void *value)
+{
+    const pn_field_t *constructor = &type->field[load_tag(value)];
+    if ((constructor->type != NULL) && !constructor->is_boxed) {
+        pn_narrow(cx, constructor->type, part_of(value, constructor->offset));
+    }
+}
+
+#endif
+
+static void narrow_part(pn_ctx_t *cx, const pn_type_t *type, void *value)
 {
     if (!type->is_narrow) {
         return;
@@ -486,21 +495,28 @@ void pn_narrow(pn_ctx_t *cx, const pn_type_t *type, void *value)
             pn_raise(cx, PN_ERR_COLOUR, NULL);
         }
         (void)memcpy(value, &rounded, sizeof rounded);
-    } else if (type->kind == PN_KIND_RECORD) {
-        for (uint32_t i = 0U; i < type->count; i++) {
-            pn_narrow(cx, type->field[i].type, part_of(value, type->field[i].offset));
-        }
+#ifndef PN_FLAT_TYPES
     } else if (type->kind == PN_KIND_LIST) {
         narrow_list(cx, type, value);
     } else if (type->kind == PN_KIND_UNION) {
-        const pn_field_t *constructor = &type->field[load_tag(value)];
-        if ((constructor->type != NULL) && !constructor->is_boxed) {
-            pn_narrow(cx, constructor->type, part_of(value, constructor->offset));
+        narrow_union(cx, type, value);
+#endif
+    } else {
+        /* a record: its parts have been narrowed */
+    }
+}
+
+void pn_narrow(pn_ctx_t *cx, const pn_type_t *type, void *value)
+{
+    if (type->is_narrow) {
+        for (uint32_t i = 0U; i < parts_of(type); i++) {
+            const pn_part_t one = part_at(type, i);
+            narrow_part(cx, one.type, part_of(value, one.offset));
         }
     }
 }
 
-/* --- small colour sets --------------------------------------------------------------------------------------------- */
+/* --- small colour sets -------------------------------------------------------------------------------------------- */
 
 static uint64_t limited(uint64_t size)
 {
@@ -517,21 +533,16 @@ static uint64_t size_of_range(int64_t low, int64_t high)
 uint64_t pn_type_size(const pn_type_t *type)
 {
     switch (type->kind) {
-    case PN_KIND_UNIT:
-        return 1U;
-    case PN_KIND_BOOL:
-        return 2U;
-    case PN_KIND_CHAR:
-        return 256U;
-    case PN_KIND_INT:
-        return type->has_range ? size_of_range(type->low, type->high) : 0U;
+    case PN_KIND_UNIT: return 1U;
+    case PN_KIND_BOOL: return 2U;
+    case PN_KIND_CHAR: return 256U;
+    case PN_KIND_INT: return type->has_range ? size_of_range(type->low, type->high) : 0U;
     case PN_KIND_BIG:
         if (!type->has_range || (type->big_low.large != NULL) || (type->big_high.large != NULL)) {
             return 0U;
         }
         return size_of_range(type->big_low.small, type->big_high.small);
-    case PN_KIND_ENUM:
-        return type->count;
+    case PN_KIND_ENUM: return type->count;
     case PN_KIND_RECORD: {
         uint64_t size = 1U;
         for (uint32_t i = 0U; (i < type->count) && (size > 0U); i++) {
@@ -558,8 +569,7 @@ uint64_t pn_type_size(const pn_type_t *type)
     case PN_KIND_STRING:
     case PN_KIND_LIST:
     case PN_KIND_REF:
-    default:
-        return 0U;
+    default: return 0U;
     }
 }
 
@@ -612,7 +622,8 @@ bool pn_type_has_position(const pn_type_t *type, const void *value)
     if (type->kind == PN_KIND_INT) {
         has = type->is_index || ((load_int(value) >= type->low) && (load_int(value) <= type->high));
     } else if (type->kind == PN_KIND_BIG) {
-        has = (pn_big_order(load_big(value), type->big_low) >= 0) && (pn_big_order(load_big(value), type->big_high) <= 0);
+        has =
+            (pn_big_order(load_big(value), type->big_low) >= 0) && (pn_big_order(load_big(value), type->big_high) <= 0);
     } else if (type->kind == PN_KIND_RECORD) {
         for (uint32_t k = 0U; (k < type->count) && has; k++) {
             has = pn_type_has_position(type->field[k].type, part(value, type->field[k].offset));
@@ -628,21 +639,17 @@ bool pn_type_has_position(const pn_type_t *type, const void *value)
 uint64_t pn_type_position(const pn_type_t *type, const void *value)
 {
     switch (type->kind) {
-    case PN_KIND_BOOL:
-        return load_bool(value) ? 1U : 0U;
-    case PN_KIND_CHAR:
-        return load_byte(value);
-    case PN_KIND_INT:
-        return (uint64_t)load_int(value) - (uint64_t)type->low;
-    case PN_KIND_BIG:
-        return (uint64_t)load_big(value).small - (uint64_t)type->big_low.small;
-    case PN_KIND_ENUM:
-        return load_tag(value);
+    case PN_KIND_BOOL: return load_bool(value) ? 1U : 0U;
+    case PN_KIND_CHAR: return load_byte(value);
+    case PN_KIND_INT: return (uint64_t)load_int(value) - (uint64_t)type->low;
+    case PN_KIND_BIG: return (uint64_t)load_big(value).small - (uint64_t)type->big_low.small;
+    case PN_KIND_ENUM: return load_tag(value);
     case PN_KIND_RECORD: {
         uint64_t position = 0U;
         for (uint32_t k = 0U; k < type->count; k++) {
             const pn_field_t *field = &type->field[k];
-            position = (position * pn_type_size(field->type)) + pn_type_position(field->type, part(value, field->offset));
+            position =
+                (position * pn_type_size(field->type)) + pn_type_position(field->type, part(value, field->offset));
         }
         return position;
     }
@@ -660,7 +667,6 @@ uint64_t pn_type_position(const pn_type_t *type, const void *value)
     case PN_KIND_STRING:
     case PN_KIND_LIST:
     case PN_KIND_REF:
-    default:
-        return 0U;
+    default: return 0U;
     }
 }

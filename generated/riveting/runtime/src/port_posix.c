@@ -25,20 +25,20 @@
 #endif
 
 static volatile sig_atomic_t s_signal;
-static int s_wake[2] = {-1, -1}; /* a signal that arrives just before poll() must still wake it: self-pipe */
+static int s_wake[2] = { -1, -1 }; /* a signal that arrives just before poll() must still wake it: self-pipe */
 
 static const uint64_t NS_PER_S = 1000000000U;
 
 uint64_t pn_port_now(void)
 {
-    struct timespec now = {0, 0};
+    struct timespec now = { 0, 0 };
     (void)clock_gettime(CLOCK_MONOTONIC, &now);
     return ((uint64_t)now.tv_sec * NS_PER_S) + (uint64_t)now.tv_nsec;
 }
 
 uint32_t pn_port_unique(void)
 {
-    struct timespec now = {0, 0};
+    struct timespec now = { 0, 0 };
     (void)clock_gettime(CLOCK_REALTIME, &now);
     uint64_t mixed = ((uint64_t)now.tv_sec * NS_PER_S) + (uint64_t)now.tv_nsec;
     mixed ^= (uint64_t)getpid() << 32U;
@@ -74,7 +74,7 @@ int pn_port_signals(void)
             return errno;
         }
     }
-    struct sigaction action = {0};
+    struct sigaction action = { 0 };
     (void)sigemptyset(&action.sa_mask);
     action.sa_handler = on_signal;
     if ((sigaction(SIGINT, &action, NULL) != 0) || (sigaction(SIGTERM, &action, NULL) != 0)) {
@@ -94,10 +94,11 @@ int pn_port_stop_signal(void)
 
 bool pn_port_wait(int descriptor, uint64_t timeout_ns)
 {
-    struct pollfd on[2] = {{s_wake[0], POLLIN, 0}, {descriptor, POLLIN, 0}}; /* poll() passes over negative descriptors */
+    struct pollfd on[2] = { { s_wake[0], POLLIN, 0 },
+                            { descriptor, POLLIN, 0 } }; /* poll() passes over negative descriptors */
     int ready;
 #if defined(__linux__)
-    struct timespec limit = {(time_t)(timeout_ns / NS_PER_S), (long)(timeout_ns % NS_PER_S)};
+    struct timespec limit = { (time_t)(timeout_ns / NS_PER_S), (long)(timeout_ns % NS_PER_S) };
     ready = ppoll(on, 2, (timeout_ns == UINT64_MAX) ? NULL : &limit, NULL);
 #else
     const uint64_t ms = (timeout_ns / 1000000U) + (((timeout_ns % 1000000U) != 0U) ? 1U : 0U);
@@ -144,13 +145,36 @@ static int close_with(int fd, int error)
     return error;
 }
 
+int pn_port_load(const char *path, char *buffer, size_t capacity, size_t *length)
+{
+    *length = 0U;
+    const int fd = open(path, O_RDONLY | O_CLOEXEC);
+    if (fd < 0) {
+        return errno;
+    }
+    ssize_t got = 1;
+    int error = 0;
+    while ((got != 0) && (error == 0) && (*length < capacity)) {
+        got = read(fd, &buffer[*length], capacity - *length);
+        if (got > 0) {
+            *length += (size_t)got;
+        } else if ((got < 0) && (errno != EINTR)) {
+            error = errno;
+        } else {
+            /* the end, or interrupted: again */
+        }
+    }
+    return close_with(fd, error);
+}
+
 int pn_port_read(int directory, const char *name, char *buffer, size_t capacity, size_t *length, int *held)
 {
     *length = 0U;
     if (held != NULL) {
         *held = -1;
     }
-    const int fd = openat(directory, name, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW); /* a FIFO must not hold us up */
+    const int fd =
+        openat(directory, name, O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOFOLLOW); /* a FIFO must not hold us up */
     if (fd < 0) {
         return errno;
     }
@@ -238,13 +262,13 @@ void pn_port_remove(int directory, const char *name)
 
 int pn_port_lock(int directory, const char *name, int *file)
 {
-    const int fd = openat(directory, name, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW,
-                          S_IRUSR | S_IWUSR | S_IRGRP | S_IROTH);
+    const int fd =
+        openat(directory, name, O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, S_IRUSR | S_IWUSR | S_IRGRP | S_IROTH);
     if (fd < 0) {
         return errno;
     }
-    /* Emptied under a shared lock, which whoever holds the exclusive one denies us: those who probe never find the lock held
-     * while the file still says what its last owner said (I7). */
+    /* Emptied under a shared lock, which whoever holds the exclusive one denies us: those who probe never find the lock
+     * held while the file still says what its last owner said (I7). */
     if ((flock(fd, LOCK_SH | LOCK_NB) != 0) || (ftruncate(fd, 0) != 0) || (flock(fd, LOCK_EX | LOCK_NB) != 0)) {
         return close_with(fd, errno);
     }
@@ -290,7 +314,9 @@ int pn_port_watch(const char *path, int *watch)
     if (fd < 0) {
         return errno;
     }
-    if (inotify_add_watch(fd, path, IN_MOVED_TO | IN_CLOSE_WRITE | IN_DELETE | IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR) < 0) {
+    if (inotify_add_watch(fd, path,
+                          IN_MOVED_TO | IN_CLOSE_WRITE | IN_DELETE | IN_DELETE_SELF | IN_MOVE_SELF | IN_ONLYDIR)
+        < 0) {
         return close_with(fd, errno);
     }
     *watch = fd;

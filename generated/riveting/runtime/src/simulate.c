@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * simulate.c - automatic simulation of the whole net: a random enabled binding element at each step.
  *
- * Among the transitions of the best priority that are enabled one is drawn, then one of its bindings, all equally likely; the same
- * seed gives the same run. When nothing is enabled, model time goes on to the next time at which something is.
+ * Among the transitions of the best priority that are enabled one is drawn, then one of its bindings, all equally
+ * likely; the same seed gives the same run. When nothing is enabled, model time goes on to the next time at which
+ * something is.
  *
  * simulate_play.c searches and fires, simulate_replay.c repeats given steps, simulate_report.c tells the caller.
  */
@@ -21,12 +22,7 @@
 #include "pn/pn_text.h"
 #include "simulate_impl.h"
 
-enum {
-    EXIT_FINE = 0,
-    EXIT_MODEL = 1,
-    EXIT_USAGE = 2,
-    EXIT_INTERRUPTED = 130
-};
+enum { EXIT_FINE = 0, EXIT_MODEL = 1, EXIT_USAGE = 2, EXIT_INTERRUPTED = 130 };
 
 enum {
     FOUND_SIZE = 1 << 18 /* bytes of bindings that are kept between finding and drawing one */
@@ -46,14 +42,16 @@ static void print_help(void)
                  "  --marking      print the marking at the end as JSON\n"
                  "  --memory B     bytes for lists and strings (default 4 MB)\n"
                  "  --choice K     another seed for the choices after a replay alone\n"
-                 "  --replay FILE  first repeat these steps (src/simulate_replay.c); - is the standard input; they do not count for\n"
+                 "  --replay FILE  first repeat these steps (src/simulate_replay.c); - is the standard input; they do "
+                 "not count for\n"
                  "                 --steps\n"
                  "  --files DIR    let the net read and write files below DIR; without it there are none\n"
                  "  --watch WHAT   a monitor (src/simulate_watch.c); may be repeated\n"
                  "  --report FILE  write how the run ended, as JSON (src/simulate_report.c)\n"
                  "  --progress S   with --report: a line every S seconds\n"
                  "  --help         this text\n\n"
-                 "exit codes: 0 fine, 1 an inscription of the net raised an error or a replay was refused, 2 wrong usage or a file that cannot be\n"
+                 "exit codes: 0 fine, 1 an inscription of the net raised an error or a replay was refused, 2 wrong "
+                 "usage or a file that cannot be\n"
                  "written, 130 interrupted\n\n"
                  "examples:\n"
                  "  ./simulate --steps 100 --seed 7 --trace run.trace.jsonl\n"
@@ -143,7 +141,7 @@ static bool read_options(int argc, char **argv, sim_options_t *options)
     return true;
 }
 
-/* --- what is enabled ----------------------------------------------------------------------------------------------- */
+/* --- what is enabled ---------------------------------------------------------------------------------------------- */
 
 static bool print_binding(void *user, uint32_t transition, const void *binding)
 {
@@ -177,7 +175,7 @@ static void print_enabled(sim_t *sim)
     }
 }
 
-/* --- the run ------------------------------------------------------------------------------------------------------- */
+/* --- the run ------------------------------------------------------------------------------------------------------ */
 
 static void play(sim_t *sim)
 {
@@ -189,7 +187,8 @@ static void play(sim_t *sim)
 
 bool sim_trace_step(sim_t *sim, uint32_t transition, const void *binding)
 {
-    pn_trace_model_occurrence(&sim->trace, pn_now(&pn_net, sim->marking), pn_net.real_time, &pn_net.transition[transition], binding);
+    pn_trace_model_occurrence(&sim->trace, pn_now(&pn_net, sim->marking), pn_net.real_time,
+                              &pn_net.transition[transition], binding);
     if (sim->trace.failed) {
         (void)snprintf(sim->message, sizeof sim->message, "%s", strerror(errno));
         sim->why = "trace";
@@ -283,7 +282,8 @@ static bool make(sim_t *sim, pn_arena_t *arena)
     sim->binding = sim_reserve(pn_binding_size(&pn_net));
     sim->found_size = FOUND_SIZE;
     sim->found = sim_reserve(FOUND_SIZE);
-    if ((memory == NULL) || (sim->marking == NULL) || (sim->binding == NULL) || (sim->found == NULL) || !sim_prepare(sim)) {
+    if ((memory == NULL) || (sim->marking == NULL) || (sim->binding == NULL) || (sim->found == NULL)
+        || !sim_prepare(sim)) {
         (void)fprintf(stderr, "simulate: not enough memory\n");
         return false;
     }
@@ -322,7 +322,8 @@ int main(int argc, char **argv)
         return EXIT_FINE;
     }
     if (pn_net.abi != PN_NET_ABI) {
-        (void)fprintf(stderr, "simulate: the net was generated for another version of the runtime; generate it again\n");
+        (void)fprintf(stderr,
+                      "simulate: the net was generated for another version of the runtime; generate it again\n");
         return EXIT_USAGE;
     }
     return make(&s_sim, &arena) ? run(&s_sim) : EXIT_USAGE;

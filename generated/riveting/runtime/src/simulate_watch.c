@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * simulate_watch.c - the simple monitors of a net: sizes of markings, lengths of lists, counts, breakpoints without functions.
+ * simulate_watch.c - the simple monitors of a net: sizes of markings, lengths of lists, counts, breakpoints without
+ * functions.
  *
  * Each is given by `--watch "KIND INDEX WHEN"`:
  *
@@ -8,9 +9,9 @@
  *     e, f   stops when the place is empty, or is not
  *     n, d   stops when transition INDEX is enabled now, or is not; looks also when model time goes on
  *
- * WHEN: `*`: after every step, else the indices of the transitions after whose occurrences it looks, with commas. Small letters s and l
- * count every value the same; capital ones weight it with the time for which it held, and look once more at the end. Both look at the
- * start. Sums are exact, or the run ends with "limit": "watch".
+ * WHEN: `*`: after every step, else the indices of the transitions after whose occurrences it looks, with commas. Small
+ * letters s and l count every value the same; capital ones weight it with the time for which it held, and look once
+ * more at the end. Both look at the start. Sums are exact, or the run ends with "limit": "watch".
  */
 #include <stdlib.h>
 #include <string.h>
@@ -42,7 +43,7 @@ typedef struct watch {
 static watch_t s_watch[MOST_WATCHES];
 static uint32_t s_count;
 
-/* --- options ------------------------------------------------------------------------------------------------------- */
+/* --- options ------------------------------------------------------------------------------------------------------ */
 
 static bool read_when(const char *text, watch_t *watch)
 {
@@ -92,9 +93,10 @@ bool sim_watch_is_needed(void)
     return s_count > 0U;
 }
 
-/* --- values -------------------------------------------------------------------------------------------------------- */
+/* --- values ------------------------------------------------------------------------------------------------------- */
 
-/* The length of the only list in a place, from its JSON [[1, [...]]] or [[1, [...], stamp]]; -1 when it is not the only token. */
+/* The length of the only list in a place, from its JSON [[1, [...]]] or [[1, [...], stamp]]; -1 when it is not the only
+ * token. */
 static int64_t list_length(const sim_t *sim, uint32_t place)
 {
     if (pn_bag_total(pn_net.place[place].bag, sim->marking) != 1U) {
@@ -219,7 +221,7 @@ static bool stop_at(sim_t *sim, const watch_t *watch)
     return false;
 }
 
-/* --- when they look ------------------------------------------------------------------------------------------------ */
+/* --- when they look ----------------------------------------------------------------------------------------------- */
 
 bool sim_watch_start(sim_t *sim)
 {
@@ -286,7 +288,7 @@ void sim_watch_stop(sim_t *sim)
     }
 }
 
-/* --- report -------------------------------------------------------------------------------------------------------- */
+/* --- report ------------------------------------------------------------------------------------------------------- */
 
 static void text_int(pn_text_t *text, const char *name, int64_t value)
 {

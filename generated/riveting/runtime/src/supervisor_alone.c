@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * supervisor_alone.c - the whole net in memory, without files: `--dry-run`, and nets that have no cell.
  *
- * Every owner plays the scheme of docs/execution.md in turn (priorities count within an owner, as in the cell), messages are
- * tokens in the channels' places and arrive at once. When nothing is enabled, model time jumps to the next time stamp.
+ * Every owner plays the scheme of docs/execution.md in turn (priorities count within an owner, as in the cell),
+ * messages are tokens in the channels' places and arrive at once. When nothing is enabled, model time jumps to the next
+ * time stamp.
  */
 #include "supervisor_impl.h"
 
@@ -18,8 +19,10 @@ static bool is_sendable(const sup_t *sup, const pn_cell_channel_t *channel)
 {
     static char text[PN_CHANNEL_TEXT];
     pn_leaf_t leaf[PN_CHANNEL_SCALARS];
-    const uint32_t count = pn_bag_token(sup->net->place[channel->place].bag, sup->marking, 0U, leaf, PN_CHANNEL_SCALARS);
-    return (count == channel->scalar_count) && (pn_channel_compose(channel, leaf, 1U, "00000000", text, sizeof text) > 0U);
+    const uint32_t count =
+        pn_bag_token(sup->net->place[channel->place].bag, sup->marking, 0U, leaf, PN_CHANNEL_SCALARS);
+    return (count == channel->scalar_count)
+           && (pn_channel_compose(channel, leaf, 1U, "00000000", text, sizeof text) > 0U);
 }
 
 /* After a firing: prints messages that appeared, and watches that no channel holds two and that each can be written. */
@@ -31,16 +34,18 @@ static bool note_messages(sup_t *sup)
         const char *const peer = sup->cell->peer[channel->peer].name;
         if (tokens > 1U) {
             return sup_stop(sup, SUP_EXIT_MODEL,
-                            "channel-overrun: place `%s` holds %" PRIu64 " messages; %s can hold one", channel->place_name,
-                            tokens, channel->file);
+                            "channel-overrun: place `%s` holds %" PRIu64 " messages; %s can hold one",
+                            channel->place_name, tokens, channel->file);
         }
         if ((tokens == 1U) && !s_occupied[i]) {
             char text[PN_CHANNEL_TEXT];
             const bool out = (channel->direction == PN_CHANNEL_OUT);
             if (!is_sendable(sup, channel)) {
                 return sup_stop(sup, SUP_EXIT_MODEL,
-                                "the token of place `%s` cannot be written to %s: a value is not finite, out of its range or too large, or "
-                                "the message has more than %u bytes", channel->place_name, channel->file, PN_CHANNEL_PAYLOAD);
+                                "the token of place `%s` cannot be written to %s: a value is not finite, out of its "
+                                "range or too large, or "
+                                "the message has more than %u bytes",
+                                channel->place_name, channel->file, PN_CHANNEL_PAYLOAD);
             }
             (void)sup_token_text(sup, channel, text, sizeof text);
             sup_say(sup, 1, "%10.3f s  %s -> %s  %s: %s", sup->t, out ? sup->cell->side : peer,
@@ -92,20 +97,6 @@ static bool play_all(sup_t *sup)
     return true;
 }
 
-static void print_marking(const sup_t *sup)
-{
-    static char text[65536];
-    pn_text_t json;
-    for (uint32_t i = 0U; i < sup->net->place_count; i++) {
-        const pn_place_t *const place = &sup->net->place[i];
-        if (pn_bag_total(place->bag, sup->marking) > 0U) {
-            pn_text_init(&json, text, sizeof text);
-            pn_bag_json(place->bag, sup->marking, &json);
-            sup_say(sup, 1, "  %s  %s%s", place->name, text, json.truncated ? "..." : "");
-        }
-    }
-}
-
 static void print_summary(const sup_t *sup)
 {
     sup_say(sup, 1, "fired %" PRIu64 " transitions:", sup->fired);
@@ -114,8 +105,7 @@ static void print_summary(const sup_t *sup)
             sup_say(sup, 1, "  %s  %" PRIu64, sup->net->transition[i].name, sup->fired_of[i]);
         }
     }
-    sup_say(sup, 1, "marking at the end:");
-    print_marking(sup);
+    sup_trace_marking(sup);
 }
 
 void sup_run_alone(sup_t *sup)
@@ -132,15 +122,17 @@ void sup_run_alone(sup_t *sup)
                 (void)sup_stop(sup, SUP_EXIT_MODEL, "no end after %" PRIu64 " firings (--max-firings N allows more)",
                                sup->fired);
             } else {
-                sup_say(sup, 1, "stopped after %" PRIu64 " firings, transitions are still enabled (--max-firings N allows more)",
+                sup_say(sup, 1,
+                        "stopped after %" PRIu64
+                        " firings, transitions are still enabled (--max-firings N allows more)",
                         sup->fired);
             }
         } else if (on && !sup_is_final(sup) && sup_next_time(sup, &next)) {
             while (sup->options.paced && on && ((double)(pn_port_now() - begin) * 1e-9 < next)) {
                 const double left = next - ((double)(pn_port_now() - begin) * 1e-9);
                 (void)pn_port_wait(-1, (uint64_t)(((left > 0.0) ? ((left < 1.0) ? left : 1.0) : 0.0) * 1e9) + 1U);
-                on = (pn_port_stop_signal() == 0) ||
-                     sup_stop(sup, SUP_EXIT_INTERRUPTED, "interrupted by signal %d", pn_port_stop_signal());
+                on = (pn_port_stop_signal() == 0)
+                     || sup_stop(sup, SUP_EXIT_INTERRUPTED, "interrupted by signal %d", pn_port_stop_signal());
             }
             sup->t = next;
             sup_set_time(sup, next);

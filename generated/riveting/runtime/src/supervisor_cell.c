@@ -21,35 +21,36 @@ static const double LOOK_S = 0.1;          /* I8: how often the peers are looked
 
 /* What the host knows of a channel. */
 typedef struct channel_state {
-    bool pending;           /* in: its message is a token that has not been consumed */
+    bool pending; /* in: its message is a token that has not been consumed */
     bool refused;
-    double refused_since;   /* wall time, s */
-    uint32_t reported;      /* checksum of the report that was printed last */
+    double refused_since; /* wall time, s */
+    uint32_t reported;    /* checksum of the report that was printed last */
     char report[PN_CHANNEL_REPORT];
 } channel_state_t;
 
 typedef struct peer_state {
-    bool owes;              /* a flag was written to it, and nothing has come back since */
-    double owes_since;      /* s, on the cell's clock: wall time, or lock-step's */
-    const char *owes_for;   /* the flag's file */
-    bool idle_end;          /* it has finished although it owes, seen once: its last message may still be on its way */
+    bool owes;            /* a flag was written to it, and nothing has come back since */
+    double owes_since;    /* s, on the cell's clock: wall time, or lock-step's */
+    const char *owes_for; /* the flag's file */
+    bool idle_end;        /* it has finished although it owes, seen once: its last message may still be on its way */
 } peer_state_t;
 
 static struct {
     pn_transport_t transport;
     pn_message_t message;
-    uint64_t begin;         /* pn_port_now() at the start */
-    double looked;          /* when the peers were looked at last */
-    bool all_ended;         /* all peers have finished, seen once */
+    uint64_t begin; /* pn_port_now() at the start */
+    double looked;  /* when the peers were looked at last */
+    bool all_ended; /* all peers have finished, seen once */
     uint64_t sent, received;
-    uint64_t most_fired;    /* in one cycle */
+    uint64_t most_fired; /* in one cycle */
     channel_state_t channel[PN_CELL_CHANNELS_MAX];
     peer_state_t peer[PN_CELL_PEERS_MAX];
 } s_cell;
 
 static double wall_time(void)
 {
-    return (double)(pn_port_now() - s_cell.begin) * 1e-9;
+    const uint64_t passed = pn_port_now() - s_cell.begin;
+    return (double)passed * 1e-9;
 }
 
 static bool stop_for_transport(sup_t *sup)
@@ -58,7 +59,7 @@ static bool stop_for_transport(sup_t *sup)
     return sup_stop(sup, fault->io ? SUP_EXIT_IO : SUP_EXIT_CHANNEL, "%s", fault->text);
 }
 
-/* --- step 1: read ----------------------------------------------------------------------------------------------------- */
+/* --- step 1: read ------------------------------------------------------------------------------------------------- */
 
 /* Notes a refusal, reports it once, and stops when it has lasted (I6). */
 static bool refuse(sup_t *sup, uint32_t index)
@@ -100,7 +101,8 @@ static bool accept_message(sup_t *sup, uint32_t index)
             text[0] = '\0';
         }
         message->refusal = PN_REFUSAL_COLOUR;
-        (void)snprintf(message->report, sizeof message->report, "`%.200s` is not in the colour set `%s`", text, place->colset);
+        (void)snprintf(message->report, sizeof message->report, "`%.200s` is not in the colour set `%s`", text,
+                       place->colset);
         return refuse(sup, index);
     }
     s_cell.transport.accept(s_cell.transport.self, index);
@@ -120,21 +122,12 @@ static bool read_channel(sup_t *sup, uint32_t i)
     channel_state_t *const state = &s_cell.channel[i];
     bool good = true;
     switch (s_cell.transport.read(s_cell.transport.self, i, &s_cell.message)) {
-    case PN_CHANNEL_UNCHANGED:
-        break;
-    case PN_CHANNEL_EMPTY:
-        state->refused = false;
-        break;
-    case PN_CHANNEL_MESSAGE:
-        good = accept_message(sup, i);
-        break;
-    case PN_CHANNEL_REFUSED:
-        good = refuse(sup, i);
-        break;
+    case PN_CHANNEL_UNCHANGED: break;
+    case PN_CHANNEL_EMPTY: state->refused = false; break;
+    case PN_CHANNEL_MESSAGE: good = accept_message(sup, i); break;
+    case PN_CHANNEL_REFUSED: good = refuse(sup, i); break;
     case PN_CHANNEL_BROKEN:
-    default:
-        good = stop_for_transport(sup);
-        break;
+    default: good = stop_for_transport(sup); break;
     }
     if (good && state->refused && (sup->options.lockstep || (wall_time() - state->refused_since >= GRACE_S))) {
         good = sup_stop(sup, SUP_EXIT_CHANNEL, "%s: message of %s refused: %s", sup->cell->channel[i].file,
@@ -143,8 +136,8 @@ static bool read_channel(sup_t *sup, uint32_t i)
     return good;
 }
 
-/* Flags before data: what is published before a flag is there once the flag has been seen (I5). The other way round a flag
- * could be taken whose data came between the two looks. */
+/* Flags before data: what is published before a flag is there once the flag has been seen (I5). The other way round a
+ * flag could be taken whose data came between the two looks. */
 static bool read_channels(sup_t *sup)
 {
     for (uint32_t pass = 0U; pass < 2U; pass++) {
@@ -159,7 +152,7 @@ static bool read_channels(sup_t *sup)
     return true;
 }
 
-/* --- step 3: publish -------------------------------------------------------------------------------------------------- */
+/* --- step 3: publish ---------------------------------------------------------------------------------------------- */
 
 /* Empties the channels whose tokens have been consumed (I4). */
 static bool clear_consumed(sup_t *sup)
@@ -187,12 +180,15 @@ static bool publish_token(sup_t *sup, uint32_t index)
         return true;
     }
     if (tokens > 1U) { /* I3 */
-        return sup_stop(sup, SUP_EXIT_CHANNEL, "channel-overrun: %" PRIu64 " messages for %s in one cycle; it can hold one",
-                        tokens, channel->file);
+        return sup_stop(sup, SUP_EXIT_CHANNEL,
+                        "channel-overrun: %" PRIu64 " messages for %s in one cycle; it can hold one", tokens,
+                        channel->file);
     }
     if (pn_bag_token(place->bag, sup->marking, 0U, leaf, PN_CHANNEL_SCALARS) != channel->scalar_count) {
-        return sup_stop(sup, SUP_EXIT_CHANNEL, "the token of place `%s` cannot be written to %s: an integer in it does not fit into 64 "
-                        "bits", place->name, channel->file);
+        return sup_stop(sup, SUP_EXIT_CHANNEL,
+                        "the token of place `%s` cannot be written to %s: an integer in it does not fit into 64 "
+                        "bits",
+                        place->name, channel->file);
     }
     if (!s_cell.transport.write(s_cell.transport.self, index, leaf)) {
         return stop_for_transport(sup);
@@ -202,7 +198,8 @@ static bool publish_token(sup_t *sup, uint32_t index)
         sup_say(sup, 1, "%10.3f s  -> %s  %s: %s", sup->t, sup->cell->peer[channel->peer].name, channel->file,
                 sup_token_text(sup, channel, text, sizeof text));
     }
-    /* From here on the token lives in the file. Its writer has only output arcs on the place, so nothing can miss it here. */
+    /* From here on the token lives in the file. Its writer has only output arcs on the place, so nothing can miss it
+     * here. */
     pn_bag_clear(place->bag, sup->marking);
     s_cell.sent++;
     if ((channel->kind == PN_CHANNEL_FLAG) && !peer->owes) {
@@ -230,7 +227,7 @@ static bool publish(sup_t *sup)
     return true;
 }
 
-/* --- the cycle -------------------------------------------------------------------------------------------------------- */
+/* --- the cycle ---------------------------------------------------------------------------------------------------- */
 
 /* One cycle at `t` seconds, or in real time. False when the program has to stop. */
 static bool cycle(sup_t *sup, double t, uint64_t *fired)
@@ -240,7 +237,8 @@ static bool cycle(sup_t *sup, double t, uint64_t *fired)
     if (!read_channels(sup) || !sup_monitor_messages(sup, PN_CHANNEL_IN)) {
         return false;
     }
-    if (!sup->options.lockstep) { /* a message that has been seen is not later than the time at which it is acted upon */
+    if (!sup->options
+             .lockstep) { /* a message that has been seen is not later than the time at which it is acted upon */
         sup->t = fmax(sup->t, wall_time());
     }
     sup_set_time(sup, sup->t);
@@ -254,10 +252,10 @@ static bool cycle(sup_t *sup, double t, uint64_t *fired)
     if (!publish(sup) || !sup_monitor_messages(sup, PN_CHANNEL_OUT)) {
         return false;
     }
-    return !sup->trace.failed || sup_stop(sup, SUP_EXIT_IO, "cannot write the trace %s", sup->options.trace);
+    return sup_trace_is_written(sup);
 }
 
-/* --- the peers (I8, I9) ----------------------------------------------------------------------------------------------- */
+/* --- the peers (I8, I9) ------------------------------------------------------------------------------------------- */
 
 static bool look_at_peer(sup_t *sup, uint32_t index, pn_party_t *party)
 {
@@ -270,9 +268,7 @@ static bool look_at_peer(sup_t *sup, uint32_t index, pn_party_t *party)
         good = sup_stop(sup, SUP_EXIT_PEER, "%s stopped: %s", name,
                         (party->reason[0] != '\0') ? party->reason : "it gave no reason");
         break;
-    case PN_PARTY_DEAD:
-        good = sup_stop(sup, SUP_EXIT_PEER, "%s (pid %" PRIu64 ") has died", name, party->pid);
-        break;
+    case PN_PARTY_DEAD: good = sup_stop(sup, SUP_EXIT_PEER, "%s (pid %" PRIu64 ") has died", name, party->pid); break;
     case PN_PARTY_FINISHED:
         if (peer->owes && peer->idle_end) {
             good = sup_stop(sup, SUP_EXIT_PEER, "%s has finished, but it owes an answer to %s", name, peer->owes_for);
@@ -281,13 +277,13 @@ static bool look_at_peer(sup_t *sup, uint32_t index, pn_party_t *party)
         break;
     case PN_PARTY_ABSENT:
     case PN_PARTY_RUNNING:
-    default:
-        break;
+    default: break;
     }
     const double limit = sup->options.reply_timeout_s;
     if (good && peer->owes && (limit > 0.0) && (sup->t - peer->owes_since > limit)) {
-        good = sup_stop(sup, SUP_EXIT_PEER, "%s has not answered %s for %g s%s", name, peer->owes_for, limit,
-                        (party->state == PN_PARTY_ABSENT) ? "; it has not announced itself at all: is it running?" : "");
+        good =
+            sup_stop(sup, SUP_EXIT_PEER, "%s has not answered %s for %g s%s", name, peer->owes_for, limit,
+                     (party->state == PN_PARTY_ABSENT) ? "; it has not announced itself at all: is it running?" : "");
     }
     return good;
 }
@@ -305,15 +301,16 @@ static bool look_at_peers(sup_t *sup)
     double next = 0.0;
     const bool all = (sup->cell->peer_count > 0U) && (ended == sup->cell->peer_count) && !sup_next_time(sup, &next);
     if (all && s_cell.all_ended && (sup->cell->final_count > 0U)) {
-        return sup_stop(sup, SUP_EXIT_MODEL,
-                        "deadlock: all robots have finished, nothing is enabled, and no final place (`%s`%s) holds a token",
-                        sup->net->place[sup->cell->final_place[0]].name, (sup->cell->final_count > 1U) ? ", ..." : "");
+        return sup_stop(
+            sup, SUP_EXIT_MODEL,
+            "deadlock: all robots have finished, nothing is enabled, and no final place (`%s`%s) holds a token",
+            sup->net->place[sup->cell->final_place[0]].name, (sup->cell->final_count > 1U) ? ", ..." : "");
     }
     s_cell.all_ended = all;
     return true;
 }
 
-/* --- real time -------------------------------------------------------------------------------------------------------- */
+/* --- real time ---------------------------------------------------------------------------------------------------- */
 
 static bool interrupted(sup_t *sup)
 {
@@ -348,7 +345,7 @@ static void run_real_time(sup_t *sup)
     }
 }
 
-/* --- lock-step -------------------------------------------------------------------------------------------------------- */
+/* --- lock-step ---------------------------------------------------------------------------------------------------- */
 
 static void answer(const char *text)
 {
@@ -379,7 +376,8 @@ static bool command_line(char *line, size_t capacity)
         }
         end = memchr(buffer, '\n', have);
     }
-    const size_t length = (size_t)(end - buffer);
+    const ptrdiff_t distance = end - buffer;
+    const size_t length = (size_t)distance;
     const size_t kept = (length < capacity) ? length : capacity - 1U;
     (void)memcpy(line, buffer, kept);
     line[kept] = '\0';
@@ -392,8 +390,9 @@ static bool step_command(sup_t *sup, double t, bool *finished)
 {
     uint64_t fired = 0U;
     char text[128];
-    char when[PN_REAL_TEXT_SIZE] = "-";
+    char when[PN_REAL_TEXT_SIZE];
     double next = 0.0;
+    (void)memcpy(when, "-", sizeof "-");
     if (!look_at_peers(sup) || !cycle(sup, t, &fired)) {
         return false;
     }
@@ -415,8 +414,9 @@ static void run_lockstep(sup_t *sup)
     bool finished = false;
     while (on && !finished) {
         if (!command_line(line, sizeof line)) {
-            on = (pn_port_stop_signal() != 0) ? interrupted(sup)
-                                              : sup_stop(sup, SUP_EXIT_INTERRUPTED, "the engine has gone (end of input)");
+            on = (pn_port_stop_signal() != 0)
+                     ? interrupted(sup)
+                     : sup_stop(sup, SUP_EXIT_INTERRUPTED, "the engine has gone (end of input)");
         } else if (strncmp(line, "step ", 5U) == 0) {
             char *end = NULL;
             const double t = strtod(line + 5, &end);
@@ -426,13 +426,13 @@ static void run_lockstep(sup_t *sup)
         } else if (strncmp(line, "stop", 4U) == 0) {
             on = sup_stop(sup, SUP_EXIT_PEER, "%s", (line[4] == ' ') ? line + 5 : "told to stop");
         } else {
-            on = sup_stop(sup, SUP_EXIT_USAGE, "lock-step: unknown command `%s`; there are `step SECONDS` and `stop REASON`",
-                          line);
+            on = sup_stop(sup, SUP_EXIT_USAGE,
+                          "lock-step: unknown command `%s`; there are `step SECONDS` and `stop REASON`", line);
         }
     }
 }
 
-/* --- start and end ---------------------------------------------------------------------------------------------------- */
+/* --- start and end ------------------------------------------------------------------------------------------------ */
 
 static void on_notice(void *user, const char *text)
 {
@@ -460,7 +460,8 @@ void sup_run_cell(sup_t *sup)
         }
         return;
     }
-    sup_say(sup, 1, "session %s, %s", pn_files_session(), options.watch ? "woken by the files" : "looking at the files");
+    sup_say(sup, 1, "session %s, %s", pn_files_session(),
+            options.watch ? "woken by the files" : "looking at the files");
     s_cell.begin = pn_port_now();
     if (sup->options.lockstep) {
         run_lockstep(sup);
@@ -468,7 +469,8 @@ void sup_run_cell(sup_t *sup)
         run_real_time(sup);
     }
     /* I10: the status is the last thing that is said. */
-    if (!s_cell.transport.announce(s_cell.transport.self, sup->stopped ? PN_PARTY_STOPPED : PN_PARTY_FINISHED, sup->reason)) {
+    if (!s_cell.transport.announce(s_cell.transport.self, sup->stopped ? PN_PARTY_STOPPED : PN_PARTY_FINISHED,
+                                   sup->reason)) {
         (void)stop_for_transport(sup);
     }
     s_cell.transport.close(s_cell.transport.self);
@@ -482,9 +484,11 @@ void sup_run_cell(sup_t *sup)
     pn_text_init(&where, places, sizeof places);
     if (!sup->stopped && sup_is_final(sup)) {
         pn_text_str(&where, " in ");
-        sup_final_places(sup, false, &where);
+        sup_final_places(sup, &where);
     }
-    sup_say(sup, 1, "%s after %.3f s%s: %" PRIu64 " firings (at most %" PRIu64 " in one cycle), %" PRIu64
-            " messages sent, %" PRIu64 " received", sup->stopped ? "stopped" : "finished", sup->t, places, sup->fired,
-            s_cell.most_fired, s_cell.sent, s_cell.received);
+    sup_say(sup, 1,
+            "%s after %.3f s%s: %" PRIu64 " firings (at most %" PRIu64 " in one cycle), %" PRIu64
+            " messages sent, %" PRIu64 " received",
+            sup->stopped ? "stopped" : "finished", sup->t, places, sup->fired, s_cell.most_fired, s_cell.sent,
+            s_cell.received);
 }

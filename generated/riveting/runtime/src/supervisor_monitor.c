@@ -1,18 +1,18 @@
 /* SPDX-License-Identifier: MIT
- * supervisor_monitor.c - with -DPN_MONITOR: every step is checked against the rules of the net while the cell runs; the first that breaks
- * one stops it safely. Without it, nothing of this is compiled.
+ * supervisor_monitor.c - with -DPN_MONITOR: every step is checked against the rules of the net while the cell runs; the
+ * first that breaks one stops it safely. Without it, nothing of this is compiled.
  *
  * Rules that are checked:
  *
- *   before an occurrence   no place and no reference has changed since the step before; the transition is one of this program's; it is
- *                          enabled with this binding; nothing of this program with a higher priority is enabled
- *   after it               only places that the transition touches have changed (that none holds more than it may is always checked),
- *                          references only if it assigns some
- *   after messages         only channels of that direction have changed; none holds more than one token; no reference has changed
+ *   before an occurrence   no place and no reference has changed since the step before; the transition is one of this
+ * program's; it is enabled with this binding; nothing of this program with a higher priority is enabled after it only
+ * places that the transition touches have changed (that none holds more than it may is always checked), references only
+ * if it assigns some after messages         only channels of that direction have changed; none holds more than one
+ * token; no reference has changed
  *
- * They hold in a program that is compiled right, on a machine that works: what the monitor finds is memory that something has overwritten, a
- * compiler that is wrong, a file of the net that was edited. It remembers a checksum of each place, and one of all that
- * the references hold which the net assigns.
+ * They hold in a program that is compiled right, on a machine that works: what the monitor finds is memory that
+ * something has overwritten, a compiler that is wrong, a file of the net that was edited. It remembers a checksum of
+ * each place, and one of all that the references hold which the net assigns.
  */
 #include "supervisor_impl.h"
 
@@ -24,10 +24,10 @@
 #include "pn/pn_root.h"
 
 #define PLACE_SIZE ((size_t)1U << 20U) /* bytes of the canonical form of a place */
-#define TEXT_SIZE ((size_t)1U << 16U)  /* bytes of a binding as text */
+#define TEXT_SIZE  ((size_t)1U << 16U) /* bytes of a binding as text */
 
 static struct {
-    uint64_t *checksum; /* for each place */
+    uint64_t *checksum;  /* for each place */
     uint64_t references; /* the checksum of what they hold */
     bool has_references; /* which only occurrences assign */
     pn_time_t now;
@@ -52,7 +52,8 @@ static bool look(sup_t *sup, uint32_t index, bool *changed)
     const pn_place_t *const place = &sup->net->place[index];
     const size_t length = pn_bag_encode(place->bag, sup->marking, s_monitor.bytes, PLACE_SIZE);
     if (length > PLACE_SIZE) {
-        return sup_stop(sup, SUP_EXIT_MODEL, "monitor: the content of place `%s` is too large to be checked", place->name);
+        return sup_stop(sup, SUP_EXIT_MODEL, "monitor: the content of place `%s` is too large to be checked",
+                        place->name);
     }
     const uint64_t sum = checksum_of(s_monitor.bytes, length);
     *changed = (sum != s_monitor.checksum[index]);
@@ -82,7 +83,8 @@ static bool keeps_references(sup_t *sup, const char *what, const char *name)
 {
     bool changed = false;
     return look_at_references(sup, &changed)
-           && (!changed || sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: the values of references have changed %s%s", what, name));
+           && (!changed
+               || sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: the values of references have changed %s%s", what, name));
 }
 
 bool sup_monitor_start(sup_t *sup)
@@ -107,7 +109,7 @@ bool sup_monitor_start(sup_t *sup)
     return is_fine;
 }
 
-/* --- before an occurrence ---------------------------------------------------------------------------------------------- */
+/* --- before an occurrence ----------------------------------------------------------------------------------------- */
 
 typedef struct search {
     const pn_transition_t *transition;
@@ -152,7 +154,8 @@ bool sup_monitor_choice(sup_t *sup, int32_t owner, uint32_t index)
             return false;
         }
         if (changed) {
-            return sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: place `%s` has changed between two steps", sup->net->place[i].name);
+            return sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: place `%s` has changed between two steps",
+                            sup->net->place[i].name);
         }
     }
     if (!keeps_references(sup, "between two steps", "")) {
@@ -172,15 +175,16 @@ bool sup_monitor_choice(sup_t *sup, int32_t owner, uint32_t index)
     for (uint32_t k = 0U; k < sup->net->order_count; k++) {
         const pn_transition_t *const other = &sup->net->transition[sup->net->order[k]];
         const bool is_mine = (owner < 0) || (other->owner == owner);
-        if (is_mine && (other->priority < t->priority) && !other->looks && has_binding(sup, sup->net->order[k], is_any)) {
-            return sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: `%s` is enabled and has a higher priority than `%s`", other->name,
-                            t->name);
+        if (is_mine && (other->priority < t->priority) && !other->looks
+            && has_binding(sup, sup->net->order[k], is_any)) {
+            return sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: `%s` is enabled and has a higher priority than `%s`",
+                            other->name, t->name);
         }
     }
     return true;
 }
 
-/* --- after it ---------------------------------------------------------------------------------------------------------- */
+/* --- after it ----------------------------------------------------------------------------------------------------- */
 
 static bool touches(const pn_transition_t *t, uint32_t place)
 {
@@ -201,15 +205,16 @@ bool sup_monitor_step(sup_t *sup, uint32_t index)
             return false;
         }
         if (changed && !touches(t, i)) {
-            return sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: `%s` has changed place `%s`, with which it has no arc", t->name,
-                            sup->net->place[i].name);
+            return sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: `%s` has changed place `%s`, with which it has no arc",
+                            t->name, sup->net->place[i].name);
         }
     }
     bool changed = false;
-    return t->assigns ? look_at_references(sup, &changed) : keeps_references(sup, "although nothing assigns any in ", t->name);
+    return t->assigns ? look_at_references(sup, &changed)
+                      : keeps_references(sup, "although nothing assigns any in ", t->name);
 }
 
-/* --- messages ---------------------------------------------------------------------------------------------------------- */
+/* --- messages ----------------------------------------------------------------------------------------------------- */
 
 static bool is_channel(const sup_t *sup, uint32_t place, pn_channel_direction_t direction)
 {
@@ -230,7 +235,8 @@ bool sup_monitor_messages(sup_t *sup, pn_channel_direction_t direction)
             return false;
         }
         if (changed && !is_channel(sup, i, direction)) {
-            return sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: place `%s` has changed while messages were exchanged", place->name);
+            return sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: place `%s` has changed while messages were exchanged",
+                            place->name);
         }
         if (changed && (pn_bag_total(place->bag, sup->marking) > 1U)) {
             return sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: channel `%s` holds more than one message", place->name);

@@ -76,17 +76,32 @@ static bool keeps_bounds(sup_t *sup, const pn_transition_t *fired)
         if (tokens > (uint64_t)place->bound) {
             return sup_stop(sup, SUP_EXIT_MODEL,
                             "place `%s` is full: it would hold %" PRIu64 " tokens after `%s`, and its bound is %" PRIu32
-                            " (the head of net.c says why)", place->name, tokens, fired->name, place->bound);
+                            " (the head of net.c says why)",
+                            place->name, tokens, fired->name, place->bound);
         }
     }
     return true;
+}
+
+/* Forgets what only the last firings needed. */
+static bool make_room(sup_t *sup)
+{
+    if (!pn_arena_is_crowded(&sup->arena)) {
+        return true;
+    }
+    if (sup->cell->needs.collect == NULL) {
+        pn_arena_flip(&sup->arena); /* nothing refers into it */
+        return true;
+    }
+    sup->cell->needs.collect(sup->net, &sup->cx, sup->marking);
+    return (sup->cx.error == PN_OK) || sup_stop_error(sup, "making room between firings");
 }
 
 int sup_fire_one(sup_t *sup, int32_t owner, uint32_t *transition)
 {
     const pn_net_t *const net = sup->net;
     char doing[512];
-    first_binding_t first = {sup->binding, 0U, false};
+    first_binding_t first = { sup->binding, 0U, false };
     uint32_t i = 0U;
     uint32_t index = 0U;
     while ((i < net->order_count) && !first.found) {
@@ -120,20 +135,9 @@ int sup_fire_one(sup_t *sup, int32_t owner, uint32_t *transition)
     if (!keeps_bounds(sup, chosen) || !sup_monitor_step(sup, index)) {
         return -1;
     }
-    pn_trace_occurrence(&sup->trace, sup->t, chosen, sup->binding);
-    if (sup->options.verbosity >= 2) {
-        char text[1024];
-        pn_text_t json;
-        pn_text_init(&json, text, sizeof text);
-        pn_json(chosen->binding, sup->binding, &json);
-        sup_say(sup, 2, "%10.3f s  %s %s", sup->t, chosen->name, text);
-    }
-    if (pn_arena_is_crowded(&sup->arena)) {
-        pn_marking_collect(net, &sup->cx, sup->marking);
-        if (sup->cx.error != PN_OK) {
-            (void)sup_stop_error(sup, "making room between firings");
-            return -1;
-        }
+    sup_trace_occurrence(sup, index);
+    if (!make_room(sup)) {
+        return -1;
     }
     sup->fired++;
     sup->cx.step = sup->fired;
@@ -198,7 +202,7 @@ void sup_set_time(sup_t *sup, double t)
 bool sup_next_time(sup_t *sup, double *t)
 {
     pn_time_t next;
-    if (!sup->net->timed || !pn_next_time(sup->net, &sup->cx, sup->marking, &next)) {
+    if ((sup->cell->needs.next_time == NULL) || !sup->cell->needs.next_time(sup->net, &sup->cx, sup->marking, &next)) {
         if (sup->cx.error != PN_OK) {
             (void)sup_stop_error(sup, "looking for the next time");
         }
@@ -218,7 +222,7 @@ bool sup_is_final(const sup_t *sup)
     return false;
 }
 
-void sup_final_places(const sup_t *sup, bool as_json, pn_text_t *text)
+void sup_final_places(const sup_t *sup, pn_text_t *text)
 {
     bool is_first = true;
     for (uint32_t i = 0U; i < sup->cell->final_count; i++) {
@@ -230,20 +234,17 @@ void sup_final_places(const sup_t *sup, bool as_json, pn_text_t *text)
             pn_text_str(text, ", ");
         }
         is_first = false;
-        if (as_json) {
-            pn_text_json_str(text, place->name);
-        } else {
-            pn_text_str(text, place->name);
-        }
+        pn_text_str(text, place->name);
     }
 }
 
 const char *sup_token_text(const sup_t *sup, const pn_cell_channel_t *channel, char *out, size_t capacity)
 {
     pn_leaf_t leaf[PN_CHANNEL_SCALARS];
-    const uint32_t count = pn_bag_token(sup->net->place[channel->place].bag, sup->marking, 0U, leaf, PN_CHANNEL_SCALARS);
-    if ((count != channel->scalar_count) ||
-        (pn_scalars_format(channel->scalar, channel->scalar_count, leaf, out, capacity) == 0U)) {
+    const uint32_t count =
+        pn_bag_token(sup->net->place[channel->place].bag, sup->marking, 0U, leaf, PN_CHANNEL_SCALARS);
+    if ((count != channel->scalar_count)
+        || (pn_scalars_format(channel->scalar, channel->scalar_count, leaf, out, capacity) == 0U)) {
         (void)snprintf(out, capacity, "?");
     }
     return out;
