@@ -15,7 +15,7 @@ from helpers.compiled import DELIVERED, FAST, SANITIZERS, Workshop
 from helpers.session import once
 from helpers.thorough import THOROUGH
 from pn2code.toolchain import build, programs
-from pn2code.verify import proofs
+from pn2code.verify.controller import proofs
 
 pytest_plugins = ("pace.plugin",)
 ROOT = Path(__file__).resolve().parent.parent

@@ -21,8 +21,8 @@ SOURCES = (
     "net.c",
     "cell_config.c",
     *(f"runtime/src/supervisor{part}.c" for part in ("", "_cell", "_input", "_play")),
-    "runtime/src/pn_channel.c",
-    "runtime/src/pn_channel_files.c",
+    "runtime/src/channel/pn_channel.c",
+    "runtime/src/channel/pn_channel_files.c",
 )
 ADVISORY = frozenset((
     "1.2", "2.3", "2.4", "2.5", "2.6", "2.7", "4.2", "5.9", "8.7", "8.9", "8.11", "8.13", "10.5", "11.4",

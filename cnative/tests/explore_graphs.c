@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "explore_graph.h"
+#include "../src/explore/graph/explore_graph.h"
 
 enum { ARCS = (2 * NODES) + 6, WORDS = (NODES / 64) + 1 };
 

@@ -19,7 +19,7 @@
 #include "pn/pn_text.h"
 #include "pn/pn_trace.h"
 
-#include "../src/pn_bytes_impl.h"
+#include "../src/value/pn_bytes_impl.h"
 
 static int s_failures = 0;
 

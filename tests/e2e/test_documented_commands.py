@@ -53,7 +53,7 @@ LONG = {
 
 NEVER = {
     "./dev test": "these are the tests",
-    "./dev bench": "minutes of measuring on an idle machine; tests/bench has its own tests",
+    "./dev bench": "minutes of measuring on an idle machine; tools/bench has its own tests",
     "./dev bench --firings": "the same",
     "./dev bench --states": "the same",
     "./dev bench --monitor": "the same",

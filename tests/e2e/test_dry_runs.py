@@ -12,7 +12,7 @@ import pytest
 from helpers.netbuilder import flat, write
 from pn2code.diagnostics import Diagnostics
 from pn2code.pipeline import generate
-from pn2code.semantics.replay import replay
+from pn2code.trace.replay import replay
 
 pytestmark = pytest.mark.cc
 

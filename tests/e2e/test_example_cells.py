@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.forgery.forgeries import forgeries
-from tests.forgery.judge import WRONG, Judge
+from tools.forgery.forgeries import forgeries
+from tools.forgery.judge import WRONG, Judge
 from typer.testing import CliRunner
 
 from helpers.compiled import DELIVERED
@@ -24,8 +24,8 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.net.front import load
 from pn2code.pipeline import Generated, generate
 from pn2code.run.cell import RunOptions, run_cell
-from pn2code.semantics.replay import replay
 from pn2code.toolchain import programs
+from pn2code.trace.replay import replay
 
 pytest.importorskip("jinja2")
 

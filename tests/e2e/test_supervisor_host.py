@@ -98,7 +98,7 @@ def host_sources(root: Path) -> list[Path]:
     """The host and the whole runtime."""
     source = root / "cnative/src"
     patterns = ("supervisor*.c", "pn_*.c", "port_*.c")
-    return [p for pattern in patterns for p in sorted(source.glob(pattern))]
+    return [p for pattern in patterns for p in sorted(source.rglob(pattern))]
 
 
 @pytest.fixture(scope="session")
@@ -125,9 +125,14 @@ def build_supervisors(root: Path, folder: Path) -> None:
     hand = [tests / "hand_net.c", tests / "hand_cell.c"]
     compile_c(root, folder / "supervisor", [*objects, *hand], *SANITIZE)
     compile_c(root, folder / "quick", [*objects, *hand], *SANITIZE, "-DHAND_DELAY=0")
-    cell = root / "cnative/src/supervisor_cell.c"
+    cell = root / "cnative/src/supervisor/supervisor_cell.c"
     others = [o for o in objects if o.name != "supervisor_cell.o"]
-    patient = ("-DPN_TRACE", "-DHAND_DELAY=0", "-DSUP_GRACE_S=600.0", f"-I{root / 'cnative/src'}")
+    patient = (
+        "-DPN_TRACE",
+        "-DHAND_DELAY=0",
+        "-DSUP_GRACE_S=600.0",
+        f"-I{root / 'cnative/src/supervisor'}",
+    )
     compile_c(root, folder / "patient", [*others, cell, *hand], *SANITIZE, *patient)
     compile_c(root, folder / "alone", [*objects, *hand], *SANITIZE, "-DHAND_ALONE")
     compile_c(root, folder / "scalars", [*common, tests / "scalars.c"], *SANITIZE)

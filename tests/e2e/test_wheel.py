@@ -36,8 +36,8 @@ def test_what_is_inside(unpacked: Path) -> None:
     resources = unpacked / "pn2code" / "_resources"
     assert (resources / "templates" / "c" / "net.c.j2").is_file()
     assert (resources / "cnative" / "include" / "pn" / "pn_net.h").is_file()
-    assert (resources / "cnative" / "src" / "supervisor.c").is_file()
-    assert (unpacked / "pn2code" / "ml" / "grammar.lark").is_file()
+    assert (resources / "cnative" / "src" / "supervisor" / "supervisor.c").is_file()
+    assert (unpacked / "pn2code" / "ml" / "parsing" / "grammar.lark").is_file()
     assert list((unpacked / "pn2code" / "robot" / "models").glob("*.urdf"))
     assert (unpacked / "pn2code" / "py.typed").is_file()
 

@@ -18,13 +18,13 @@ from helpers.explored import LIBRARY, Explorers, wide
 from helpers.netbuilder import flat
 from helpers.random_references import referring
 from helpers.unions import Outcome, Part, check
+from pn2code.base.resources import cnative_folder
 from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.supervisor import emit
-from pn2code.resources import cnative_folder
-from pn2code.semantics.files import Files
-from pn2code.semantics.replay import replay
-from pn2code.verify.programs import Sizes
+from pn2code.semantics.evaluation.files import Files
+from pn2code.trace.replay import replay
+from pn2code.verify.exploring.programs import Sizes
 
 HOSTS = {
     "simulate": (),
@@ -55,9 +55,9 @@ class Hosts:
         compile_in = made._run
         compile_in(host, "-shared", "cell.c", "-o", "libcell.so")
         for name, more in HOSTS.items():
-            own = sorted(source.glob("simulate*.c" if name == "simulate" else "supervisor*.c"))
-            own += [source / "port_posix.c"] if name != "simulate" else []
-            own += [source / "pn_channel_files.c"] if name != "simulate" else []
+            own = sorted(source.glob("simulate/*.c" if name == "simulate" else "supervisor/*.c"))
+            own += [source / "port" / "port_posix.c"] if name != "simulate" else []
+            own += [source / "channel" / "pn_channel_files.c"] if name != "simulate" else []
             objects = [str(f) for f in common]
             library = "libcell.so" if name != "simulate" else LIBRARY
             built = [f for f in map(str, own) if Path(f).with_suffix(".o").name not in objects]

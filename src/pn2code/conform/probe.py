@@ -1,4 +1,4 @@
-"""The supervisor under test: the deployed program over files in memory (`cnative/src/conform_port.c`), asked
+"""The supervisor under test: the deployed program over files in memory (`cnative/src/conform/conform_port.c`), asked
 state by state.
 
 with closing(Probe(program, options)) as probe:

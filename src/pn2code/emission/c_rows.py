@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from pn2code.emission.c_expressions import c_integer
 from pn2code.emission.c_lines import WIDTH, wrap
 from pn2code.emission.environment import c_bool, c_float, c_string
-from pn2code.lowering import ir
+from pn2code.ir import nodes as ir
 
 
 def braces(head: str, members: Iterable[str], end: str = ";", indent: str = "") -> list[str]:

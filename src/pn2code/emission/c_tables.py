@@ -8,8 +8,8 @@ from pn2code.emission.c_expressions import Types, c_big_initialiser, c_integer
 from pn2code.emission.c_lines import wrap
 from pn2code.emission.environment import c_comment, c_float, c_string
 from pn2code.emission.names import label
-from pn2code.lowering import ir
-from pn2code.lowering.ir import Definition, Descriptor, Rep
+from pn2code.ir import nodes as ir
+from pn2code.ir.nodes import Definition, Descriptor, Rep
 
 _KINDS = {
     Rep.UNIT: "PN_KIND_UNIT",

@@ -16,8 +16,8 @@ from pn2code.emission.c_texts import where
 from pn2code.emission.environment import c_comment
 from pn2code.emission.names import Members
 from pn2code.emission.needs import SIDE
-from pn2code.lowering import ir
-from pn2code.lowering.calls import ir_nodes
+from pn2code.ir import nodes as ir
+from pn2code.ir.calls import ir_nodes
 
 
 class Transitions(Frame):

@@ -27,12 +27,12 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from pn2code.base.os_reason import os_reason
+from pn2code.base.private_folder import private_folder, without_folder
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.codes import register
 from pn2code.emission import c_flags, runtime
 from pn2code.emission.output import OutputFile
-from pn2code.os_reason import os_reason
-from pn2code.private_folder import private_folder, without_folder
 from pn2code.toolchain.build import (
     BUILD_FAILED,
     TOOL_MISSING,
