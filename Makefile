@@ -1,11 +1,15 @@
 # What `make` users expect; ./dev does the work and says what else there is.
-.PHONY: thorough database-15 help test lint fuzz hosts declarations expressions sanitized bench ml-suite conformance mutation oracle misspell elements forgery adversary
+.PHONY: misra thorough database-15 help test lint fuzz hosts declarations expressions sanitized bench ml-suite conformance mutation oracle misspell elements forgery adversary
 
 help:
 	@./dev help
 
 test lint bench ml-suite conformance mutation oracle misspell elements forgery sanitized:
 	./dev $@
+
+# MISRA C:2012 in the deployed supervisor of the riveting cell; docs/misra.md has the deviations.
+misra:
+	./dev misra
 
 # The tests with all of their long sweeps.
 thorough:

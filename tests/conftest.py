@@ -11,12 +11,13 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-from helpers.compiled import FAST, SANITIZERS, Workshop
+from helpers.compiled import DELIVERED, FAST, SANITIZERS, Workshop
 from helpers.session import once
 from helpers.thorough import THOROUGH
 from pn2code.toolchain import build, programs
-from pn2code.verify import proofs
+from pn2code.verify.controller import proofs
 
+pytest_plugins = ("pace.plugin",)
 ROOT = Path(__file__).resolve().parent.parent
 
 
@@ -35,6 +36,16 @@ def shared() -> Path:
     return path
 
 
+def pytest_configure() -> None:
+    """Where the nets by others must be there (`.ci/run`), nothing is skipped for want of them."""
+    path = Path(os.environ.get("PN2CODE_SHARED", ROOT.parent / "shared"))
+    missing = [name for name in ("corpus", "semantics-suite") if not (path / name).is_dir()]
+    if os.environ.get("PN2CODE_SHARED_NEEDED") and missing:
+        raise pytest.UsageError(
+            f"PN2CODE_SHARED_NEEDED is set, but {path} has no {' and no '.join(missing)}; set PN2CODE_SHARED"
+        )
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """Without PyBullet its tests are left out where there are no packages of it; elsewhere they fail."""
     if sys.version_info < (3, 12) or importlib.util.find_spec("pybullet") is not None:
@@ -48,7 +59,6 @@ settings.register_profile(
     "any machine", deadline=None, suppress_health_check=[HealthCheck.too_slow]
 )
 settings.load_profile("any machine")
-_DELIVERED = programs.FLAGS
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -60,7 +70,7 @@ def quick_programs() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as changed:
         changed.setattr(proofs, "MOST_SECONDS", 3600.0)  # what is known does not depend on time
         if not THOROUGH:
-            flags = tuple("-O0" if flag == "-O2" else flag for flag in _DELIVERED)
+            flags = tuple("-O0" if flag == "-O2" else flag for flag in DELIVERED)
             changed.setattr(programs, "FLAGS", flags)
         yield
 
@@ -68,7 +78,7 @@ def quick_programs() -> Iterator[None]:
 @pytest.fixture
 def as_delivered(monkeypatch: pytest.MonkeyPatch) -> None:
     """Explorers and simulators are compiled as users have them."""
-    monkeypatch.setattr(programs, "FLAGS", _DELIVERED)
+    monkeypatch.setattr(programs, "FLAGS", DELIVERED)
 
 
 def _workshop(factory: pytest.TempPathFactory, name: str, flags: tuple[str, ...]) -> Workshop:

@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * explore_core.c - the store and the tables of numbers against plain ones: `explore_core store|threads|meetings|numbers|memory SEED`.
+ * explore_core.c - the store and the tables of numbers against plain ones: `explore_core
+ * store|threads|meetings|numbers|memory SEED`.
  *
  * Prints `fine`, or what is wrong.
  */
@@ -7,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "explore_impl.h"
+#include "../src/explore/explore_impl.h"
 
 static uint64_t s_random;
 
@@ -25,12 +26,9 @@ static void check(bool is_fine, const char *what)
     }
 }
 
-/* --- a plain set: keys of which it is remembered whether they are in it --------------------------------------------------- */
+/* --- a plain set: keys of which it is remembered whether they are in it ------------------------------------------- */
 
-enum {
-    KEYS = 1 << 20,
-    WORKERS = 4
-};
+enum { KEYS = 1 << 20, WORKERS = 4 };
 
 typedef struct plain {
     ex_key_t key;
@@ -96,7 +94,7 @@ void ex_together(ex_run_t *run, uint32_t parts, void (*one)(void *user, uint32_t
     }
 }
 
-/* --- the store ------------------------------------------------------------------------------------------------------------ */
+/* --- the store ---------------------------------------------------------------------------------------------------- */
 
 static uint64_t count_slots(const ex_store_t *store)
 {
@@ -195,7 +193,7 @@ static void try_stores(void)
     ex_store_free(&store);
 }
 
-/* --- threads -------------------------------------------------------------------------------------------------------------- */
+/* --- threads ------------------------------------------------------------------------------------------------------ */
 
 typedef struct job {
     ex_store_t *store;
@@ -241,7 +239,8 @@ static void try_threads_on(ex_codec_t *codec)
     run.codec = codec;
     (void)memset(&tuples, 0, sizeof tuples);
     (void)memset(&bytes, 0, sizeof bytes);
-    check(ex_store_make(&store, &run, codec->is_word ? s_word_widths : s_widths, (count * 5U) / 4U) && ex_tuples_make(&tuples, &run, 5U) && ex_bytes_make(&bytes, &run),
+    check(ex_store_make(&store, &run, codec->is_word ? s_word_widths : s_widths, (count * 5U) / 4U)
+              && ex_tuples_make(&tuples, &run, 5U) && ex_bytes_make(&bytes, &run),
           "no memory");
     while ((tuples.index.limit < (count + WORKERS)) || (bytes.index.limit < (count + WORKERS))) {
         /* As if they were nearly full. */
@@ -252,7 +251,9 @@ static void try_threads_on(ex_codec_t *codec)
         atomic_store(&bytes.index.count, 0U);
     }
     for (uint32_t w = 0U; w < (uint32_t)WORKERS; w++) {
-        job[w] = (job_t){ .store = &store, .tuples = &tuples, .bytes = &bytes, .start = (w % 2U) * (count / 3U), .count = count };
+        job[w] = (job_t){
+            .store = &store, .tuples = &tuples, .bytes = &bytes, .start = (w % 2U) * (count / 3U), .count = count
+        };
         job[w].number = calloc(count, sizeof(uint32_t));
         job[w].name = calloc(count, sizeof(uint32_t));
         check((job[w].number != NULL) && (job[w].name != NULL), "no memory");
@@ -288,7 +289,7 @@ static void try_threads(void)
     try_threads_on(&s_codec);
 }
 
-/* --- meetings ------------------------------------------------------------------------------------------------------------- */
+/* --- meetings ----------------------------------------------------------------------------------------------------- */
 
 /* Two threads that put the same key into the store at the same moment, again and again. */
 typedef struct meeting {
@@ -349,7 +350,7 @@ static void try_meetings(void)
     try_meetings_on(&s_codec);
 }
 
-/* --- numbers -------------------------------------------------------------------------------------------------------------- */
+/* --- numbers ------------------------------------------------------------------------------------------------------ */
 
 static void try_numbers(void)
 {
@@ -386,18 +387,20 @@ static void try_numbers(void)
         check((name[i] == 0U) || (name[i] == (named + 1U)), "another number of a text than before");
         number[i] = found + 1U;
         name[i] = named + 1U;
-        check(memcmp(&tuples.lane[(uint64_t)found * 3U], lane, 3U * sizeof lane[0]) == 0, "the number of something else");
+        check(memcmp(&tuples.lane[(uint64_t)found * 3U], lane, 3U * sizeof lane[0]) == 0,
+              "the number of something else");
         check((bytes.of[named].length == length) && (memcmp(&bytes.byte[bytes.of[named].offset], text, length) == 0),
               "the number of another text");
     }
-    check((atomic_load(&tuples.index.count) == given) && (atomic_load(&bytes.index.count) == given), "holes without threads");
+    check((atomic_load(&tuples.index.count) == given) && (atomic_load(&bytes.index.count) == given),
+          "holes without threads");
     unsigned char text[8] = { 1U, 0U };
     check(ex_bytes_number(&bytes, 4U, text, 8U) != (name[1] - 1U), "places share a text");
     free(number);
     free(name);
 }
 
-/* --- memory --------------------------------------------------------------------------------------------------------------- */
+/* --- memory ------------------------------------------------------------------------------------------------------- */
 
 static void try_memory(void)
 {
@@ -426,7 +429,11 @@ int main(int argc, char **argv)
     static const struct {
         const char *name;
         void (*try)(void);
-    } s_parts[] = { { "store", try_stores }, { "threads", try_threads }, { "meetings", try_meetings }, { "numbers", try_numbers }, { "memory", try_memory } };
+    } s_parts[] = { { "store", try_stores },
+                    { "threads", try_threads },
+                    { "meetings", try_meetings },
+                    { "numbers", try_numbers },
+                    { "memory", try_memory } };
     s_random = (argc > 2) ? strtoull(argv[2], NULL, 10) : 1U;
     for (size_t i = 0U; (argc > 1) && (i < (sizeof s_parts / sizeof s_parts[0])); i++) {
         if (strcmp(argv[1], s_parts[i].name) == 0) {

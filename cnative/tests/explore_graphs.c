@@ -1,5 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * explore_graphs.c - components, home, liveness and fairness of small random graphs against their definitions: `explore_graphs SEED COUNT`.
+ * explore_graphs.c - components, home, liveness and fairness of small random graphs against their definitions:
+ * `explore_graphs SEED COUNT`.
  *
  * Compiled with TRANSITIONS, so many labels, and NODES, at most so many. Prints `fine`, or what is wrong.
  */
@@ -7,12 +8,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "explore_graph.h"
+#include "../src/explore/graph/explore_graph.h"
 
-enum {
-    ARCS = (2 * NODES) + 6,
-    WORDS = (NODES / 64) + 1
-};
+enum { ARCS = (2 * NODES) + 6, WORDS = (NODES / 64) + 1 };
 
 const pn_net_t pn_net = { .transition_count = TRANSITIONS };
 
@@ -24,7 +22,7 @@ static uint32_t draw(uint32_t below)
     return (uint32_t)ex_scaled(s_random ^ (s_random << 29U), below);
 }
 
-/* --- what the sources under test call -------------------------------------------------------------------------------- */
+/* --- what the sources under test call ----------------------------------------------------------------------------- */
 
 typedef struct job {
     ex_worker_t *worker;
@@ -50,7 +48,7 @@ void ex_parallel(ex_run_t *run, void (*work)(ex_worker_t *worker, void *user), v
     }
 }
 
-/* --- a graph, and what follows from the definitions ------------------------------------------------------------------- */
+/* --- a graph, and what follows from the definitions --------------------------------------------------------------- */
 
 typedef struct arc {
     uint32_t from;
@@ -104,8 +102,8 @@ static void make_graph(void)
     }
 }
 
-typedef uint64_t nodes_t[WORDS];    /* a set */
-typedef nodes_t relation_t[NODES];  /* of each node those that it is related to */
+typedef uint64_t nodes_t[WORDS];   /* a set */
+typedef nodes_t relation_t[NODES]; /* of each node those that it is related to */
 
 /* Where a transition is enabled. */
 static void find_enabled(nodes_t enabled, uint32_t t)
@@ -127,14 +125,16 @@ static bool have_common(const nodes_t a, const nodes_t b)
     return common != 0U;
 }
 
-/* From where to where there is a way of at least one arc, without a transition, and, if so wished, only where it is enabled. */
+/* From where to where there is a way of at least one arc, without a transition, and, if so wished, only where it is
+ * enabled. */
 static void find_ways(relation_t way, uint32_t without, bool is_among_enabled)
 {
     nodes_t enabled;
     find_enabled(enabled, without);
     (void)memset(way, 0, sizeof(relation_t));
     for (uint32_t i = 0U; i < s_arcs; i++) {
-        const bool is_inside = !is_among_enabled || ((EX_BIT(enabled, s_arc[i].from) & EX_BIT(enabled, s_arc[i].to)) != 0U);
+        const bool is_inside =
+            !is_among_enabled || ((EX_BIT(enabled, s_arc[i].from) & EX_BIT(enabled, s_arc[i].to)) != 0U);
         if ((s_arc[i].label != without) && is_inside) {
             EX_SET_BIT(way[s_arc[i].from], s_arc[i].to);
         }
@@ -229,7 +229,9 @@ static void try_graph(ex_run_t *run)
 {
     relation_t way;
     nodes_t dead = { 0U };
-    ex_graph_t g = { .row = s_row, .target = s_target, .label = s_label, .dead = dead, .is_whole = true, .home_component = EX_NO_NODE };
+    ex_graph_t g = {
+        .row = s_row, .target = s_target, .label = s_label, .dead = dead, .is_whole = true, .home_component = EX_NO_NODE
+    };
     make_graph();
     g.nodes = s_nodes;
     g.arcs = s_arcs;

@@ -27,14 +27,14 @@ typedef struct order {
 } order_t;
 
 /* A place for one token. */
-#define PLACE_OF(value_t)         \
-    struct {                      \
-        uint32_t used;            \
-        struct {                  \
-            value_t value;        \
-            uint32_t count;       \
-            pn_time_t stamp;      \
-        } token[1];               \
+#define PLACE_OF(value_t)    \
+    struct {                 \
+        uint32_t used;       \
+        struct {             \
+            value_t value;   \
+            uint32_t count;  \
+            pn_time_t stamp; \
+        } token[1];          \
     }
 
 typedef struct marking {
@@ -54,7 +54,7 @@ typedef struct binding {
     double x;
 } binding_t;
 
-/* --- colour sets ------------------------------------------------------------------------------------------------------ */
+/* --- colour sets -------------------------------------------------------------------------------------------------- */
 
 static bool is_no_thirteen(pn_ctx_t *cx, const void *value)
 {
@@ -62,30 +62,56 @@ static bool is_no_thirteen(pn_ctx_t *cx, const void *value)
     return ((const order_t *)value)->n != 13;
 }
 
-static const pn_type_t UNIT = {.kind = PN_KIND_UNIT, .name = "UNIT", .size = sizeof(uint8_t)};
-static const pn_type_t REAL = {.kind = PN_KIND_REAL, .name = "REAL", .size = sizeof(double)};
-static const pn_type_t INT = {.kind = PN_KIND_INT, .name = "INT", .size = sizeof(int64_t)};
-static const pn_type_t ANSWER = {
-    .kind = PN_KIND_INT, .name = "ANSWER", .size = sizeof(int64_t), .has_range = true, .low = INT64_MIN, .high = 9};
-static const pn_field_t POSITION_FIELD[] = {
-    {"1", &REAL, offsetof(position_t, x), false}, {"2", &REAL, offsetof(position_t, y), false}};
-static const pn_type_t POSITION = {
-    .kind = PN_KIND_RECORD, .name = "POSITION", .size = sizeof(position_t), .is_tuple = true, .count = 2U, .field = POSITION_FIELD};
-static const pn_field_t ORDER_FIELD[] = {
-    {"1", &INT, offsetof(order_t, n), false}, {"2", &POSITION, offsetof(order_t, at), false}};
-static const pn_type_t ORDER_TYPE = {
-    .kind = PN_KIND_RECORD, .name = "ORDER", .size = sizeof(order_t), .is_tuple = true, .count = 2U, .field = ORDER_FIELD,
-    .member = is_no_thirteen};
-static const pn_field_t BINDING_FIELD[] = {
-    {"n", &INT, offsetof(binding_t, n), false}, {"x", &REAL, offsetof(binding_t, x), false}};
-static const pn_type_t BINDING = {
-    .kind = PN_KIND_RECORD, .name = "binding", .size = sizeof(binding_t), .count = 2U, .field = BINDING_FIELD};
+static const pn_type_t UNIT = { .kind = PN_KIND_UNIT, .name = "UNIT", .size = sizeof(uint8_t) };
+static const pn_type_t REAL = { .kind = PN_KIND_REAL, .name = "REAL", .size = sizeof(double) };
+static const pn_type_t INT = { .kind = PN_KIND_INT, .name = "INT", .size = sizeof(int64_t) };
+static const pn_type_t ANSWER = { .kind = PN_KIND_INT,
+                                  .name = "ANSWER",
+                                  .size = sizeof(int64_t),
+                                  .has_range = true,
+                                  .low = INT64_MIN,
+                                  .high = 9 };
+static const pn_field_t POSITION_FIELD[] = { { "1", &REAL, offsetof(position_t, x), false },
+                                             { "2", &REAL, offsetof(position_t, y), false } };
+static const pn_part_t POSITION_PART[] = { { &REAL, offsetof(position_t, x) }, { &REAL, offsetof(position_t, y) } };
+static const pn_type_t POSITION = { .kind = PN_KIND_RECORD,
+                                    .name = "POSITION",
+                                    .size = sizeof(position_t),
+                                    .is_tuple = true,
+                                    .count = 2U,
+                                    .field = POSITION_FIELD,
+                                    .part_count = 2U,
+                                    .part = POSITION_PART };
+static const pn_field_t ORDER_FIELD[] = { { "1", &INT, offsetof(order_t, n), false },
+                                          { "2", &POSITION, offsetof(order_t, at), false } };
+static const pn_part_t ORDER_PART[] = { { &INT, offsetof(order_t, n) },
+                                        { &REAL, offsetof(order_t, at.x) },
+                                        { &REAL, offsetof(order_t, at.y) } };
+static const pn_type_t ORDER_TYPE = { .kind = PN_KIND_RECORD,
+                                      .name = "ORDER",
+                                      .size = sizeof(order_t),
+                                      .is_tuple = true,
+                                      .count = 2U,
+                                      .field = ORDER_FIELD,
+                                      .part_count = 3U,
+                                      .part = ORDER_PART,
+                                      .member = is_no_thirteen };
+static const pn_field_t BINDING_FIELD[] = { { "n", &INT, offsetof(binding_t, n), false },
+                                            { "x", &REAL, offsetof(binding_t, x), false } };
+static const pn_type_t BINDING = { .kind = PN_KIND_RECORD,
+                                   .name = "binding",
+                                   .size = sizeof(binding_t),
+                                   .count = 2U,
+                                   .field = BINDING_FIELD };
 
-/* --- places ----------------------------------------------------------------------------------------------------------- */
+/* --- places ------------------------------------------------------------------------------------------------------- */
 
-#define BAG(field, place_name, value_type, timed)                                                                 \
-    static const pn_bag_t field##_bag = {.origin = "page `Top`, place `" place_name "`", .type = &(value_type),   \
-                                         .capacity = 1U, .is_timed = (timed), PN_BAG_STAMPS(marking_t, field)};
+#define BAG(field, place_name, value_type, timed)                                         \
+    static const pn_bag_t field##_bag = { .origin = "page `Top`, place `" place_name "`", \
+                                          .type = &(value_type),                          \
+                                          .capacity = 1U,                                 \
+                                          .is_timed = (timed),                            \
+                                          PN_BAG_STAMPS(marking_t, field) };
 
 BAG(orders, "Top.Orders", ORDER_TYPE, false)
 BAG(idle, "Top.Idle", UNIT, true)
@@ -97,24 +123,24 @@ BAG(answer, "Top.answer", ANSWER, false)
 BAG(spin, "Top.Spin", UNIT, false)
 
 /* A token in a place where there is none, or another one instead. */
-#define PUT(field, token_value)                                                        \
-    do {                                                                               \
-        m->field.used = 1U;                                                            \
-        m->field.token[0].value = (token_value);                                       \
-        m->field.token[0].count = 1U;                                                  \
+#define PUT(field, token_value)                  \
+    do {                                         \
+        m->field.used = 1U;                      \
+        m->field.token[0].value = (token_value); \
+        m->field.token[0].count = 1U;            \
     } while (false)
-#define TAKE(field) (m->field.used = 0U)
-#define HAS(field) (m->field.used > 0U)
+#define TAKE(field)  (m->field.used = 0U)
+#define HAS(field)   (m->field.used > 0U)
 #define VALUE(field) (m->field.token[0].value)
 
 static bool begin(pn_ctx_t *cx, void *marking)
 {
     marking_t *const m = marking;
-    const order_t order = {2, {0.5, 7.0}};
+    const order_t order = { 2, { 0.5, 7.0 } };
     (void)cx;
     PUT(orders, order);
     PUT(idle, 0U);
-    m->idle.token[0].stamp = (pn_time_t){.integer = 0};
+    m->idle.token[0].stamp = (pn_time_t){ .integer = 0 };
     return true;
 }
 
@@ -122,30 +148,31 @@ static bool begin(pn_ctx_t *cx, void *marking)
     .name = place_name, .colset = "UNIT", .owner = (place_owner), .bag = &field##_bag
 
 static const pn_place_t PLACE[] = {
-    {PLAIN(orders, "Top.Orders", 0), .initial = begin},
-    {PLAIN(idle, "Top.Idle", 0)},
-    {PLAIN(waiting, "Top.Waiting", 0)},
-    {PLAIN(done, "Top.Done", 0)},
-    {PLAIN(pose, "Top.pose1", -1)},
-    {PLAIN(command, "Top.command", -1)},
-    {PLAIN(answer, "Top.answer", -1)},
-    {PLAIN(spin, "Top.Spin", 0)},
+    { PLAIN(orders, "Top.Orders", 0), .initial = begin },
+    { PLAIN(idle, "Top.Idle", 0) },
+    { PLAIN(waiting, "Top.Waiting", 0) },
+    { PLAIN(done, "Top.Done", 0) },
+    { PLAIN(pose, "Top.pose1", -1) },
+    { PLAIN(command, "Top.command", -1) },
+    { PLAIN(answer, "Top.answer", -1) },
+    { PLAIN(spin, "Top.Spin", 0) },
 };
 
-/* --- transitions ------------------------------------------------------------------------------------------------------ */
+/* --- transitions -------------------------------------------------------------------------------------------------- */
 
 static bool offer(const marking_t *m, bool enabled, uint32_t self, pn_binding_sink_t sink, void *user)
 {
-    const binding_t binding = {VALUE(orders).n, VALUE(orders).at.x};
+    const binding_t binding = { VALUE(orders).n, VALUE(orders).at.x };
     return !enabled || sink(user, self, &binding);
 }
 
-#define ENUMERATE(transition, condition)                                                                                  \
-    static bool transition##_enumerate(pn_ctx_t *cx, const void *marking, uint32_t self, pn_binding_sink_t sink, void *user) \
-    {                                                                                                                     \
-        const marking_t *const m = marking;                                                                               \
-        (void)cx;                                                                                                         \
-        return offer(m, (condition), self, sink, user);                                                                   \
+#define ENUMERATE(transition, condition)                                                                         \
+    static bool transition##_enumerate(pn_ctx_t *cx, const void *marking, uint32_t self, pn_binding_sink_t sink, \
+                                       void *user)                                                               \
+    {                                                                                                            \
+        const marking_t *const m = marking;                                                                      \
+        (void)cx;                                                                                                \
+        return offer(m, (condition), self, sink, user);                                                          \
     }
 
 static bool is_idle(const marking_t *m)
@@ -176,7 +203,7 @@ static bool send_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 static bool next_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
 {
     marking_t *const m = marking;
-    const order_t rest = {VALUE(orders).n - 1, {VALUE(orders).at.x + 0.1, VALUE(orders).at.y}};
+    const order_t rest = { VALUE(orders).n - 1, { VALUE(orders).at.x + 0.1, VALUE(orders).at.y } };
     (void)cx, (void)self, (void)binding;
     TAKE(waiting);
     TAKE(answer);
@@ -233,23 +260,27 @@ static bool work_fire(pn_ctx_t *cx, void *marking, uint32_t self, void *binding)
     return true;
 }
 
-#define TRANSITION(fn, full, owned)                                                                         \
-    {                                                                                                       \
-        .name = (full), .id = "ID" #fn, .origin = "page `Top`, transition `" full "`", .owner = (owned),    \
-        .priority = 1000, .enumerate = fn##_enumerate, .fire = fn##_fire, .binding = &BINDING               \
-    }
+#define TRANSITION(fn, full, owned)                  \
+    { .name = (full),                                \
+      .id = "ID" #fn,                                \
+      .origin = "page `Top`, transition `" full "`", \
+      .owner = (owned),                              \
+      .priority = 1000,                              \
+      .enumerate = fn##_enumerate,                   \
+      .fire = fn##_fire,                             \
+      .binding = &BINDING }
 
 static const pn_transition_t TRANSITION_TABLE[] = {
-    TRANSITION(send, "Top.Send", 0),         TRANSITION(next, "Top.Next", 0),   TRANSITION(finish, "Top.Finish", 0),
-    TRANSITION(overflow, "Top.Trouble", 0),  TRANSITION(again, "Top.Again", 0), TRANSITION(spin, "Top.Spin", 0),
+    TRANSITION(send, "Top.Send", 0),        TRANSITION(next, "Top.Next", 0),   TRANSITION(finish, "Top.Finish", 0),
+    TRANSITION(overflow, "Top.Trouble", 0), TRANSITION(again, "Top.Again", 0), TRANSITION(spin, "Top.Spin", 0),
     TRANSITION(work, "Top.Robot.Do", 1),
 };
 
-static const uint32_t ORDER[] = {0U, 1U, 2U, 3U, 4U, 5U, 6U};
-static const uint32_t BAGS[] = {0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U};
-static const pn_owner_t OWNER[] = {{"supervisor"}, {"robot1"}};
+static const uint32_t ORDER[] = { 0U, 1U, 2U, 3U, 4U, 5U, 6U };
+static const uint32_t BAGS[] = { 0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U };
+static const pn_owner_t OWNER[] = { { "supervisor" }, { "robot1" } };
 
-/* --- the net ---------------------------------------------------------------------------------------------------------- */
+/* --- the net ------------------------------------------------------------------------------------------------------ */
 
 const pn_net_t pn_net = {
     .abi = PN_NET_ABI,

@@ -4,14 +4,14 @@
  *   latency DIR SUPERVISOR ROUNDS [INPUT_DIR]
  *
  * 1. bare: two processes in DIR, each renames a file and waits by inotify for the other's: time of a round trip.
- * 2. cell: SUPERVISOR (the net of hand_net.c with HAND_DELAY 0) is started on DIR; this program plays its robot and measures, for
- *    each command, from the call of rename that makes the answer file appear
+ * 2. cell: SUPERVISOR (the net of hand_net.c with HAND_DELAY 0) is started on DIR; this program plays its robot and
+ * measures, for each command, from the call of rename that makes the answer file appear
  *      - to the moment the next command's flag is there, seen by looking without pause: "published";
  *      - to the moment this program is woken by inotify for it: "round trip".
  *    Odd rounds are measured one way, even rounds the other.
  *
- * The two processes are kept on different cores where there are two: otherwise the one that looks without pause would keep the
- * supervisor from running.
+ * The two processes are kept on different cores where there are two: otherwise the one that looks without pause would
+ * keep the supervisor from running.
  *
  * Prints microseconds: name, number, p50, p90, p99, largest.
  */
@@ -58,7 +58,8 @@ static void use_core(int core)
     cpu_set_t set;
     CPU_ZERO(&set);
     CPU_SET((size_t)core, &set);
-    (void)sched_setaffinity(0, sizeof set, &set); /* fails where there is one core only: then there is nothing to choose */
+    (void)sched_setaffinity(0, sizeof set,
+                            &set); /* fails where there is one core only: then there is nothing to choose */
 }
 
 /* Returns the time at which rename was called. */
@@ -107,7 +108,7 @@ static void await_rename(int watch, const char *name)
     _Alignas(struct inotify_event) char buffer[4096];
     bool found = false;
     while (!found) {
-        struct pollfd on = {watch, POLLIN, 0};
+        struct pollfd on = { watch, POLLIN, 0 };
         (void)poll(&on, 1, 5000);
         if (on.revents == 0) {
             errno = ETIMEDOUT;
@@ -229,8 +230,8 @@ static void report(const char *name, int which)
     double *const sample = s_sample[which];
     const int n = s_count[which];
     qsort(sample, (size_t)n, sizeof *sample, compare);
-    (void)printf("%-42s %6d  p50 %7.1f  p90 %7.1f  p99 %7.1f  max %8.1f\n", name, n, sample[n / 2], sample[(n * 9) / 10],
-                 sample[(n * 99) / 100], sample[n - 1]);
+    (void)printf("%-42s %6d  p50 %7.1f  p90 %7.1f  p99 %7.1f  max %8.1f\n", name, n, sample[n / 2],
+                 sample[(n * 9) / 10], sample[(n * 99) / 100], sample[n - 1]);
 }
 
 int main(int argc, char **argv)

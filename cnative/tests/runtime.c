@@ -19,7 +19,7 @@
 #include "pn/pn_text.h"
 #include "pn/pn_trace.h"
 
-#include "../src/pn_bytes_impl.h"
+#include "../src/value/pn_bytes_impl.h"
 
 static int s_failures = 0;
 
@@ -55,15 +55,21 @@ typedef struct marking {
 } marking_t;
 
 static const pn_type_t s_int = { .kind = PN_KIND_INT, .name = "INT", .size = sizeof(int64_t) };
-static const pn_type_t s_small = {
-    .kind = PN_KIND_INT, .name = "SMALL", .size = sizeof(int64_t), .has_range = true, .low = 1, .high = 3
-};
-static const pn_bag_t s_plain = {
-    .origin = "place `Plain`", .type = &s_int, .capacity = 4U, PN_BAG_TOKENS(marking_t, Plain)
-};
-static const pn_bag_t s_timed = {
-    .origin = "place `Timed`", .type = &s_int, .capacity = 3U, .is_timed = true, PN_BAG_STAMPS(marking_t, Timed)
-};
+static const pn_type_t s_small = { .kind = PN_KIND_INT,
+                                   .name = "SMALL",
+                                   .size = sizeof(int64_t),
+                                   .has_range = true,
+                                   .low = 1,
+                                   .high = 3 };
+static const pn_bag_t s_plain = { .origin = "place `Plain`",
+                                  .type = &s_int,
+                                  .capacity = 4U,
+                                  PN_BAG_TOKENS(marking_t, Plain) };
+static const pn_bag_t s_timed = { .origin = "place `Timed`",
+                                  .type = &s_int,
+                                  .capacity = 3U,
+                                  .is_timed = true,
+                                  PN_BAG_STAMPS(marking_t, Timed) };
 
 /* The text of a place's marking. */
 static const char *json(const pn_bag_t *bag, const marking_t *m)
@@ -147,8 +153,8 @@ static void test_numbers(void)
         double value;
         const char *sml;
     } reals[] = {
-        { 1.0 / 3.0, "0.333333333333" }, { 1e-5, "1E~05" }, { -1.5, "~1.5" }, { 2.0, "2.0" },
-        { 123456789012.0, "123456789012.0" }, { 1e12, "1E12" }, { 0.0, "0.0" }, { 0.001, "0.001" },
+        { 1.0 / 3.0, "0.333333333333" },      { 1e-5, "1E~05" }, { -1.5, "~1.5" }, { 2.0, "2.0" },
+        { 123456789012.0, "123456789012.0" }, { 1e12, "1E12" },  { 0.0, "0.0" },   { 0.001, "0.001" },
     };
     for (size_t i = 0U; i < (sizeof reals / sizeof reals[0]); i++) {
         (void)pn_real_sml(text, sizeof text, reals[i].value);
@@ -272,7 +278,10 @@ static void test_bytes(void)
         const size_t length = put_real(bytes, sizeof bytes, 0U, reals[i]);
         double back = 77.0;
         size_t at = 0U;
-        CHECK(get_real(bytes, length, &at, &back) && ((memcmp(&back, &reals[i], sizeof back) == 0) || ((back == 0.0) && (reals[i] == 0.0) && !signbit(back))) && (at == length));
+        CHECK(
+            get_real(bytes, length, &at, &back)
+            && ((memcmp(&back, &reals[i], sizeof back) == 0) || ((back == 0.0) && (reals[i] == 0.0) && !signbit(back)))
+            && (at == length));
         at = 0U;
         CHECK(!get_real(bytes, length - 1U, &at, &back));
     }
@@ -309,7 +318,8 @@ static void test_trace(void)
     char whole[256] = "";
     FILE *const file = fopen(path, "r");
     CHECK((file != NULL) && (fgets(whole, (int)sizeof whole, file) != NULL));
-    CHECK(strcmp(whole, "{\"t\": 1.0, \"event\": \"a name that is too long for a buffer of sixty-four characters\"}\n") == 0);
+    CHECK(strcmp(whole, "{\"t\": 1.0, \"event\": \"a name that is too long for a buffer of sixty-four characters\"}\n")
+          == 0);
     (void)fclose(file);
     (void)close(made);
     (void)unlink(path);

@@ -18,7 +18,7 @@ static pn_message_t s_message;
 
 static void parse(pn_scalar_kind_t kind, const char *text)
 {
-    const pn_scalar_t scalar = {.kind = kind, .label = "v", .colset = "C"};
+    const pn_scalar_t scalar = { .kind = kind, .label = "v", .colset = "C" };
     char again[PN_CHANNEL_TEXT];
     s_message.count = 0U;
     s_message.text_length = 0U;
@@ -38,12 +38,14 @@ static void parse(pn_scalar_kind_t kind, const char *text)
 static void parse_file(const char *argument)
 {
     static const pn_scalar_t scalar[2] = {
-        {.kind = PN_SCALAR_REAL, .label = "x", .colset = "C"},
-        {.kind = PN_SCALAR_REAL, .label = "y", .colset = "C"},
+        { .kind = PN_SCALAR_REAL, .label = "x", .colset = "C" },
+        { .kind = PN_SCALAR_REAL, .label = "y", .colset = "C" },
     };
-    static const pn_cell_channel_t channel = {.name = "pose1", .file = "pose1.robcad", .scalar_count = 2U, .scalar = scalar};
-    static const char *const why[] = {"none",    "missing",  "shape",   "count",    "scalar", "colour",
-                                      "trailer", "checksum", "session", "repeated", "lost",   "overwritten"};
+    static const pn_cell_channel_t channel = {
+        .name = "pose1", .file = "pose1.robcad", .scalar_count = 2U, .scalar = scalar
+    };
+    static const char *const why[] = { "none",    "missing",  "shape",   "count",    "scalar", "colour",
+                                       "trailer", "checksum", "session", "repeated", "lost",   "overwritten" };
     static char text[PN_CHANNEL_TEXT];
     char *hex = NULL;
     const unsigned long consumed = strtoul(argument, &hex, 10);
@@ -58,21 +60,15 @@ static void parse_file(const char *argument)
         hex += 2;
     }
     switch (pn_channel_parse(&channel, text, length, "0123abcd", consumed, &s_message)) {
-    case PN_CHANNEL_EMPTY:
-        (void)puts("empty");
-        break;
+    case PN_CHANNEL_EMPTY: (void)puts("empty"); break;
     case PN_CHANNEL_MESSAGE:
         (void)printf("message %a %a %ld\n", s_message.leaf[0].real, s_message.leaf[1].real,
                      s_message.sealed ? (long)s_message.seq : -1L);
         break;
-    case PN_CHANNEL_REFUSED:
-        (void)printf("refused %s\n", why[s_message.refusal]);
-        break;
+    case PN_CHANNEL_REFUSED: (void)printf("refused %s\n", why[s_message.refusal]); break;
     case PN_CHANNEL_UNCHANGED:
     case PN_CHANNEL_BROKEN:
-    default:
-        (void)puts("?");
-        break;
+    default: (void)puts("?"); break;
     }
 }
 

@@ -3,9 +3,9 @@
  *
  *     walk SEED STEPS
  *
- * prints JSON lines {"t": now, "enabled": [[transition, binding], ...], "marking": {...}, "chosen": i}, `chosen` being -1 at the
- * end, or {"error": name}. Every marking is encoded, decoded and encoded again, and collected, on the way, and
- * its successors are made in both ways, if the net has two; what references hold is saved and restored, too.
+ * prints JSON lines {"t": now, "enabled": [[transition, binding], ...], "marking": {...}, "chosen": i}, `chosen` being
+ * -1 at the end, or {"error": name}. Every marking is encoded, decoded and encoded again, and collected, on the way,
+ * and its successors are made in both ways, if the net has two; what references hold is saved and restored, too.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -105,7 +105,8 @@ static void check_codec(pn_ctx_t *cx, void *marking, void *copy)
         pn_raise(cx, PN_ERR_INTERNAL, "encode and decode disagree");
     }
     pn_marking_collect(&pn_net, cx, marking);
-    if ((pn_marking_encode(&pn_net, marking, s_bytes[1], sizeof s_bytes[1]) != length) || (memcmp(s_bytes[0], s_bytes[1], length) != 0)) {
+    if ((pn_marking_encode(&pn_net, marking, s_bytes[1], sizeof s_bytes[1]) != length)
+        || (memcmp(s_bytes[0], s_bytes[1], length) != 0)) {
         pn_raise(cx, PN_ERR_INTERNAL, "collect changed the marking");
     }
     if ((save_roots(s_roots[1]) != held) || (memcmp(s_roots[0], s_roots[1], held) != 0)) {
@@ -113,7 +114,7 @@ static void check_codec(pn_ctx_t *cx, void *marking, void *copy)
     }
 }
 
-/* --- successors: the same as those of enumerate and fire ------------------------------------------------------------ */
+/* --- successors: the same as those of enumerate and fire ---------------------------------------------------------- */
 
 typedef struct pass {
     pn_ctx_t *cx;

@@ -22,6 +22,7 @@
  */
 #include "pn/pn_arena.h"
 #include "pn/pn_cell.h"
+#include "net.h"
 
 #include <stddef.h>
 #include <stdint.h>
@@ -217,6 +218,13 @@ static const uint32_t s_final[] = {
     18U, /* Cell.Supervisor.Failed */
 };
 
+/* The marking, and how often each transition has fired: there is no heap. */
+static union {
+    net_marking_t marking;
+    max_align_t align;
+} s_marking;
+static uint64_t s_fired_of[73U];
+
 /* Where lists and strings live: the only memory for them. */
 static max_align_t s_arena[4194304U / sizeof(max_align_t)];
 
@@ -238,4 +246,18 @@ const pn_cell_t pn_cell = {
     .final_place = s_final,
     .arena = s_arena,
     .arena_size = sizeof s_arena,
+    .room = {
+        .marking = &s_marking,
+        .marking_size = sizeof s_marking,
+        .binding = net_binding,
+        .binding_size = &net_binding_size,
+        .fired_of = s_fired_of,
+        .transition_count = 73U,
+    },
+    .needs = {
+        .run = sup_run_cell,
+        .allow_files = NULL,
+        .collect = NULL,
+        .next_time = NULL,
+    },
 };

@@ -259,8 +259,16 @@ static const pn_field_t s_POSE_fields[] = {
     { "ry", &s_REAL, offsetof(POSE_t, ry), false },
     { "rz", &s_REAL, offsetof(POSE_t, rz), false },
 };
+static const pn_part_t s_POSE_parts[] = {
+    { &s_REAL, offsetof(POSE_t, x) },
+    { &s_REAL, offsetof(POSE_t, y) },
+    { &s_REAL, offsetof(POSE_t, z) },
+    { &s_REAL, offsetof(POSE_t, rx) },
+    { &s_REAL, offsetof(POSE_t, ry) },
+    { &s_REAL, offsetof(POSE_t, rz) },
+};
 static const pn_type_t s_POSE = { .kind = PN_KIND_RECORD, .name = "POSE", .size = sizeof(POSE_t),
-    .count = 6U, .field = s_POSE_fields };
+    .count = 6U, .field = s_POSE_fields, .part_count = 6U, .part = s_POSE_parts };
 
 /* colset COMMAND */
 static const pn_type_t s_COMMAND = { .kind = PN_KIND_INT, .name = "COMMAND",
@@ -287,8 +295,17 @@ static const pn_field_t s_FPOSE_fields[] = {
     { "ry", &s_FLOAT, offsetof(POSE_t, ry), false },
     { "rz", &s_FLOAT, offsetof(POSE_t, rz), false },
 };
+static const pn_part_t s_FPOSE_parts[] = {
+    { &s_FLOAT, offsetof(POSE_t, x) },
+    { &s_FLOAT, offsetof(POSE_t, y) },
+    { &s_FLOAT, offsetof(POSE_t, z) },
+    { &s_FLOAT, offsetof(POSE_t, rx) },
+    { &s_FLOAT, offsetof(POSE_t, ry) },
+    { &s_FLOAT, offsetof(POSE_t, rz) },
+};
 static const pn_type_t s_FPOSE = { .kind = PN_KIND_RECORD, .name = "FPOSE", .size = sizeof(POSE_t),
-    .is_narrow = true, .count = 6U, .field = s_FPOSE_fields };
+    .is_narrow = true, .count = 6U, .field = s_FPOSE_fields, .part_count = 6U,
+    .part = s_FPOSE_parts };
 
 /* colset PLAN */
 static const pn_field_t s_PLAN_fields[] = {
@@ -296,8 +313,24 @@ static const pn_field_t s_PLAN_fields[] = {
     { "2", &s_FPOSE, offsetof(PLAN_t, c2), false },
     { "3", &s_FPOSE, offsetof(PLAN_t, c3), false },
 };
+static const pn_part_t s_PLAN_parts[] = {
+    { &s_COUNT, offsetof(PLAN_t, c1) },
+    { &s_FLOAT, offsetof(PLAN_t, c2.x) },
+    { &s_FLOAT, offsetof(PLAN_t, c2.y) },
+    { &s_FLOAT, offsetof(PLAN_t, c2.z) },
+    { &s_FLOAT, offsetof(PLAN_t, c2.rx) },
+    { &s_FLOAT, offsetof(PLAN_t, c2.ry) },
+    { &s_FLOAT, offsetof(PLAN_t, c2.rz) },
+    { &s_FLOAT, offsetof(PLAN_t, c3.x) },
+    { &s_FLOAT, offsetof(PLAN_t, c3.y) },
+    { &s_FLOAT, offsetof(PLAN_t, c3.z) },
+    { &s_FLOAT, offsetof(PLAN_t, c3.rx) },
+    { &s_FLOAT, offsetof(PLAN_t, c3.ry) },
+    { &s_FLOAT, offsetof(PLAN_t, c3.rz) },
+};
 static const pn_type_t s_PLAN = { .kind = PN_KIND_RECORD, .name = "PLAN", .size = sizeof(PLAN_t),
-    .is_narrow = true, .is_tuple = true, .count = 3U, .field = s_PLAN_fields };
+    .is_narrow = true, .is_tuple = true, .count = 3U, .field = s_PLAN_fields, .part_count = 13U,
+    .part = s_PLAN_parts };
 
 /* colset SEAM */
 static const pn_field_t s_SEAM_fields[] = {
@@ -305,8 +338,24 @@ static const pn_field_t s_SEAM_fields[] = {
     { "first", &s_FPOSE, offsetof(SEAM_t, first), false },
     { "last", &s_FPOSE, offsetof(SEAM_t, last), false },
 };
+static const pn_part_t s_SEAM_parts[] = {
+    { &s_COUNT, offsetof(SEAM_t, points) },
+    { &s_FLOAT, offsetof(SEAM_t, first.x) },
+    { &s_FLOAT, offsetof(SEAM_t, first.y) },
+    { &s_FLOAT, offsetof(SEAM_t, first.z) },
+    { &s_FLOAT, offsetof(SEAM_t, first.rx) },
+    { &s_FLOAT, offsetof(SEAM_t, first.ry) },
+    { &s_FLOAT, offsetof(SEAM_t, first.rz) },
+    { &s_FLOAT, offsetof(SEAM_t, last.x) },
+    { &s_FLOAT, offsetof(SEAM_t, last.y) },
+    { &s_FLOAT, offsetof(SEAM_t, last.z) },
+    { &s_FLOAT, offsetof(SEAM_t, last.rx) },
+    { &s_FLOAT, offsetof(SEAM_t, last.ry) },
+    { &s_FLOAT, offsetof(SEAM_t, last.rz) },
+};
 static const pn_type_t s_SEAM = { .kind = PN_KIND_RECORD, .name = "SEAM", .size = sizeof(SEAM_t),
-    .is_narrow = true, .count = 3U, .field = s_SEAM_fields };
+    .is_narrow = true, .count = 3U, .field = s_SEAM_fields, .part_count = 13U,
+    .part = s_SEAM_parts };
 
 /* colset VERIFIED */
 static const pn_field_t s_VERIFIED_fields[] = {
@@ -314,9 +363,36 @@ static const pn_field_t s_VERIFIED_fields[] = {
     { "2", &s_POSE, offsetof(VERIFIED_t, c2), false },
     { "3", &s_POSE, offsetof(VERIFIED_t, c3), false },
 };
+static const pn_part_t s_VERIFIED_parts[] = {
+    { &s_COUNT, offsetof(VERIFIED_t, c1.points) },
+    { &s_FLOAT, offsetof(VERIFIED_t, c1.first.x) },
+    { &s_FLOAT, offsetof(VERIFIED_t, c1.first.y) },
+    { &s_FLOAT, offsetof(VERIFIED_t, c1.first.z) },
+    { &s_FLOAT, offsetof(VERIFIED_t, c1.first.rx) },
+    { &s_FLOAT, offsetof(VERIFIED_t, c1.first.ry) },
+    { &s_FLOAT, offsetof(VERIFIED_t, c1.first.rz) },
+    { &s_FLOAT, offsetof(VERIFIED_t, c1.last.x) },
+    { &s_FLOAT, offsetof(VERIFIED_t, c1.last.y) },
+    { &s_FLOAT, offsetof(VERIFIED_t, c1.last.z) },
+    { &s_FLOAT, offsetof(VERIFIED_t, c1.last.rx) },
+    { &s_FLOAT, offsetof(VERIFIED_t, c1.last.ry) },
+    { &s_FLOAT, offsetof(VERIFIED_t, c1.last.rz) },
+    { &s_REAL, offsetof(VERIFIED_t, c2.x) },
+    { &s_REAL, offsetof(VERIFIED_t, c2.y) },
+    { &s_REAL, offsetof(VERIFIED_t, c2.z) },
+    { &s_REAL, offsetof(VERIFIED_t, c2.rx) },
+    { &s_REAL, offsetof(VERIFIED_t, c2.ry) },
+    { &s_REAL, offsetof(VERIFIED_t, c2.rz) },
+    { &s_REAL, offsetof(VERIFIED_t, c3.x) },
+    { &s_REAL, offsetof(VERIFIED_t, c3.y) },
+    { &s_REAL, offsetof(VERIFIED_t, c3.z) },
+    { &s_REAL, offsetof(VERIFIED_t, c3.rx) },
+    { &s_REAL, offsetof(VERIFIED_t, c3.ry) },
+    { &s_REAL, offsetof(VERIFIED_t, c3.rz) },
+};
 static const pn_type_t s_VERIFIED = { .kind = PN_KIND_RECORD, .name = "VERIFIED",
     .size = sizeof(VERIFIED_t), .is_narrow = true, .is_tuple = true, .count = 3U,
-    .field = s_VERIFIED_fields };
+    .field = s_VERIFIED_fields, .part_count = 25U, .part = s_VERIFIED_parts };
 
 /* colset FVECTOR */
 static const pn_field_t s_FVECTOR_fields[] = {
@@ -324,9 +400,14 @@ static const pn_field_t s_FVECTOR_fields[] = {
     { "2", &s_FLOAT, offsetof(VECTOR_t, c2), false },
     { "3", &s_FLOAT, offsetof(VECTOR_t, c3), false },
 };
+static const pn_part_t s_FVECTOR_parts[] = {
+    { &s_FLOAT, offsetof(VECTOR_t, c1) },
+    { &s_FLOAT, offsetof(VECTOR_t, c2) },
+    { &s_FLOAT, offsetof(VECTOR_t, c3) },
+};
 static const pn_type_t s_FVECTOR = { .kind = PN_KIND_RECORD, .name = "FVECTOR",
     .size = sizeof(VECTOR_t), .is_narrow = true, .is_tuple = true, .count = 3U,
-    .field = s_FVECTOR_fields };
+    .field = s_FVECTOR_fields, .part_count = 3U, .part = s_FVECTOR_parts };
 
 /* colset RIVETING */
 static const pn_field_t s_RIVETING_fields[] = {
@@ -334,9 +415,21 @@ static const pn_field_t s_RIVETING_fields[] = {
     { "2", &s_FPOSE, offsetof(RIVETING_t, c2), false },
     { "3", &s_FVECTOR, offsetof(RIVETING_t, c3), false },
 };
+static const pn_part_t s_RIVETING_parts[] = {
+    { &s_COUNT, offsetof(RIVETING_t, c1) },
+    { &s_FLOAT, offsetof(RIVETING_t, c2.x) },
+    { &s_FLOAT, offsetof(RIVETING_t, c2.y) },
+    { &s_FLOAT, offsetof(RIVETING_t, c2.z) },
+    { &s_FLOAT, offsetof(RIVETING_t, c2.rx) },
+    { &s_FLOAT, offsetof(RIVETING_t, c2.ry) },
+    { &s_FLOAT, offsetof(RIVETING_t, c2.rz) },
+    { &s_FLOAT, offsetof(RIVETING_t, c3.c1) },
+    { &s_FLOAT, offsetof(RIVETING_t, c3.c2) },
+    { &s_FLOAT, offsetof(RIVETING_t, c3.c3) },
+};
 static const pn_type_t s_RIVETING = { .kind = PN_KIND_RECORD, .name = "RIVETING",
     .size = sizeof(RIVETING_t), .is_narrow = true, .is_tuple = true, .count = 3U,
-    .field = s_RIVETING_fields };
+    .field = s_RIVETING_fields, .part_count = 10U, .part = s_RIVETING_parts };
 
 /* colset UNIT */
 static const pn_type_t s_UNIT = { .kind = PN_KIND_UNIT, .name = "UNIT", .size = sizeof(pn_unit_t) };
@@ -347,16 +440,54 @@ static const pn_field_t s_ORDER_fields[] = {
     { "2", &s_POSE, offsetof(PLAN_t, c2), false },
     { "3", &s_POSE, offsetof(PLAN_t, c3), false },
 };
+static const pn_part_t s_ORDER_parts[] = {
+    { &s_COMMAND, offsetof(PLAN_t, c1) },
+    { &s_REAL, offsetof(PLAN_t, c2.x) },
+    { &s_REAL, offsetof(PLAN_t, c2.y) },
+    { &s_REAL, offsetof(PLAN_t, c2.z) },
+    { &s_REAL, offsetof(PLAN_t, c2.rx) },
+    { &s_REAL, offsetof(PLAN_t, c2.ry) },
+    { &s_REAL, offsetof(PLAN_t, c2.rz) },
+    { &s_REAL, offsetof(PLAN_t, c3.x) },
+    { &s_REAL, offsetof(PLAN_t, c3.y) },
+    { &s_REAL, offsetof(PLAN_t, c3.z) },
+    { &s_REAL, offsetof(PLAN_t, c3.rx) },
+    { &s_REAL, offsetof(PLAN_t, c3.ry) },
+    { &s_REAL, offsetof(PLAN_t, c3.rz) },
+};
 static const pn_type_t s_ORDER = { .kind = PN_KIND_RECORD, .name = "ORDER", .size = sizeof(PLAN_t),
-    .is_tuple = true, .count = 3U, .field = s_ORDER_fields };
+    .is_tuple = true, .count = 3U, .field = s_ORDER_fields, .part_count = 13U,
+    .part = s_ORDER_parts };
 
 /* colset ASKED */
 static const pn_field_t s_ASKED_fields[] = {
     { "1", &s_SEAM, offsetof(ASKED_t, c1), false },
     { "2", &s_POSE, offsetof(ASKED_t, c2), false },
 };
+static const pn_part_t s_ASKED_parts[] = {
+    { &s_COUNT, offsetof(ASKED_t, c1.points) },
+    { &s_FLOAT, offsetof(ASKED_t, c1.first.x) },
+    { &s_FLOAT, offsetof(ASKED_t, c1.first.y) },
+    { &s_FLOAT, offsetof(ASKED_t, c1.first.z) },
+    { &s_FLOAT, offsetof(ASKED_t, c1.first.rx) },
+    { &s_FLOAT, offsetof(ASKED_t, c1.first.ry) },
+    { &s_FLOAT, offsetof(ASKED_t, c1.first.rz) },
+    { &s_FLOAT, offsetof(ASKED_t, c1.last.x) },
+    { &s_FLOAT, offsetof(ASKED_t, c1.last.y) },
+    { &s_FLOAT, offsetof(ASKED_t, c1.last.z) },
+    { &s_FLOAT, offsetof(ASKED_t, c1.last.rx) },
+    { &s_FLOAT, offsetof(ASKED_t, c1.last.ry) },
+    { &s_FLOAT, offsetof(ASKED_t, c1.last.rz) },
+    { &s_REAL, offsetof(ASKED_t, c2.x) },
+    { &s_REAL, offsetof(ASKED_t, c2.y) },
+    { &s_REAL, offsetof(ASKED_t, c2.z) },
+    { &s_REAL, offsetof(ASKED_t, c2.rx) },
+    { &s_REAL, offsetof(ASKED_t, c2.ry) },
+    { &s_REAL, offsetof(ASKED_t, c2.rz) },
+};
 static const pn_type_t s_ASKED = { .kind = PN_KIND_RECORD, .name = "ASKED", .size = sizeof(ASKED_t),
-    .is_narrow = true, .is_tuple = true, .count = 2U, .field = s_ASKED_fields };
+    .is_narrow = true, .is_tuple = true, .count = 2U, .field = s_ASKED_fields, .part_count = 19U,
+    .part = s_ASKED_parts };
 
 /* colset VECTOR */
 static const pn_field_t s_VECTOR_fields[] = {
@@ -364,8 +495,14 @@ static const pn_field_t s_VECTOR_fields[] = {
     { "2", &s_REAL, offsetof(VECTOR_t, c2), false },
     { "3", &s_REAL, offsetof(VECTOR_t, c3), false },
 };
+static const pn_part_t s_VECTOR_parts[] = {
+    { &s_REAL, offsetof(VECTOR_t, c1) },
+    { &s_REAL, offsetof(VECTOR_t, c2) },
+    { &s_REAL, offsetof(VECTOR_t, c3) },
+};
 static const pn_type_t s_VECTOR = { .kind = PN_KIND_RECORD, .name = "VECTOR",
-    .size = sizeof(VECTOR_t), .is_tuple = true, .count = 3U, .field = s_VECTOR_fields };
+    .size = sizeof(VECTOR_t), .is_tuple = true, .count = 3U, .field = s_VECTOR_fields,
+    .part_count = 3U, .part = s_VECTOR_parts };
 
 /* colset RIVETS */
 static const pn_type_t s_RIVETS = { .kind = PN_KIND_INT, .name = "RIVETS", .size = sizeof(int64_t),
@@ -378,8 +515,22 @@ static const pn_field_t s_WORK_fields[] = {
     { "3", &s_FPOSE, offsetof(WORK_t, c3), false },
     { "4", &s_FVECTOR, offsetof(WORK_t, c4), false },
 };
+static const pn_part_t s_WORK_parts[] = {
+    { &s_COUNT, offsetof(WORK_t, c1) },
+    { &s_RIVETS, offsetof(WORK_t, c2) },
+    { &s_FLOAT, offsetof(WORK_t, c3.x) },
+    { &s_FLOAT, offsetof(WORK_t, c3.y) },
+    { &s_FLOAT, offsetof(WORK_t, c3.z) },
+    { &s_FLOAT, offsetof(WORK_t, c3.rx) },
+    { &s_FLOAT, offsetof(WORK_t, c3.ry) },
+    { &s_FLOAT, offsetof(WORK_t, c3.rz) },
+    { &s_FLOAT, offsetof(WORK_t, c4.c1) },
+    { &s_FLOAT, offsetof(WORK_t, c4.c2) },
+    { &s_FLOAT, offsetof(WORK_t, c4.c3) },
+};
 static const pn_type_t s_WORK = { .kind = PN_KIND_RECORD, .name = "WORK", .size = sizeof(WORK_t),
-    .is_narrow = true, .is_tuple = true, .count = 4U, .field = s_WORK_fields };
+    .is_narrow = true, .is_tuple = true, .count = 4U, .field = s_WORK_fields, .part_count = 11U,
+    .part = s_WORK_parts };
 
 /* --- values ------------------------------------------------------------------------------------ */
 
@@ -4181,102 +4332,102 @@ static const pn_transition_t s_transitions[] = {
         PN_INDICES(touched, 7U, 67U, 68U), PN_INDICES(read, 7U, 67U) },
     { /* 53 */ .name = "Cell.Robot1.Accept", .id = "ID1412311125",
         .origin = "page `Robot`, transition `Accept` (ID1412311125)", .owner = 1, .priority = 1000,
-        PN_CODE(Robot_Accept), .places = &s_in_Robot1,
+        PN_OTHERS(Robot_Accept), .places = &s_in_Robot1,
         PN_INDICES(affected, 53U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
         PN_INDICES(touched, 1U, 69U, 70U), PN_INDICES(read, 1U, 69U) },
     { /* 54 */ .name = "Cell.Robot1.Report", .id = "ID1412311145",
         .origin = "page `Robot`, transition `Report` (ID1412311145)", .owner = 1, .priority = 1000,
-        PN_CODE(Robot_Report), .places = &s_in_Robot1,
+        PN_OTHERS(Robot_Report), .places = &s_in_Robot1,
         PN_INDICES(affected, 5U, 8U, 9U, 10U, 11U, 18U, 26U, 32U, 36U, 37U, 40U, 43U, 47U, 51U, 53U,
             54U), PN_INDICES(touched, 2U, 69U, 71U), PN_INDICES(read, 71U) },
     { /* 55 */ .name = "Cell.Robot1.MoveJoint", .id = "ID1412311160",
         .origin = "page `Robot`, transition `MoveJoint` (ID1412311160)", .owner = 1,
-        .priority = 1000, PN_CODE(Robot_MoveJoint), .places = &s_in_Robot1,
+        .priority = 1000, PN_OTHERS(Robot_MoveJoint), .places = &s_in_Robot1,
         PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
         PN_INDICES(touched, 0U, 70U, 71U), PN_INDICES(read, 0U, 70U) },
     { /* 56 */ .name = "Cell.Robot1.MoveLinear", .id = "ID1412311169",
         .origin = "page `Robot`, transition `MoveLinear` (ID1412311169)", .owner = 1,
-        .priority = 1000, PN_CODE(Robot_MoveLinear), .places = &s_in_Robot1,
+        .priority = 1000, PN_OTHERS(Robot_MoveLinear), .places = &s_in_Robot1,
         PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
         PN_INDICES(touched, 0U, 70U, 71U), PN_INDICES(read, 0U, 70U) },
     { /* 57 */ .name = "Cell.Robot1.MoveHome", .id = "ID1412311178",
         .origin = "page `Robot`, transition `MoveHome` (ID1412311178)", .owner = 1,
-        .priority = 1000, PN_CODE(Robot_MoveHome), .places = &s_in_Robot1,
+        .priority = 1000, PN_OTHERS(Robot_MoveHome), .places = &s_in_Robot1,
         PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
         PN_INDICES(touched, 70U, 71U), PN_INDICES(read, 70U) },
     { /* 58 */ .name = "Cell.Robot1.Measure", .id = "ID1412311187",
         .origin = "page `Robot`, transition `Measure` (ID1412311187)", .owner = 1, .priority = 1000,
-        PN_CODE(Robot_Measure), .places = &s_in_Robot1,
+        PN_OTHERS(Robot_Measure), .places = &s_in_Robot1,
         PN_INDICES(affected, 8U, 9U, 10U, 11U, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
         PN_INDICES(touched, 3U, 4U, 70U, 71U), PN_INDICES(read, 3U, 70U) },
     { /* 59 */ .name = "Cell.Robot1.Drill", .id = "ID1412311196",
         .origin = "page `Robot`, transition `Drill` (ID1412311196)", .owner = 1, .priority = 1000,
-        PN_CODE(Robot_Drill), .places = &s_in_Robot1,
+        PN_OTHERS(Robot_Drill), .places = &s_in_Robot1,
         PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
         PN_INDICES(touched, 70U, 71U), PN_INDICES(read, 70U) },
     { /* 60 */ .name = "Cell.Robot1.Insert", .id = "ID1412311205",
         .origin = "page `Robot`, transition `Insert` (ID1412311205)", .owner = 1, .priority = 1000,
-        PN_CODE(Robot_Insert), .places = &s_in_Robot1,
+        PN_OTHERS(Robot_Insert), .places = &s_in_Robot1,
         PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
         PN_INDICES(touched, 70U, 71U), PN_INDICES(read, 70U) },
     { /* 61 */ .name = "Cell.Robot1.Press", .id = "ID1412311214",
         .origin = "page `Robot`, transition `Press` (ID1412311214)", .owner = 1, .priority = 1000,
-        PN_CODE(Robot_Press), .places = &s_in_Robot1,
+        PN_OTHERS(Robot_Press), .places = &s_in_Robot1,
         PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
         PN_INDICES(touched, 70U, 71U), PN_INDICES(read, 70U) },
     { /* 62 */ .name = "Cell.Robot1.Release", .id = "ID1412311223",
         .origin = "page `Robot`, transition `Release` (ID1412311223)", .owner = 1, .priority = 1000,
-        PN_CODE(Robot_Release), .places = &s_in_Robot1,
+        PN_OTHERS(Robot_Release), .places = &s_in_Robot1,
         PN_INDICES(affected, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U),
         PN_INDICES(touched, 70U, 71U), PN_INDICES(read, 70U) },
     { /* 63 */ .name = "Cell.Robot2.Accept", .id = "ID1412311125",
         .origin = "page `Robot`, transition `Accept` (ID1412311125)", .owner = 2, .priority = 1000,
-        PN_CODE(Robot_Accept), .places = &s_in_Robot2,
+        PN_OTHERS(Robot_Accept), .places = &s_in_Robot2,
         PN_INDICES(affected, 63U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
         PN_INDICES(touched, 6U, 72U, 73U), PN_INDICES(read, 6U, 72U) },
     { /* 64 */ .name = "Cell.Robot2.Report", .id = "ID1412311145",
         .origin = "page `Robot`, transition `Report` (ID1412311145)", .owner = 2, .priority = 1000,
-        PN_CODE(Robot_Report), .places = &s_in_Robot2,
+        PN_OTHERS(Robot_Report), .places = &s_in_Robot2,
         PN_INDICES(affected, 6U, 19U, 27U, 33U, 35U, 38U, 39U, 44U, 48U, 52U, 63U, 64U),
         PN_INDICES(touched, 7U, 72U, 74U), PN_INDICES(read, 74U) },
     { /* 65 */ .name = "Cell.Robot2.MoveJoint", .id = "ID1412311160",
         .origin = "page `Robot`, transition `MoveJoint` (ID1412311160)", .owner = 2,
-        .priority = 1000, PN_CODE(Robot_MoveJoint), .places = &s_in_Robot2,
+        .priority = 1000, PN_OTHERS(Robot_MoveJoint), .places = &s_in_Robot2,
         PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
         PN_INDICES(touched, 5U, 73U, 74U), PN_INDICES(read, 5U, 73U) },
     { /* 66 */ .name = "Cell.Robot2.MoveLinear", .id = "ID1412311169",
         .origin = "page `Robot`, transition `MoveLinear` (ID1412311169)", .owner = 2,
-        .priority = 1000, PN_CODE(Robot_MoveLinear), .places = &s_in_Robot2,
+        .priority = 1000, PN_OTHERS(Robot_MoveLinear), .places = &s_in_Robot2,
         PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
         PN_INDICES(touched, 5U, 73U, 74U), PN_INDICES(read, 5U, 73U) },
     { /* 67 */ .name = "Cell.Robot2.MoveHome", .id = "ID1412311178",
         .origin = "page `Robot`, transition `MoveHome` (ID1412311178)", .owner = 2,
-        .priority = 1000, PN_CODE(Robot_MoveHome), .places = &s_in_Robot2,
+        .priority = 1000, PN_OTHERS(Robot_MoveHome), .places = &s_in_Robot2,
         PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
         PN_INDICES(touched, 73U, 74U), PN_INDICES(read, 73U) },
     { /* 68 */ .name = "Cell.Robot2.Measure", .id = "ID1412311187",
         .origin = "page `Robot`, transition `Measure` (ID1412311187)", .owner = 2, .priority = 1000,
-        PN_CODE(Robot_Measure), .places = &s_in_Robot2,
+        PN_OTHERS(Robot_Measure), .places = &s_in_Robot2,
         PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
         PN_INDICES(touched, 8U, 9U, 73U, 74U), PN_INDICES(read, 8U, 73U) },
     { /* 69 */ .name = "Cell.Robot2.Drill", .id = "ID1412311196",
         .origin = "page `Robot`, transition `Drill` (ID1412311196)", .owner = 2, .priority = 1000,
-        PN_CODE(Robot_Drill), .places = &s_in_Robot2,
+        PN_OTHERS(Robot_Drill), .places = &s_in_Robot2,
         PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
         PN_INDICES(touched, 73U, 74U), PN_INDICES(read, 73U) },
     { /* 70 */ .name = "Cell.Robot2.Insert", .id = "ID1412311205",
         .origin = "page `Robot`, transition `Insert` (ID1412311205)", .owner = 2, .priority = 1000,
-        PN_CODE(Robot_Insert), .places = &s_in_Robot2,
+        PN_OTHERS(Robot_Insert), .places = &s_in_Robot2,
         PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
         PN_INDICES(touched, 73U, 74U), PN_INDICES(read, 73U) },
     { /* 71 */ .name = "Cell.Robot2.Press", .id = "ID1412311214",
         .origin = "page `Robot`, transition `Press` (ID1412311214)", .owner = 2, .priority = 1000,
-        PN_CODE(Robot_Press), .places = &s_in_Robot2,
+        PN_OTHERS(Robot_Press), .places = &s_in_Robot2,
         PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
         PN_INDICES(touched, 73U, 74U), PN_INDICES(read, 73U) },
     { /* 72 */ .name = "Cell.Robot2.Release", .id = "ID1412311223",
         .origin = "page `Robot`, transition `Release` (ID1412311223)", .owner = 2, .priority = 1000,
-        PN_CODE(Robot_Release), .places = &s_in_Robot2,
+        PN_OTHERS(Robot_Release), .places = &s_in_Robot2,
         PN_INDICES(affected, 64U, 65U, 66U, 67U, 68U, 69U, 70U, 71U, 72U),
         PN_INDICES(touched, 73U, 74U), PN_INDICES(read, 73U) },
 };
@@ -4334,6 +4485,56 @@ static const pn_owner_t s_owners[] = {
     { "robot1" },
     { "robot2" },
 };
+
+/* As large as the largest binding. */
+union net_bindings {
+    max_align_t align;
+    Supervisor_Load_Load_binding_t Supervisor_Load_Load;
+    Supervisor_Approach_Send_binding_t Supervisor_Approach_Send;
+    Supervisor_Approach_Arrived_binding_t Supervisor_Approach_Arrived;
+    MoveBoth_Command_binding_t MoveBoth_Command;
+    MoveBoth_Both_binding_t MoveBoth_Both;
+    MoveBoth_Reply_1_binding_t MoveBoth_Reply_1;
+    MoveBoth_Reply_2_binding_t MoveBoth_Reply_2;
+    Supervisor_Verify_Ask_first_binding_t Supervisor_Verify_Ask_first;
+    Supervisor_Verify_Ask_last_binding_t Supervisor_Verify_Ask_last;
+    Supervisor_Verify_Measured_binding_t Supervisor_Verify_Measured;
+    Supervisor_Verify_First_lost_binding_t Supervisor_Verify_First_lost;
+    Supervisor_Verify_Last_lost_binding_t Supervisor_Verify_Last_lost;
+    Supervisor_Correct_Compare_binding_t Supervisor_Correct_Compare;
+    Supervisor_Correct_Move_over_binding_t Supervisor_Correct_Move_over;
+    Supervisor_Correct_Moved_binding_t Supervisor_Correct_Moved;
+    Supervisor_Correct_As_planned_binding_t Supervisor_Correct_As_planned;
+    Supervisor_Install_Go_back_binding_t Supervisor_Install_Go_back;
+    Supervisor_Install_Next_rivet_binding_t Supervisor_Install_Next_rivet;
+    Supervisor_Install_Start_binding_t Supervisor_Install_Start;
+    Supervisor_Install_Give_up_binding_t Supervisor_Install_Give_up;
+    Supervisor_Install_Rivet_Go_in_binding_t Supervisor_Install_Rivet_Go_in;
+    Supervisor_Install_Rivet_Go_out_binding_t Supervisor_Install_Rivet_Go_out;
+    Supervisor_Install_Rivet_Fasten_Press_binding_t Supervisor_Install_Rivet_Fasten_Press;
+    Supervisor_Install_Rivet_Fasten_Drill_binding_t Supervisor_Install_Rivet_Fasten_Drill;
+    Supervisor_Install_Rivet_Fasten_Insert_binding_t Supervisor_Install_Rivet_Fasten_Insert;
+    Supervisor_Install_Rivet_Fasten_Release_binding_t Supervisor_Install_Rivet_Fasten_Release;
+    Supervisor_Install_Rivet_Fasten_Finish_binding_t Supervisor_Install_Rivet_Fasten_Finish;
+    Supervisor_Install_Rivet_Fasten_Press_failed_binding_t Supervisor_Install_Rivet_Fasten_Press_failed;
+    Supervisor_Install_Rivet_Fasten_Drill_failed_binding_t Supervisor_Install_Rivet_Fasten_Drill_failed;
+    Supervisor_Home_Send_home_binding_t Supervisor_Home_Send_home;
+    Supervisor_Home_Both_binding_t Supervisor_Home_Both;
+    Supervisor_Home_Reply_1_binding_t Supervisor_Home_Reply_1;
+    Supervisor_Home_Reply_2_binding_t Supervisor_Home_Reply_2;
+    Robot_Accept_binding_t Robot_Accept;
+    Robot_Report_binding_t Robot_Report;
+    Robot_MoveJoint_binding_t Robot_MoveJoint;
+    Robot_MoveLinear_binding_t Robot_MoveLinear;
+    Robot_MoveHome_binding_t Robot_MoveHome;
+    Robot_Measure_binding_t Robot_Measure;
+    Robot_Drill_binding_t Robot_Drill;
+    Robot_Insert_binding_t Robot_Insert;
+    Robot_Press_binding_t Robot_Press;
+    Robot_Release_binding_t Robot_Release;
+};
+max_align_t net_binding[(sizeof(union net_bindings) + sizeof(max_align_t) - 1U) / sizeof(max_align_t)];
+const size_t net_binding_size = sizeof net_binding;
 
 const pn_net_t pn_net = {
     .abi = PN_NET_ABI,

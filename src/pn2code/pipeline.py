@@ -29,15 +29,15 @@ from pn2code.emission import manifest, runtime
 from pn2code.emission import supervisor as emit_supervisor
 from pn2code.emission import tdl as emit_tdl
 from pn2code.emission.output import OutputFile
-from pn2code.lowering import net as lower_net
-from pn2code.lowering import robot as lower_robot
+from pn2code.lowering.nets import net as lower_net
 from pn2code.net import front
 from pn2code.net.flat import FlatNet
 from pn2code.net.reached import unused_functions
-from pn2code.semantics.constants import compute
-from pn2code.verify import arena
-from pn2code.verify.proofs import prove
-from pn2code.verify.rooms import Room, with_rooms
+from pn2code.robot_scripts import translate as lower_robot
+from pn2code.semantics.evaluation.constants import compute
+from pn2code.verify.controller import arena
+from pn2code.verify.controller.proofs import prove
+from pn2code.verify.exploring.place_capacity import PlaceCapacity, with_rooms
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +57,7 @@ class Generated:
     partition: Partition
     config: CellConfig | None
     digest: str
-    rooms: tuple[Room, ...]
+    rooms: tuple[PlaceCapacity, ...]
     arena: int
 
 
@@ -104,8 +104,9 @@ def generate(
         return None
 
     version = pn2code.__version__
+    net_files = emit_c.emit(with_rooms(ir, proofs.rooms), version)
     files = [
-        *emit_c.emit(with_rooms(ir, proofs.rooms), version),
+        *net_files,
         *emit_supervisor.emit(
             partition,
             name=net.name,
@@ -114,6 +115,7 @@ def generate(
             version=version,
             verdicts=proofs.verdicts,
             arena=proofs.arena,
+            net_c=net_files[0].text,
         ),
         *emit_tdl.emit(robots, source=Path(net.file).name, digest=digest, version=version),
         *runtime.emit("supervisor", "simulate"),

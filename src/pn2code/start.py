@@ -7,7 +7,7 @@ import signal
 import sys
 from typing import NoReturn
 
-from pn2code import deadline
+from pn2code.base import deadline
 
 
 def main() -> NoReturn:

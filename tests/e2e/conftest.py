@@ -27,7 +27,7 @@ def quick_build() -> Iterator[None]:
 def riveting_program(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The folder of the riveting cell, generated and built once a session, also when several workers share it.
 
-    It holds `supervisor`, the robots' scripts and everything else that `pn2code generate` writes. Only read it.
+    It holds `supervisor`, `supervisor.traced`, the scripts and all that `pn2code generate` writes. Only read it.
     """
     if build.find_compiler() is None:
         pytest.skip("no C compiler")
@@ -39,7 +39,8 @@ def riveting_program(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Pa
             generated = pipeline.generate(root / "examples" / "riveting", d)
             assert generated is not None, render.report(d)
             write(folder, generated.files)
-            assert build.build(folder, generated.files, d) is not None, render.report(d)
+            for target in ("supervisor", "supervisor.traced"):
+                assert build.build(folder, generated.files, d, target=target), render.report(d)
 
     return once(tmp_path_factory, "riveting-program", make)
 

@@ -7,9 +7,9 @@ from pathlib import Path
 from random import Random
 
 import pytest
-from tests.adversary import bed, wander
-from tests.adversary.cells import Claim, random_cell
-from tests.adversary.judge import Said, contradictions
+from tools.adversary import bed, wander
+from tools.adversary.cells import Claim, random_cell
+from tools.adversary.judge import Said, contradictions
 
 from helpers.thorough import amount
 from pn2code.diagnostics import Diagnostics

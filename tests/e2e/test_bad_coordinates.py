@@ -84,7 +84,8 @@ def shared(tmp_path: Path) -> Path:
 def supervise(program: Path, shared: Path, inputs: Path) -> subprocess.CompletedProcess[str]:
     """The supervisor in lock-step, left at once; it never gets that far here."""
     return subprocess.run(
-        [program / "supervisor", "--lockstep", "--dir", shared, "--input", inputs, "--trace", shared / "trace.jsonl"],
+        [program / "supervisor.traced", "--lockstep", "--dir", shared, "--input", inputs, "--trace",
+         shared / "trace.jsonl"],
         input="", capture_output=True, text=True, check=False,
     )  # fmt: skip
 

@@ -12,8 +12,8 @@ import pytest
 
 from helpers.netbuilder import write
 from pn2code.cli import main
-from pn2code.conformance.compare import paths
 from pn2code.diagnostics import Diagnostics
+from pn2code.engine_comparison.compare import paths
 from pn2code.net.front import load
 
 NET = """

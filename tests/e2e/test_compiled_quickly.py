@@ -7,11 +7,11 @@ import pytest
 from helpers.netbuilder import flat
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
-from pn2code.verify import explore as explore_module
-from pn2code.verify import programs
-from pn2code.verify.explore import explore
-from pn2code.verify.limits import Limits
-from pn2code.verify.result import Exploration
+from pn2code.verify.exploring import explore as explore_module
+from pn2code.verify.exploring import programs
+from pn2code.verify.exploring.explore import explore
+from pn2code.verify.exploring.limits import Limits
+from pn2code.verify.exploring.result import Exploration
 
 pytestmark = pytest.mark.cc
 

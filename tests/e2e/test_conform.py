@@ -9,12 +9,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from tests.mutation.judge import Judge, judge_of
-from tests.mutation.mutants import Mutant
+from tools.mutation.judge import Judge, judge_of
+from tools.mutation.mutants import Mutant
 from typer.testing import CliRunner, Result
 
 from helpers.netbuilder import cpn
 from helpers.small_cell import NET, write
+from pn2code.base.resources import cnative_folder
 from pn2code.cli.main import app
 from pn2code.conform.cell import ProgramComparison
 from pn2code.conform.folder import compare
@@ -23,7 +24,6 @@ from pn2code.conform.supervisor import Report
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.output import OutputFile
 from pn2code.pipeline import generate
-from pn2code.resources import cnative_folder
 
 pytestmark = pytest.mark.cc
 
@@ -349,7 +349,7 @@ SCHEDULER = {
 @pytest.mark.parametrize("what", SCHEDULER)
 def test_another_scheduler_is_found_out(what: str, judge: Judge) -> None:
     name, old, new = SCHEDULER[what]
-    text = (cnative_folder() / "src" / name).read_text()
+    text = (cnative_folder() / "src" / "supervisor" / name).read_text()
     assert old in text
     verdict = judge.verdict(Mutant(name, 0, "", what, text.replace(old, new, 1)))
     assert verdict.result == "killed", verdict
@@ -384,7 +384,7 @@ def monitored(cell: Path) -> Iterator[Judge]:
 @pytest.mark.parametrize("what", FAULTS)
 def test_the_monitor_stops_the_supervisor(what: str, monitored: Judge) -> None:
     name, old, new, said = FAULTS[what]
-    text = monitored.files.get(name) or (cnative_folder() / "src" / name).read_text()
+    text = monitored.files.get(name) or (cnative_folder() / "src" / "supervisor" / name).read_text()
     assert old in text
     i = text.rindex(old) if name == "net.c" else text.index(old)
     verdict = monitored.verdict(Mutant(name, 0, "", what, text[:i] + new + text[i + len(old) :]))
@@ -419,11 +419,11 @@ def edited(cell: Path, folder: Path, **texts: str) -> Path:
 @pytest.mark.parametrize(
     ("name", "said"),
     [
-        ("runtime/src/supervisor_cell.c", "differs"),
+        ("runtime/src/supervisor/supervisor_cell.c", "differs"),
         ("runtime/include/pn/pn_port.h", "differs"),
         ("Makefile", "differs"),
         ("manifest.json", "differs"),
-        ("runtime/src/more.c", "is not generated"),
+        ("runtime/src/value/more.c", "is not generated"),
         ("math.h", "is not generated"),
         ("GNUmakefile", "is not generated"),
     ],

@@ -9,7 +9,7 @@ import pytest
 
 from helpers.compiled import Workshop, agrees, lowered
 from helpers.netbuilder import flat, load
-from pn2code.semantics.game import Game
+from pn2code.semantics.game.token_game import Game
 
 HEAD = """
 net Constants

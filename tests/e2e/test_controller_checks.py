@@ -27,15 +27,15 @@ from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics, render
 from pn2code.emission.write import write
 from pn2code.net import front
-from pn2code.verify import control, control_types, proofs
-from pn2code.verify.control import ownership
-from pn2code.verify.control_answers import has_own_priorities
-from pn2code.verify.control_types import Check, Plan
-from pn2code.verify.explore import Wishes
-from pn2code.verify.limits import Limits
-from pn2code.verify.programs import Sizes
-from pn2code.verify.result import Exploration
-from pn2code.verify.running import Running
+from pn2code.verify.controller import control, control_types, proofs
+from pn2code.verify.controller.control import ownership
+from pn2code.verify.controller.control_answers import has_own_priorities
+from pn2code.verify.controller.control_types import Check, Plan
+from pn2code.verify.controller.running import Running
+from pn2code.verify.exploring.explore import ExploreOptions
+from pn2code.verify.exploring.limits import Limits
+from pn2code.verify.exploring.programs import Sizes
+from pn2code.verify.exploring.result import Exploration
 
 pytestmark = pytest.mark.cc
 
@@ -268,7 +268,9 @@ def cell(folder: Path, net: str = NET, toml: str = TOML) -> tuple[Partition, Cel
 def checks(folder: Path, net: str, plan: Plan, toml: str = TOML) -> dict[str, Check]:
     """The answers, by name."""
     partition, config = cell(folder, net, toml)
-    plan = replace(plan, order_decides=config.supervisor.order_decides, wishes=Wishes(quick=True))
+    plan = replace(
+        plan, order_decides=config.supervisor.order_decides, wishes=ExploreOptions(quick=True)
+    )
     d = Diagnostics()
     looked = control.examine(partition, plan, Limits(threads=2), d)
     assert looked is not None, render.report(d)
@@ -585,11 +587,18 @@ def test_more_than_the_bound_stops_the_supervisor(tmp_path: Path) -> None:
     out = tmp_path / "out"
     write(out, generated.files)
     made = subprocess.run(
-        ["make", "-C", out, "CFLAGS=-O0", "supervisor"], capture_output=True, text=True, check=False
+        ["make", "-C", out, "CFLAGS=-O0", "supervisor.traced"],
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert made.returncode == 0, made.stderr
     done = subprocess.run(
-        [out / "supervisor", "--dry-run"], cwd=out, capture_output=True, text=True, check=False
+        [out / "supervisor.traced", "--dry-run"],
+        cwd=out,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert done.returncode == 1, done.stdout
     assert "place `Cell.Supervisor.Spare` is full: it would hold 4 tokens" in done.stderr

@@ -53,11 +53,12 @@ LONG = {
 
 NEVER = {
     "./dev test": "these are the tests",
-    "./dev bench": "minutes of measuring on an idle machine; tests/bench has its own tests",
+    "./dev bench": "minutes of measuring on an idle machine; tools/bench has its own tests",
     "./dev bench --firings": "the same",
     "./dev bench --states": "the same",
     "./dev bench --monitor": "the same",
     "./dev bench --database-15": "the same, and gigabytes",
+    "make misra": "test_misra does it",
     "make mutation": "twenty minutes; test_conform changes programs, too",
     ". .venv/bin/activate": "the environment of the tests is one of another place",
 }

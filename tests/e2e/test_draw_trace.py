@@ -97,12 +97,12 @@ def test_only_what_a_step_is_about_when_there_would_be_too_much(
     net: Path, trace: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     out = tmp_path / "steps.html"
-    monkeypatch.setattr("pn2code.verify.steps_page.MOST_FIGURES", 11)
+    monkeypatch.setattr("pn2code.verify.report.steps_page.MOST_FIGURES", 11)
     assert run("draw", net, "--trace", trace, "-o", out) == 0
     # Two figures with each step, three with the last one; the start is about nothing.
     html = out.read_text(encoding="utf-8")
     assert html.count("<svg") == 2 + 2 + 3 and html.count("No page is drawn here") == 1
-    monkeypatch.setattr("pn2code.verify.steps_page.MOST_FIGURES", 3)
+    monkeypatch.setattr("pn2code.verify.report.steps_page.MOST_FIGURES", 3)
     assert run("draw", net, "--trace", trace, "-o", out) == 0
     html = out.read_text(encoding="utf-8")
     assert html.count("<svg") == 3 and html.count("No page is drawn here") == 3

@@ -12,7 +12,7 @@ import pytest
 from helpers.netbuilder import flat, write
 from pn2code.diagnostics import Diagnostics
 from pn2code.pipeline import generate
-from pn2code.semantics.replay import replay
+from pn2code.trace.replay import replay
 
 pytestmark = pytest.mark.cc
 
@@ -68,10 +68,10 @@ def dry_run(text: str, folder: Path) -> tuple[Path, subprocess.CompletedProcess[
         path = folder / file.path
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(file.text, encoding="utf-8")
-    make = ["make", "-s", "-C", folder, f"-j{os.cpu_count()}", "CFLAGS=-O0", "supervisor"]
+    make = ["make", "-s", "-C", folder, f"-j{os.cpu_count()}", "CFLAGS=-O0", "supervisor.traced"]
     subprocess.run(make, capture_output=True, check=True)
     trace = folder / "trace.jsonl"
-    program = [folder / "supervisor", "--dry-run", "--trace", trace]
+    program = [folder / "supervisor.traced", "--dry-run", "--trace", trace]
     return trace, subprocess.run(program, capture_output=True, text=True, check=False)
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tests.elements.changes import changes
-from tests.elements.judge import Judge
+from tools.elements.changes import changes
+from tools.elements.judge import Judge
 
 from helpers.small_cell import write
 from helpers.thorough import amount

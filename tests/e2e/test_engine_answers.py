@@ -9,18 +9,18 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.oracle.totals import compared
+from tools.oracle.totals import compared
 
 from helpers.netbuilder import cpn
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
 from pn2code.net.front import load
-from pn2code.semantics.constants import compute
-from pn2code.semantics.game import Game
-from pn2code.semantics.recording import recording
-from pn2code.semantics.replay_recording import follow
-from pn2code.verify.explore import explore
-from pn2code.verify.limits import Limits
+from pn2code.semantics.evaluation.constants import compute
+from pn2code.semantics.game.token_game import Game
+from pn2code.trace.recording import recording
+from pn2code.trace.replay_recording import follow
+from pn2code.verify.exploring.explore import explore
+from pn2code.verify.exploring.limits import Limits
 
 SPACES = 4
 """Random nets whose state spaces are explored, which takes a compilation each."""

@@ -10,12 +10,12 @@ import shutil
 from pathlib import Path
 
 import pytest
-from tests.oracle.compare import Seen, has_ties
-from tests.oracle.idioms import answers, digest, nets
+from tools.oracle.compare import Seen, has_ties
+from tools.oracle.idioms import answers, digest, nets
 
 from helpers.netbuilder import cpn
 from helpers.thorough import THOROUGH
-from pn2code.semantics.graph import state_space
+from pn2code.semantics.game.graph import state_space
 
 NETS = nets()
 KEPT = answers()

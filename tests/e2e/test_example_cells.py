@@ -13,17 +13,19 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from tests.forgery.forgeries import forgeries
-from tests.forgery.judge import WRONG, Judge
+from tools.forgery.forgeries import forgeries
+from tools.forgery.judge import WRONG, Judge
 from typer.testing import CliRunner
 
+from helpers.compiled import DELIVERED
 from helpers.thorough import amount
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.front import load
 from pn2code.pipeline import Generated, generate
 from pn2code.run.cell import RunOptions, run_cell
-from pn2code.semantics.replay import replay
+from pn2code.toolchain import programs
+from pn2code.trace.replay import replay
 
 pytest.importorskip("jinja2")
 
@@ -83,7 +85,10 @@ def example(request: pytest.FixtureRequest, root: Path) -> tuple[Path, Expected]
 @pytest.fixture(scope="module")
 def generated(example: tuple[Path, Expected]) -> Generated:
     d = Diagnostics()
-    found = generate(example[0], d)
+    with pytest.MonkeyPatch.context() as changed:
+        if example[1].is_large:  # exploring takes longer than compiling
+            changed.setattr(programs, "FLAGS", DELIVERED)
+        found = generate(example[0], d)
     assert found is not None and not list(d), [x.message for x in d]
     return found
 
@@ -115,8 +120,12 @@ def test_the_picture_is_that_of_the_net(example: tuple[Path, Expected], tmp_path
 
 
 @pytest.mark.cc
-def test_verify(example: tuple[Path, Expected], tmp_path: Path) -> None:
+def test_verify(
+    example: tuple[Path, Expected], tmp_path: Path, request: pytest.FixtureRequest
+) -> None:
     folder, expected = example
+    if expected.is_large:  # exploring takes longer than compiling
+        request.getfixturevalue("as_delivered")
     options = ["--json", "--no-medium", "--traces", str(tmp_path), "--threads", "1"]
     done = CliRunner().invoke(app, ["verify", str(folder), *options])
     assert done.exit_code == 0, done.output

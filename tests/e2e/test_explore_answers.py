@@ -11,8 +11,8 @@ import pytest
 from helpers.explored import Explorers
 from helpers.questions import Asked, Lts, ask, sources
 from pn2code.diagnostics import Diagnostics
-from pn2code.verify.limits import Reduction
-from pn2code.verify.reductions import possible
+from pn2code.verify.exploring.limits import Reduction
+from pn2code.verify.exploring.reductions import possible
 
 pytestmark = pytest.mark.cc
 

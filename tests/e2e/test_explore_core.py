@@ -10,7 +10,7 @@ import pytest
 from helpers.explored import Explorers, agrees, explorer_test
 from helpers.netbuilder import flat
 from helpers.random_graphs import numbered
-from pn2code.verify.programs import HOST
+from pn2code.verify.exploring.programs import HOST
 
 pytestmark = pytest.mark.cc
 

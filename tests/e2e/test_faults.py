@@ -63,7 +63,9 @@ class Cell:
     scripts: dict[str, CheckedProgram]
 
     def supervisor(self, **options: object) -> SupervisorProcess:
-        return SupervisorProcess(self.program / "supervisor", self.shared, self.inputs, **options)  # type: ignore[arg-type]
+        return SupervisorProcess(
+            self.program / "supervisor.traced", self.shared, self.inputs, **options
+        )  # type: ignore[arg-type]
 
     def specs(self, name: str) -> tuple[ChannelSpec, ...]:
         return script_specs(self.scripts[name], name)

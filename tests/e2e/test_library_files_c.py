@@ -10,8 +10,8 @@ import pytest
 
 from helpers.compiled import Workshop, lowered
 from helpers.netbuilder import flat
-from pn2code.semantics.files import Files
-from pn2code.semantics.game import Game
+from pn2code.semantics.evaluation.files import Files
+from pn2code.semantics.game.token_game import Game
 
 pytestmark = pytest.mark.cc
 

@@ -22,8 +22,8 @@ from pn2code.channels.message import MAX_PAYLOAD, Message, Refused, compose, par
 from pn2code.channels.scalars import ScalarValue
 from pn2code.diagnostics import Diagnostics
 from pn2code.net import front
-from pn2code.verify.codec import MOST_SEQ, SESSION, Codec, codec
-from pn2code.verify.messages import longest
+from pn2code.verify.controller.codec import MOST_SEQ, SESSION, Codec, codec
+from pn2code.verify.controller.messages import longest
 
 pytestmark = pytest.mark.cc
 

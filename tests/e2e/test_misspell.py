@@ -7,9 +7,9 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
-from tests.misspell.beside import beside, verdict
-from tests.misspell.judge import Judge
-from tests.misspell.mutants import as_it_is, mistakes
+from tools.misspell.beside import beside, verdict
+from tools.misspell.judge import Judge
+from tools.misspell.mutants import as_it_is, mistakes
 
 from helpers.small_cell import TOML, write
 from pn2code.cell.load import load

@@ -11,7 +11,7 @@ import pytest
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.front import load
 from pn2code.run.cell import RunOptions, RunResult, run_cell
-from pn2code.semantics.replay import replay
+from pn2code.trace.replay import replay
 
 pytestmark = pytest.mark.usefixtures("quick_build")
 

@@ -10,7 +10,7 @@ import pytest
 from tests.helpers.netbuilder import cpn
 
 from pn2code.diagnostics import Diagnostics
-from pn2code.emission import runtime
+from pn2code.emission import c_flags, runtime
 from pn2code.net import front
 from pn2code.simulate import programs
 
@@ -41,7 +41,12 @@ net Still
   standard
   place P : INT = 1`1
 """
-FLAGS = "-std=c11 -O1 -Wall -Wextra -Wpedantic -Werror -Wconversion -Wshadow -Iruntime/include -I."
+FLAGS = " ".join(
+    (
+        *(c_flags.STANDARD, *c_flags.FLOATS, "-O1", "-Wall", "-Wextra", "-Wpedantic", "-Werror"),
+        *("-Wconversion", "-Wshadow", "-Iruntime/include", "-I."),
+    )
+)
 
 
 @pytest.mark.parametrize("text", [AWKWARD, NO_TRANSITIONS])

@@ -7,13 +7,13 @@ import shutil
 from pathlib import Path
 
 import pytest
-from tests.oracle.recorded import rows
-from tests.oracle.texts import NET
+from tools.oracle.recorded import rows
+from tools.oracle.texts import NET
 
 from helpers.compiled import Workshop, agrees, lowered, run
 from helpers.netbuilder import flat, load
 from helpers.thorough import THOROUGH
-from pn2code.semantics.game import Game
+from pn2code.semantics.game.token_game import Game
 
 pytestmark = [
     pytest.mark.cc,

@@ -9,7 +9,7 @@ import pytest
 
 from helpers.compiled import Workshop, agrees, lowered, run
 from helpers.netbuilder import flat
-from pn2code.lowering.packing import Packing
+from pn2code.lowering.nets.packing import Packing
 from pn2code.net.flat import FlatNet
 
 pytestmark = pytest.mark.cc

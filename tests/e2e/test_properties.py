@@ -15,7 +15,7 @@ from helpers.property_nets import MUTEX, OWN, SHARED, Row
 from helpers.random_properties import Author
 from helpers.thorough import amount
 from pn2code.properties.meaning import TRUE, Bound, Fairness, Invariant, Linear, Op
-from pn2code.verify import confirm
+from pn2code.verify.answers import confirm
 
 pytestmark = pytest.mark.cc
 

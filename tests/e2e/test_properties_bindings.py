@@ -13,9 +13,9 @@ from helpers.netbuilder import write
 from helpers.processes import pn2code
 from pn2code.properties.judge import Graph
 from pn2code.properties.split import MOST, NoSplitError, Split, groups
-from pn2code.semantics.files import Files
-from pn2code.semantics.game import Game
-from pn2code.semantics.graph import state_space
+from pn2code.semantics.evaluation.files import Files
+from pn2code.semantics.game.graph import state_space
+from pn2code.semantics.game.token_game import Game
 
 pytestmark = pytest.mark.cc
 

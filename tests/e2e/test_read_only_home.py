@@ -13,7 +13,7 @@ import pytest
 
 from helpers.netbuilder import write
 from helpers.processes import obey_modes, pn2code
-from pn2code import private_folder
+from pn2code.base import private_folder
 
 pytestmark = pytest.mark.cc
 

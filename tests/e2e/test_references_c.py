@@ -18,8 +18,8 @@ from pn2code.cli.main import app
 from pn2code.conform.core import compare
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.front import load
-from pn2code.verify.explore import explore
-from pn2code.verify.limits import Limits
+from pn2code.verify.exploring.explore import explore
+from pn2code.verify.exploring.limits import Limits
 
 pytestmark = pytest.mark.cc
 

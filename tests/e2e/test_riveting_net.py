@@ -18,9 +18,9 @@ from pn2code.cell.load import load as load_cell
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import ArcKind, FlatNet, FlatPlace
 from pn2code.net.front import load
-from pn2code.semantics.game import BindingElement, Game
-from pn2code.semantics.multiset import MultiSet
-from pn2code.semantics.values import Value
+from pn2code.semantics.game.token_game import BindingElement, Game
+from pn2code.semantics.values.data import Value
+from pn2code.semantics.values.multiset import MultiSet
 
 FIRST = (5750.0, 5898.8, 2135.05, -105.0, 0.0, 0.0)
 LAST = (6750.0, 5898.8, 2135.05, -105.0, 0.0, 0.0)

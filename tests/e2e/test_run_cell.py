@@ -20,7 +20,7 @@ from pn2code.net.front import load
 from pn2code.robot.transforms import Array
 from pn2code.run.cell import RunOptions, RunResult, run_cell
 from pn2code.run.engine import Engine
-from pn2code.semantics.replay import replay
+from pn2code.trace.replay import replay
 
 pytestmark = pytest.mark.usefixtures("quick_build")
 

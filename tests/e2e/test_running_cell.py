@@ -15,23 +15,23 @@ from helpers.netbuilder import cpn
 from helpers.programs import Programs, Step
 from helpers.random_cells import random_cell
 from helpers.thorough import amount
+from pn2code.base.deadline import Deadline
 from pn2code.cell.divide import divide
 from pn2code.cell.partition import Partition
 from pn2code.cli.main import app
 from pn2code.cli.nets import open_net
-from pn2code.deadline import Deadline
 from pn2code.diagnostics import Diagnostics, render
 from pn2code.run.cell import RunOptions, run_cell
 from pn2code.verdict.controller import look
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.properties import answered, asked
-from pn2code.verify import control
-from pn2code.verify.control_types import Check, Control, Plan
-from pn2code.verify.explore import Wishes, explore
-from pn2code.verify.limits import Limits
-from pn2code.verify.premises import Premises
-from pn2code.verify.replies import Replies
-from pn2code.verify.running import NotModelledError, Running
+from pn2code.verify.controller import control
+from pn2code.verify.controller.control_types import Check, Control, Plan
+from pn2code.verify.controller.premises import Premises
+from pn2code.verify.controller.replies import Replies
+from pn2code.verify.controller.running import NotModelledError, Running
+from pn2code.verify.exploring.explore import ExploreOptions, explore
+from pn2code.verify.exploring.limits import Limits
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
@@ -433,7 +433,7 @@ def examined(folder: Path) -> Looked:
     plan = Plan(
         storage=opened.storage,
         folder=folder,
-        wishes=Wishes(quick=True),
+        wishes=ExploreOptions(quick=True),
         premises=Premises.of(partition, opened.config),
     )
     found = control.examine(partition, plan, Limits(threads=2, max_states=MOST), d)
@@ -526,7 +526,7 @@ def test_properties_are_about_the_cell(
     wanted = asked(opened, [holds], None, d, found=False)
     limits, evidence = Limits(threads=2), folder / "runs"
     evidence.mkdir()
-    wishes = Wishes(
+    wishes = ExploreOptions(
         questions=wanted.questions,
         predicates=wanted.properties.predicates,
         evidence=evidence,
@@ -575,9 +575,9 @@ def test_what_was_reached_in_the_race_is_run(tmp_path: Path) -> None:
 def test_a_declared_capacity_is_looked_at(tmp_path: Path) -> None:
     opened = open_net(write(tmp_path, RACE, toml(["A", "B"], TOOL) + "[capacity]\nCoins = 1\n"), {})
     d = Diagnostics()
-    found = explore(opened.flat, {}, Limits(), d, Wishes(quick=True))
+    found = explore(opened.flat, {}, Limits(), d, ExploreOptions(quick=True))
     assert found is not None
-    looked = look(opened, found, Limits(), Wishes(), tmp_path, d)
+    looked = look(opened, found, Limits(), ExploreOptions(), tmp_path, d)
     assert looked is not None
     check = next(c for c in looked.checks if c.name == "capacity")
     assert check.answer == "no" and check.fails
@@ -589,7 +589,7 @@ def test_a_declared_capacity_is_looked_at(tmp_path: Path) -> None:
 
 
 def test_an_end_is_reached_in_the_medium_or_it_says_no(tmp_path: Path) -> None:
-    from pn2code.medium.check import WHOLE, medium
+    from pn2code.channel_model.check import WHOLE, medium
 
     for name in ("no end", "free variable"):
         text, cell, _, _ = CELLS[name]

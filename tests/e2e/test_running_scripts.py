@@ -11,12 +11,12 @@ from e2e.test_running_cell import ACT, ECHO, ONE, SLOW, TOOL, examined, net, ran
 from pn2code.cell.divide import divide
 from pn2code.cli.nets import open_net
 from pn2code.diagnostics import Diagnostics
-from pn2code.verify import control
-from pn2code.verify.commands import Commands
-from pn2code.verify.control_types import Plan
-from pn2code.verify.explore import Wishes
-from pn2code.verify.limits import Limits
-from pn2code.verify.result import Exploration
+from pn2code.verify.controller import control
+from pn2code.verify.controller.commands import Commands
+from pn2code.verify.controller.control_types import Plan
+from pn2code.verify.exploring.explore import ExploreOptions
+from pn2code.verify.exploring.limits import Limits
+from pn2code.verify.exploring.result import Exploration
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
@@ -280,7 +280,7 @@ def test_all_messages_are_looked_at_however_few_are_listed(tmp_path: Path) -> No
     d = Diagnostics()
     partition = divide(opened.flat, opened.config, d)
     assert partition is not None
-    wishes = Wishes(quick=True, colours=1)
+    wishes = ExploreOptions(quick=True, colours=1)
     found = control.examine(partition, Plan(wishes=wishes), Limits(threads=2), d)
     assert found is not None
     (messages,) = [c for c in found.checks if c.name == "messages"]

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from helpers.compiled import RUNTIME, WARNINGS, Workshop
-from pn2code.resources import cnative_folder
+from pn2code.base.resources import cnative_folder
 
 pytestmark = pytest.mark.cc
 
@@ -61,7 +61,7 @@ def test_static_analysis_of_the_runtime_finds_nothing(tmp_path: Path) -> None:
     compiler = shutil.which("gcc")
     if compiler is None:
         pytest.skip("no gcc")
-    sources = [str(cnative_folder() / "src" / f"pn_{name}.c") for name in RUNTIME]
+    sources = [str(next(cnative_folder().rglob(f"src/*/pn_{name}.c"))) for name in RUNTIME]
     include = f"-I{cnative_folder() / 'include'}"
     done = subprocess.run(
         [compiler, *WARNINGS, "-fanalyzer", "-O1", "-c", include, *sources],

@@ -14,8 +14,8 @@ from helpers.compiled import Workshop, agrees, lowered, run
 from helpers.netbuilder import flat
 from pn2code.emission.c import emit
 from pn2code.emission.output import OutputFile
-from pn2code.lowering.ir import NetIR
-from pn2code.lowering.packing import Packing
+from pn2code.ir.nodes import NetIR
+from pn2code.lowering.nets.packing import Packing
 from pn2code.net.flat import FlatNet
 
 CELL = """

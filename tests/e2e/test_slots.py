@@ -13,7 +13,7 @@ import pytest
 from helpers.compiled import Workshop, agrees, lowered, run
 from helpers.netbuilder import flat
 from pn2code.emission.c import emit
-from pn2code.lowering.ir import NetIR
+from pn2code.ir.nodes import NetIR
 from pn2code.net.flat import FlatNet
 
 pytestmark = pytest.mark.cc

@@ -10,8 +10,8 @@ import pytest
 from helpers.compiled import Workshop, lowered, run
 from helpers.netbuilder import flat
 from pn2code.diagnostics import NOWHERE, Diagnostics, SourceText
-from pn2code.ml import core
-from pn2code.ml.types import STRING
+from pn2code.ml.core import terms as core
+from pn2code.ml.core.types import STRING
 from pn2code.net.check import check
 from pn2code.net.flat import FlatNet, Form
 from pn2code.net.link import link

@@ -34,12 +34,14 @@ from pn2code.channels import (
 )
 from pn2code.channels.message import compose, parse
 from pn2code.channels.scalars import format_real
+from pn2code.emission import c_flags
 from pn2code.run.supervisor import Exit, SupervisorProcess
 
 pytestmark = pytest.mark.cc
 
 STRICT = [
-    "-std=c11",
+    c_flags.STANDARD,
+    *c_flags.FLOATS,
     "-Wall",
     "-Wextra",
     "-Wpedantic",
@@ -96,7 +98,7 @@ def host_sources(root: Path) -> list[Path]:
     """The host and the whole runtime."""
     source = root / "cnative/src"
     patterns = ("supervisor*.c", "pn_*.c", "port_*.c")
-    return [p for pattern in patterns for p in sorted(source.glob(pattern))]
+    return [p for pattern in patterns for p in sorted(source.rglob(pattern))]
 
 
 @pytest.fixture(scope="session")
@@ -114,7 +116,7 @@ def build_supervisors(root: Path, folder: Path) -> None:
     """Each object once."""
     folder.mkdir()
     objects = [
-        compile_c(root, folder / f"{source.stem}.o", [source], *SANITIZE, "-c")
+        compile_c(root, folder / f"{source.stem}.o", [source], *SANITIZE, "-DPN_TRACE", "-c")
         for source in host_sources(root)
     ]
     main = [o for o in objects if o.name.startswith("supervisor")]
@@ -123,9 +125,14 @@ def build_supervisors(root: Path, folder: Path) -> None:
     hand = [tests / "hand_net.c", tests / "hand_cell.c"]
     compile_c(root, folder / "supervisor", [*objects, *hand], *SANITIZE)
     compile_c(root, folder / "quick", [*objects, *hand], *SANITIZE, "-DHAND_DELAY=0")
-    cell = root / "cnative/src/supervisor_cell.c"
+    cell = root / "cnative/src/supervisor/supervisor_cell.c"
     others = [o for o in objects if o.name != "supervisor_cell.o"]
-    patient = ("-DHAND_DELAY=0", "-DSUP_GRACE_S=600.0", f"-I{root / 'cnative/src'}")
+    patient = (
+        "-DPN_TRACE",
+        "-DHAND_DELAY=0",
+        "-DSUP_GRACE_S=600.0",
+        f"-I{root / 'cnative/src/supervisor'}",
+    )
     compile_c(root, folder / "patient", [*others, cell, *hand], *SANITIZE, *patient)
     compile_c(root, folder / "alone", [*objects, *hand], *SANITIZE, "-DHAND_ALONE")
     compile_c(root, folder / "scalars", [*common, tests / "scalars.c"], *SANITIZE)
@@ -987,7 +994,7 @@ def test_the_latency_program_measures(
     program = tmp_path / "latency"
     source = str(root / "cnative/tests/latency.c")
     subprocess.run(
-        ["gcc", "-std=c11", "-O2", "-Wall", "-Wextra", "-Werror", source, "-o", str(program)],
+        ["gcc", c_flags.STANDARD, "-O2", "-Wall", "-Wextra", "-Werror", source, "-o", str(program)],
         check=True,
     )
     done = subprocess.run(

@@ -41,7 +41,7 @@ def play(program: Path, folder: Path, n: int, first: Pose, last: Pose) -> list[l
 
 @pytest.mark.cc
 def test_table_1_gives_table_2(riveting_program: Path, tmp_path: Path) -> None:
-    one, two = play(riveting_program / "supervisor", tmp_path, 5, FIRST, LAST)
+    one, two = play(riveting_program / "supervisor.traced", tmp_path, 5, FIRST, LAST)
     got = [f"{printed(a)} {printed(b)}".split() for a, b in zip(one, two, strict=True)]
     assert got == table_2()
 
@@ -72,7 +72,7 @@ def some_inputs() -> list[tuple[int, Pose, Pose]]:
 def test_other_inputs(
     riveting_program: Path, tmp_path: Path, n: int, first: Pose, last: Pose
 ) -> None:
-    sent = play(riveting_program / "supervisor", tmp_path, n, first, last)
+    sent = play(riveting_program / "supervisor.traced", tmp_path, n, first, last)
     for got, expected in zip(sent, rows(n, first, last), strict=True):
         assert len(got) == len(expected) == 3 * (n + 2) + 1
         for a, b in zip(got, expected, strict=True):
@@ -83,7 +83,7 @@ def test_other_inputs(
 def test_no_negative_zero_is_ever_sent(riveting_program: Path, tmp_path: Path) -> None:
     (tmp_path / "coordenadas.robcad").write_text("5\n0 0 0 0 0 0\n0 0 0 0 0 0\n")
     done = subprocess.run(
-        [str(riveting_program / "supervisor"), "--dry-run", "--input", str(tmp_path)],
+        [str(riveting_program / "supervisor.traced"), "--dry-run", "--input", str(tmp_path)],
         capture_output=True, text=True, timeout=600, check=True,
     )  # fmt: skip
     assert "dadosrobo" in done.stdout

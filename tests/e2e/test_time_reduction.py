@@ -15,7 +15,7 @@ from helpers.netbuilder import flat, write
 from helpers.quotient import quotient
 from pn2code.cli.main import app
 from pn2code.net.flat import FlatNet
-from pn2code.verify.time_reduction import obstacle
+from pn2code.verify.exploring.time_reduction import obstacle
 
 pytestmark = pytest.mark.cc
 

@@ -9,8 +9,8 @@ import pytest
 
 from helpers.netbuilder import flat, write
 from helpers.processes import pn2code
-from pn2code.semantics.game import GameError
-from pn2code.verify.path import play
+from pn2code.semantics.game.token_game import GameError
+from pn2code.verify.answers.path import play
 
 pytestmark = pytest.mark.cc
 
@@ -98,7 +98,7 @@ def test_the_way_to_an_exception(
     game, played = play(model, {}, path)
     assert len(list(played)) == steps
     with pytest.raises(GameError, match=exception):
-        settled = game.settle(game.marking)
+        settled = game.advance_time(game.marking)
         for element in game.enabled_in(settled):
             game.occur(settled, element)
     # Other threads and another order: the same marking, from a way that may be another one.

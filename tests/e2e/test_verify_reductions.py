@@ -15,8 +15,8 @@ from helpers.table_nets import TableExplorer, orbits, random_net, symmetric_net
 from helpers.thorough import amount
 from pn2code.cli import main
 from pn2code.net.flat import FlatNet
-from pn2code.verify.elements import elements
-from pn2code.verify.path import steps
+from pn2code.verify.answers.path import steps
+from pn2code.verify.exploring.elements import elements
 
 pytestmark = pytest.mark.cc
 

@@ -12,7 +12,7 @@ from helpers.netbuilder import write as write_net
 from helpers.processes import pn2code
 from helpers.property_nets import MUTEX
 from helpers.small_cell import NET, write
-from pn2code.verify.assumptions import MEDIUM
+from pn2code.verify.answers.assumptions import MEDIUM
 
 pytestmark = pytest.mark.cc
 

@@ -15,10 +15,10 @@ from helpers.netbuilder import flat, write
 from helpers.processes import pn2code
 from helpers.questions import Asked, ask
 from pn2code.net.flat import FlatNet
-from pn2code.verify.programs import Sizes
-from pn2code.verify.report import report
-from pn2code.verify.result import Exploration, row
-from pn2code.verify.webpage import webpage
+from pn2code.verify.exploring.programs import Sizes
+from pn2code.verify.exploring.result import Exploration, row
+from pn2code.verify.report.text import report
+from pn2code.verify.report.webpage import webpage
 
 pytestmark = pytest.mark.cc
 

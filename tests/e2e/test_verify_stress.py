@@ -19,8 +19,8 @@ import pytest
 from helpers.explored import Explorers, wide
 from helpers.netbuilder import flat, write
 from helpers.processes import Command, pn2code
-from pn2code.private_folder import private_folder
-from pn2code.verify.programs import Sizes
+from pn2code.base.private_folder import private_folder
+from pn2code.verify.exploring.programs import Sizes
 
 pytestmark = [
     pytest.mark.cc,

@@ -10,9 +10,9 @@ import pytest
 
 from helpers.explored import Explorers
 from helpers.thorough import amount
-from pn2code.conformance.graphs import engine_arcs, engine_nodes, written
-from pn2code.conformance.suite import INTENDED
 from pn2code.diagnostics import Diagnostics
+from pn2code.engine_comparison.graphs import engine_arcs, engine_nodes, written
+from pn2code.engine_comparison.suite import INTENDED
 from pn2code.net import front
 
 pytestmark = pytest.mark.cc

@@ -36,8 +36,8 @@ def test_what_is_inside(unpacked: Path) -> None:
     resources = unpacked / "pn2code" / "_resources"
     assert (resources / "templates" / "c" / "net.c.j2").is_file()
     assert (resources / "cnative" / "include" / "pn" / "pn_net.h").is_file()
-    assert (resources / "cnative" / "src" / "supervisor.c").is_file()
-    assert (unpacked / "pn2code" / "ml" / "grammar.lark").is_file()
+    assert (resources / "cnative" / "src" / "supervisor" / "supervisor.c").is_file()
+    assert (unpacked / "pn2code" / "ml" / "parsing" / "grammar.lark").is_file()
     assert list((unpacked / "pn2code" / "robot" / "models").glob("*.urdf"))
     assert (unpacked / "pn2code" / "py.typed").is_file()
 
@@ -54,10 +54,13 @@ def test_the_installed_package_generates_and_builds(
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
     subprocess.run(
-        ["make", "-s", "supervisor", "CFLAGS=-O0"], cwd=tmp_path / "out", check=True, timeout=600
+        ["make", "-s", "supervisor", "supervisor.traced", "CFLAGS=-O0"],
+        cwd=tmp_path / "out",
+        check=True,
+        timeout=600,
     )
     played = subprocess.run(
-        ["./supervisor", "--dry-run"], cwd=tmp_path / "out",
+        ["./supervisor.traced", "--dry-run"], cwd=tmp_path / "out",
         capture_output=True, text=True, check=True, timeout=600,
     )  # fmt: skip
     assert "dadosrobo1.robcad: 5750.0000" in played.stdout

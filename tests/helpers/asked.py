@@ -24,10 +24,10 @@ from pn2code.properties import sources
 from pn2code.properties.judge import Graph
 from pn2code.properties.meaning import Properties
 from pn2code.properties.questions import questions
-from pn2code.verify import confirm
-from pn2code.verify.answers import Answer, answers
-from pn2code.verify.programs import Sizes, generated
-from pn2code.verify.result import Exploration
+from pn2code.verify.answers import confirm
+from pn2code.verify.answers.properties import Answer, answers
+from pn2code.verify.exploring.programs import Sizes, generated
+from pn2code.verify.exploring.result import Exploration
 
 
 @dataclass(frozen=True, slots=True)

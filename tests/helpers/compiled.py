@@ -16,31 +16,35 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.resources import cnative_folder
 from pn2code.cell.config import CellConfig
 from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
+from pn2code.emission import c_flags
 from pn2code.emission.c import emit
-from pn2code.lowering.ir import NetIR
-from pn2code.lowering.net import lower
-from pn2code.lowering.packing import Packing
+from pn2code.ir.nodes import NetIR
+from pn2code.lowering.nets.net import lower
+from pn2code.lowering.nets.packing import Packing
 from pn2code.net.flat import FlatNet
-from pn2code.resources import cnative_folder
-from pn2code.semantics.game import Game, GameError
-from pn2code.semantics.marking import (
+from pn2code.semantics.game.marking import (
     BindingElement,
     PlaceMarking,
     binding_to_json,
     place_to_json,
 )
+from pn2code.semantics.game.token_game import Game, GameError
+from pn2code.toolchain import programs
 
 WARNINGS = (
-    "-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion", "-Wsign-conversion",
+    c_flags.STANDARD, *c_flags.FLOATS, "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-Wconversion", "-Wsign-conversion",
     "-Wshadow", "-Wstrict-prototypes", "-Wmissing-prototypes", "-Wundef", "-Wcast-qual",
     "-Wswitch-enum", "-Wvla",
     "-Wno-tautological-compare",  # a net may well say `n < n`
 )  # fmt: skip
 SANITIZERS = ("-g1", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 FAST = ("-O1",)
+DELIVERED = programs.FLAGS
+"""Those with which users have explorers and simulators; the tests mostly have others."""
 RUNTIME = (
     "arena", "bag", "big", "codec", "file", "leaves", "library", "list", "marking", "moves", "num", "random", "read",
     "root", "stack", "string", "text", "trace", "type",
@@ -85,8 +89,8 @@ class Workshop:
         workshop = Workshop.of(folder, folder, flags)
         source = cnative_folder() / "src"
         for name in RUNTIME:
-            workshop.compile(source / f"pn_{name}.c", folder / f"pn_{name}.o", folder)
-        for part in sorted(source.glob("simulate*.c")):
+            workshop.compile(next(source.rglob(f"pn_{name}.c")), folder / f"pn_{name}.o", folder)
+        for part in sorted(source.glob("simulate/*.c")):
             workshop.compile(part, folder / f"{part.stem}.o", folder)
         walk = cnative_folder() / "tests" / "walk.c"
         workshop.compile(walk, folder / "walk.o", folder)

@@ -1,7 +1,7 @@
 # ruff: noqa: E501 - rows of texts
 """Random CPN ML in compiled code and in the reference evaluator: the same text of the value, or the same exception.
 
-The texts are those of `tests.oracle.texts`, over all kinds of colour sets and the whole library. Each that is accepted
+The texts are those of `tools.oracle.texts`, over all kinds of colour sets and the whole library. Each that is accepted
 is a function from unit to the text of its value, which is written by functions that its type decides. Some forty are
 the initial markings of as many places of one net.
 """
@@ -13,18 +13,18 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from random import Random
 
-from tests.oracle.answers import Here
-from tests.oracle.texts import NET, Texts
+from tools.oracle.answers import Here
+from tools.oracle.texts import NET, Texts
 
 from helpers.compiled import Workshop, lowered, run
 from helpers.netbuilder import load, write
 from ml_suite.suite import NotShowable
 from ml_suite.suite import show as show_simple
 from pn2code.diagnostics import NOWHERE, Diagnostics, SourceText
-from pn2code.ml import core
-from pn2code.ml.types import STRING, UNIT, TCon, TFun, TRecord, Type
+from pn2code.ml.core import terms as core
+from pn2code.ml.core.types import STRING, UNIT, TCon, TFun, TRecord, Type
 from pn2code.net.flat import FlatNet, Form
-from pn2code.semantics.values import MlException, MlLimit, MlUnavailable
+from pn2code.semantics.values.data import MlException, MlLimit, MlUnavailable
 
 SHOW = r"""
   fun show_int (n : int) = Int.toString n;

@@ -1,6 +1,7 @@
 """The checks of a supervisor by definition, on small graphs: by going over all nodes again and again.
 
-An independent judge of cnative/src/explore_control.c: it shares nothing with it but the words of docs/execution.md.
+An independent judge of cnative/src/explore/query/explore_control.c: it shares nothing with it but the words of
+docs/execution.md.
 """
 
 from __future__ import annotations

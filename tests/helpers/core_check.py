@@ -7,10 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from pn2code.ml import core
-from pn2code.ml.builtins import BUILTINS
-from pn2code.ml.colset_members import member_type
-from pn2code.ml.types import (
+from pn2code.ml.core import terms as core
+from pn2code.ml.core.types import (
     BOOL,
     CHAR,
     EXN,
@@ -27,6 +25,8 @@ from pn2code.ml.types import (
     list_of,
     record,
 )
+from pn2code.ml.library.builtins import BUILTINS
+from pn2code.ml.typing.colset_members import member_type
 
 
 def problems(program: core.Program, real_time: bool = False) -> list[str]:

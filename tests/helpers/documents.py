@@ -25,6 +25,7 @@ COMMANDS = (
     "make",
     "./supervisor",
     "generated/riveting/supervisor",
+    "generated/riveting/supervisor.traced",
     "spin",
     ".",
     "cd",
@@ -103,6 +104,14 @@ def mentions(path: Path) -> Iterator[str]:
     yield from (m[1] for m in _SPAN.finditer(path.read_text(encoding="utf-8")))
 
 
+def _built(folder: str, names: list[str]) -> set[str]:
+    """What `make` and runs have made in a folder; folders of the runtime have the names of programs."""
+    patterns = ("supervisor", "supervisor.*[!ch]", "simulate")
+    programs = shutil.ignore_patterns(*patterns)(folder, names)
+    made = {name for name in programs if (Path(folder) / name).is_file()}
+    return {*made, *shutil.ignore_patterns("run", "build", "*.o")(folder, names)}
+
+
 class Desk:
     """A copy of the project, and a shell in it that has `pn2code` on its path.
 
@@ -127,8 +136,7 @@ class Desk:
         self.project.mkdir(parents=True)
         for part in self.PARTS:
             if (root / part).is_dir():
-                ignored = shutil.ignore_patterns("run", "build", "*.o", "supervisor", "simulate")
-                shutil.copytree(root / part, self.project / part, ignore=ignored)
+                shutil.copytree(root / part, self.project / part, ignore=_built)
             else:
                 shutil.copy2(root / part, self.project / part)
         venv = self.project / ".venv"

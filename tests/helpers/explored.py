@@ -18,15 +18,16 @@ from typing import Any
 
 from helpers.compiled import WARNINGS
 from helpers.graph_facts import Facts
+from pn2code.base.resources import cnative_folder
 from pn2code.diagnostics import Diagnostics
+from pn2code.emission import c_flags
 from pn2code.emission.runtime import HOSTS
 from pn2code.net.flat import FlatNet
-from pn2code.resources import cnative_folder
-from pn2code.semantics.files import Files
-from pn2code.semantics.game import Game, GameError
-from pn2code.semantics.graph import StateSpace, state_space
-from pn2code.semantics.marking import binding_to_json, place_to_json
-from pn2code.verify.programs import Sizes, generated
+from pn2code.semantics.evaluation.files import Files
+from pn2code.semantics.game.graph import StateSpace, state_space
+from pn2code.semantics.game.marking import binding_to_json, place_to_json
+from pn2code.semantics.game.token_game import Game, GameError
+from pn2code.verify.exploring.programs import Sizes, generated
 
 QUICK = ("-O0",)
 SANITIZERS = ("-g1", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
@@ -49,7 +50,10 @@ def explorer_test(folder: Path, name: str, parts: Sequence[str], *flags: str) ->
     compiler = shutil.which("gcc") or shutil.which("cc")
     assert compiler is not None
     root = cnative_folder()
-    sources = [root / "tests" / f"{name}.c", *(root / "src" / f"explore_{p}.c" for p in parts)]
+    sources = [
+        root / "tests" / f"{name}.c",
+        *(next(root.rglob(f"src/**/explore_{p}.c")) for p in parts),
+    ]
     command = [compiler, *WARNINGS, "-O1", "-pthread", *flags]
     command += [f"-I{root / 'include'}", f"-I{root / 'src'}", *map(str, sources)]
     program = folder / name
@@ -98,7 +102,7 @@ class Explorers:
         host = made.host
         host.mkdir(parents=True)
         source = cnative_folder() / "src"
-        sources = [f for f in sorted(source.glob("*.c")) if not f.name.startswith(OTHER_HOSTS)]
+        sources = [f for f in sorted(source.rglob("*.c")) if not f.name.startswith(OTHER_HOSTS)]
         (host / "stub.c").write_text("char pn_net[1];\n")
         made._run(host, "-shared", "stub.c", "-o", LIBRARY)
         made._run(host, "-c", *map(str, sources))
@@ -110,7 +114,14 @@ class Explorers:
         return made
 
     def _run(self, folder: Path, *arguments: str) -> None:
-        command = [self.compiler, "-std=c11", "-ffp-contract=off", "-pthread", "-fPIC", *self.flags]
+        command = [
+            self.compiler,
+            c_flags.STANDARD,
+            *c_flags.FLOATS,
+            "-pthread",
+            "-fPIC",
+            *self.flags,
+        ]
         command += [f"-I{cnative_folder() / 'include'}", f"-I{folder}", *arguments]
         done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr[-3000:]
@@ -269,7 +280,7 @@ def compare_graph(flat: FlatNet, space: StateSpace, found: Explored) -> None:
             for p in flat.places
         }
         nodes.append(node_key(marking.time, texts))
-    times = {arc.source: game.settle(space.nodes[arc.source]).time for arc in space.arcs}
+    times = {arc.source: game.advance_time(space.nodes[arc.source]).time for arc in space.arcs}
     arcs = Counter(
         (
             nodes[arc.source],

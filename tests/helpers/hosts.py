@@ -18,15 +18,19 @@ from helpers.explored import LIBRARY, Explorers, wide
 from helpers.netbuilder import flat
 from helpers.random_references import referring
 from helpers.unions import Outcome, Part, check
+from pn2code.base.resources import cnative_folder
 from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.supervisor import emit
-from pn2code.resources import cnative_folder
-from pn2code.semantics.files import Files
-from pn2code.semantics.replay import replay
-from pn2code.verify.programs import Sizes
+from pn2code.semantics.evaluation.files import Files
+from pn2code.trace.replay import replay
+from pn2code.verify.exploring.programs import Sizes
 
-HOSTS = {"simulate": (), "supervisor": (), "monitor": ("-DPN_MONITOR",)}
+HOSTS = {
+    "simulate": (),
+    "supervisor": ("-DPN_TRACE",),
+    "monitor": ("-DPN_TRACE", "-DPN_MONITOR"),
+}
 FIRINGS = 150
 ROOM = 512
 """Different tokens that a place can hold."""
@@ -51,9 +55,9 @@ class Hosts:
         compile_in = made._run
         compile_in(host, "-shared", "cell.c", "-o", "libcell.so")
         for name, more in HOSTS.items():
-            own = sorted(source.glob("simulate*.c" if name == "simulate" else "supervisor*.c"))
-            own += [source / "port_posix.c"] if name != "simulate" else []
-            own += [source / "pn_channel_files.c"] if name != "simulate" else []
+            own = sorted(source.glob("simulate/*.c" if name == "simulate" else "supervisor/*.c"))
+            own += [source / "port" / "port_posix.c"] if name != "simulate" else []
+            own += [source / "channel" / "pn_channel_files.c"] if name != "simulate" else []
             objects = [str(f) for f in common]
             library = "libcell.so" if name != "simulate" else LIBRARY
             built = [f for f in map(str, own) if Path(f).with_suffix(".o").name not in objects]
@@ -90,7 +94,12 @@ class Hosts:
         found = re.search(r'\.digest = "(\w+)"', (folder / "net.c").read_text())
         assert found is not None
         emitted = emit(
-            partition, name=net.name, reply_timeout_s=0.0, digest=found[1], version="test"
+            partition,
+            name=net.name,
+            reply_timeout_s=0.0,
+            digest=found[1],
+            version="test",
+            net_c=(folder / "net.c").read_text(),
         )
         (config,) = (f for f in emitted if f.path == "cell_config.c")
         (folder / "cell_config.c").write_text(config.text)

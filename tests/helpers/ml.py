@@ -11,10 +11,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from pn2code.diagnostics import Diagnostic, Diagnostics, Origin, SourceText
-from pn2code.ml.colsets import Colset
-from pn2code.ml.dump import dump_colset, dump_dec, dump_exp
+from pn2code.ml.core.colsets import Colset
+from pn2code.ml.core.dump import dump_colset, dump_dec, dump_exp
+from pn2code.ml.core.types import list_of, timed_of
 from pn2code.ml.elaborate import ColsetSpec, Elaborator
-from pn2code.ml.types import list_of, timed_of
 
 FORMS = ("token", "multi-set", "timed token", "timed multi-set")
 

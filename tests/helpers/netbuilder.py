@@ -98,7 +98,7 @@ def load(text: str, values: Mapping[str, str] | None = None) -> tuple[FlatNet | 
     """Flat net or None, and the diagnostics. The file is `<net name>.cpn` in a temporary folder."""
     from pn2code.diagnostics import Diagnostics
     from pn2code.net.front import load as load_file
-    from pn2code.semantics.constants import compute
+    from pn2code.semantics.evaluation.constants import compute
 
     d = Diagnostics()
     with tempfile.TemporaryDirectory() as folder:

@@ -9,8 +9,8 @@ from pn2code.net import front
 from pn2code.net.flat import FlatNet
 from pn2code.pnml.read import read_data
 from pn2code.reading.document import Document
-from pn2code.semantics.game import Game
-from pn2code.semantics.graph import StateSpace, state_space
+from pn2code.semantics.game.graph import StateSpace, state_space
+from pn2code.semantics.game.token_game import Game
 from pn2code.unfold.net import Unfolding
 
 NAMESPACE = "http://www.pnml.org/version-2009/grammar/pnml"

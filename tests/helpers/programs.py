@@ -1,11 +1,13 @@
-"""What the programs of a cell may do, by definition: an independent judge of `verify.running` and of the explorer.
+"""What the programs of a cell may do, by definition: an independent judge of `verify.controller.running` and of the
+explorer.
 
     programs = Programs(running)
     programs.space(1000)              # nodes and arcs, by breadth first
     programs.follow(steps)            # how many of the recorded steps are a run of the cell
 
 The net is played by the reference token game; which of the enabled binding elements a program takes is worked out here
-in a few lines, and shares nothing with cnative/src/explore_successors.c but the words of docs/execution.md. Untimed.
+in a few lines, and shares nothing with cnative/src/explore/search/explore_successors.c but the words of
+docs/execution.md. Untimed.
 """
 
 from __future__ import annotations
@@ -15,11 +17,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from pn2code.net.flat import FlatTransition
-from pn2code.semantics.colour_json import to_json
-from pn2code.semantics.files import Files
-from pn2code.semantics.game import Game
-from pn2code.semantics.marking import BindingElement, Marking
-from pn2code.verify.running import Running
+from pn2code.semantics.evaluation.files import Files
+from pn2code.semantics.game.marking import BindingElement, Marking
+from pn2code.semantics.game.token_game import Game
+from pn2code.semantics.values.colour_json import to_json
+from pn2code.verify.controller.running import Running
 
 Step = tuple[str, dict[str, Any]]
 

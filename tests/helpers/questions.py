@@ -18,13 +18,13 @@ from helpers import netbuilder
 from helpers.explored import LIBRARY, Explored, Explorers, wide
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.emission.output import OutputFile
-from pn2code.ml.core import Symbol
+from pn2code.ml.core.terms import Symbol
+from pn2code.ml.core.types import BOOL
 from pn2code.ml.elaborate import Elaborator
-from pn2code.ml.types import BOOL
 from pn2code.net.flat import FlatNet
 from pn2code.net.front import examine
 from pn2code.net.predicate import Predicate, marking_type
-from pn2code.verify.programs import Sizes, generated
+from pn2code.verify.exploring.programs import Sizes, generated
 
 FIRST_UID = 50_000_000
 

@@ -11,11 +11,11 @@ from collections import Counter
 from dataclasses import dataclass, field, replace
 
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.files import Files
-from pn2code.semantics.game import Game
-from pn2code.semantics.marking import Marking, binding_to_json, place_to_json
-from pn2code.semantics.multiset import TimedMultiSet
-from pn2code.semantics.values import Timed
+from pn2code.semantics.evaluation.files import Files
+from pn2code.semantics.game.marking import Marking, binding_to_json, place_to_json
+from pn2code.semantics.game.token_game import Game
+from pn2code.semantics.values.data import Timed
+from pn2code.semantics.values.multiset import TimedMultiSet
 
 
 @dataclass(slots=True)
@@ -61,7 +61,7 @@ def quotient(flat: FlatNet, most: int = 2000) -> Quotient:
     while waiting:
         marking = waiting.pop(0)
         source = text(marking)
-        settled = game.settle(marking)
+        settled = game.advance_time(marking)
         elements = game.enabled_in(settled)
         found.dead += not elements
         for element in elements:

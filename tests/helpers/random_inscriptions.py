@@ -12,14 +12,14 @@ from __future__ import annotations
 from pathlib import Path
 from random import Random
 
-from tests.oracle.answers import Here
-from tests.oracle.texts import NET, Texts
+from tools.oracle.answers import Here
+from tools.oracle.texts import NET, Texts
 
 from helpers.netbuilder import write
 from helpers.random_declarations import Case, Sheet
 from helpers.random_unions import Union
-from pn2code.ml.colsets import Colset
-from pn2code.ml.types import BOOL, INT, Type, list_of
+from pn2code.ml.core.colsets import Colset
+from pn2code.ml.core.types import BOOL, INT, Type, list_of
 
 HEAD = NET + "".join(
     f"\n  {line}"

@@ -15,11 +15,10 @@ from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.diagnostics.render import report
 from pn2code.emission.tdl import emit
-from pn2code.lowering.robot import lower_robots
-from pn2code.lowering.robot_ir import RobotIR, program
-from pn2code.ml.colsets import Colset, Kind
+from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.robot.commands import Measure
-from pn2code.semantics.replay import ReplayResult, replay_lines
+from pn2code.robot_scripts.ir import RobotIR, program
+from pn2code.robot_scripts.translate import lower_robots
 from pn2code.tdl.check import CheckedProgram, check
 from pn2code.tdl.interpret import (
     AwaitFile,
@@ -33,6 +32,7 @@ from pn2code.tdl.interpret import (
 )
 from pn2code.tdl.parse import parse
 from pn2code.tdl.pretty import statements
+from pn2code.trace.replay import ReplayResult, replay_lines
 
 DECLARATIONS = """
   standard

@@ -6,9 +6,9 @@ import random
 from collections.abc import Iterator
 
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.game import Game
-from pn2code.semantics.marking import BindingElement, Marking
-from pn2code.semantics.multiset import TimedMultiSet
+from pn2code.semantics.game.marking import BindingElement, Marking
+from pn2code.semantics.game.token_game import Game
+from pn2code.semantics.values.multiset import TimedMultiSet
 from pn2code.structure import Analysis
 from pn2code.structure.bounds import check
 from pn2code.structure.coloured import value_of

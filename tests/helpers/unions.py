@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from tests.reduction_sweep import all_markings, dead_markings, generators
+from tools.reduction_sweep import all_markings, dead_markings, generators
 
 from helpers.compiled import agrees
 from helpers.explored import Explored, Explorers, element_key, multiset, node_key, wide
@@ -24,16 +24,16 @@ from helpers.random_unions import Union, page_of
 from helpers.table_nets import orbits
 from helpers.thorough import amount
 from pn2code.diagnostics import NOWHERE
-from pn2code.lowering.packing import choose
+from pn2code.lowering.nets.packing import choose
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.files import Files
-from pn2code.semantics.game import Game, GameError
-from pn2code.semantics.graph import StateSpace, state_space
-from pn2code.semantics.marking import Marking, PlaceMarking, binding_to_json, place_to_json
-from pn2code.semantics.references import searching
-from pn2code.verify.elements import Elements, NotPossibleError, elements
-from pn2code.verify.programs import Sizes
-from pn2code.verify.time_reduction import obstacle
+from pn2code.semantics.evaluation.files import Files
+from pn2code.semantics.evaluation.references import searching
+from pn2code.semantics.game.graph import StateSpace, state_space
+from pn2code.semantics.game.marking import Marking, PlaceMarking, binding_to_json, place_to_json
+from pn2code.semantics.game.token_game import Game, GameError
+from pn2code.verify.exploring.elements import Elements, NotPossibleError, elements
+from pn2code.verify.exploring.programs import Sizes
+from pn2code.verify.exploring.time_reduction import obstacle
 
 PER_UNION = 50
 """Nets in a union; about forty of them have graphs that are compared."""
@@ -100,7 +100,7 @@ class Part:
         """
         space = self.graph
         self.nodes = [node_key(m.time, {**outside, **self.marked(m)}) for m in space.nodes]
-        times = {a.source: self.game.settle(space.nodes[a.source]).time for a in space.arcs}
+        times = {a.source: self.game.advance_time(space.nodes[a.source]).time for a in space.arcs}
         self.arcs = Counter(
             (
                 self.nodes[a.source],

@@ -21,7 +21,7 @@ from helpers.compiled import Comparison, Workshop, lowered
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
 from pn2code.net.front import load
-from pn2code.semantics.game import Game, GameError
+from pn2code.semantics.game.token_game import Game, GameError
 
 ROOMS = (0, 4096, 65536)
 """Different tokens that a place can hold, tried one after the other; 0: as many as a supervisor has."""
@@ -160,7 +160,7 @@ def _follow(
         if game is None or compare is None:
             break
         try:
-            game.marking = game.settle(game.marking)
+            game.marking = game.advance_time(game.marking)
             enabled = game.enabled()
         except GameError as error:
             failure = str(error)

@@ -17,8 +17,8 @@ if __name__ == "__main__":
 from helpers.compiled import Workshop, lowered, run
 from helpers.netbuilder import flat
 from ml_suite.suite import FOLDER, Case, NotShowable, Session, cases, topics
-from pn2code.ml import core
-from pn2code.ml.types import STRING, UNIT, TFun
+from pn2code.ml.core import terms as core
+from pn2code.ml.core.types import STRING, UNIT, TFun
 from pn2code.net.flat import FlatNet, Form
 
 FLAGS = ("-O0",)

@@ -14,8 +14,8 @@ from pathlib import Path
 
 from pn2code.diagnostics import NOWHERE, Diagnostics, SourceText
 from pn2code.diagnostics.render import report
+from pn2code.ml.core.types import TCon, TFun, TRecord, Type
 from pn2code.ml.elaborate import ColsetSpec, Elaborator
-from pn2code.ml.types import TCon, TFun, TRecord, Type
 
 FOLDER = Path(__file__).parent
 BY_HAND = frozenset({"cpn_tools"})

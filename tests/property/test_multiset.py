@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from pn2code.semantics.multiset import MultiSet, NotContained, TimedMultiSet
-from pn2code.semantics.values import Timed
+from pn2code.semantics.values.data import Timed
+from pn2code.semantics.values.multiset import MultiSet, NotContained, TimedMultiSet
 
 values = (
     st.integers(0, 4) | st.sampled_from(["a", "b"]) | st.tuples(st.integers(0, 1), st.booleans())

@@ -3,8 +3,8 @@
  *
  *     | permanent: values of the declarations | half 0 | half 1 |
  *
- * Allocation takes the next bytes of the active half. Between firings pn_net_t.collect copies what the marking refers to into the
- * other half, which becomes the active one; everything else is forgotten. A host gives the memory:
+ * Allocation takes the next bytes of the active half. Between firings pn_net_t.collect copies what the marking refers
+ * to into the other half, which becomes the active one; everything else is forgotten. A host gives the memory:
  *
  *     static max_align_t memory[PN_ARENA_DEFAULT_SIZE / sizeof(max_align_t)];
  *     pn_arena_t arena;

@@ -1,13 +1,13 @@
 /* SPDX-License-Identifier: MIT
  * pn_file.h - what a net can do with files: nothing, or what the host allows below one folder.
  *
- * Names are those of the net: relative ones are below the present folder (at first the allowed one), absolute ones must lie below the
- * allowed folder. Whatever is outside, also by `..` or by a link, is not there. Without an allowed folder nothing is there, and
- * what is written is dropped. What the net prints goes to the run's output, which is the standard error output unless the host
- * says otherwise.
+ * Names are those of the net: relative ones are below the present folder (at first the allowed one), absolute ones must
+ * lie below the allowed folder. Whatever is outside, also by `..` or by a link, is not there. Without an allowed folder
+ * nothing is there, and what is written is dropped. What the net prints goes to the run's output, which is the standard
+ * error output unless the host says otherwise.
  *
- * Functions that can fail leave the reason for pn_file_problem. Open files are not part of a marking. pn_file.c is for POSIX; another
- * system has a file of its own with the same functions.
+ * Functions that can fail leave the reason for pn_file_problem. Open files are not part of a marking. pn_file.c is for
+ * POSIX; another system has a file of its own with the same functions.
  */
 #ifndef PN_FILE_H
 #define PN_FILE_H

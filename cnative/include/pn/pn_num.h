@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * pn_num.h - numbers of CPN ML: checked integers, real functions.
  *
- * `int` is the 31-bit integer of the real tool, kept in an int64_t; what does not fit is reported, not wrapped. `div` and `mod` round
- * down, `quot` and `rem` toward zero. On error the value is 0.
+ * `int` is the 31-bit integer of the real tool, kept in an int64_t; what does not fit is reported, not wrapped. `div`
+ * and `mod` round down, `quot` and `rem` toward zero. On error the value is 0.
  */
 #ifndef PN_NUM_H
 #define PN_NUM_H
@@ -22,8 +22,8 @@ static inline bool pn_ok(const pn_ctx_t *cx)
     return cx->error == PN_OK;
 }
 
-/* Finds out how deep the recursion may be: as deep as the stack of the calling thread, which is made larger if possible;
- * PN_DEPTH_MAX calls where the system says nothing. Called by pn_ctx_init. */
+/* Finds out how deep the recursion may be: as deep as the stack of the calling thread, which is made larger if
+ * possible; PN_DEPTH_MAX calls where the system says nothing. Called by pn_ctx_init. */
 void pn_stack_init(pn_ctx_t *cx);
 
 /* Begins a call of a recursive function: false when an error is set or the recursion is too deep (PN_ERR_DEPTH). */
@@ -40,8 +40,8 @@ static inline bool pn_is_deep(const pn_ctx_t *cx)
     return cx->depth >= PN_DEPTH_MAX;
 }
 
-/* Begins a round of a loop or of a recursion: false when an error is set, or after so many rounds that the evaluation of an
- * inscription is taken to have no end (PN_ERR_ENDLESS; some seconds). */
+/* Begins a round of a loop or of a recursion: false when an error is set, or after so many rounds that the evaluation
+ * of an inscription is taken to have no end (PN_ERR_ENDLESS; some seconds). */
 #ifndef PN_ROUNDS_MAX
 #define PN_ROUNDS_MAX UINT64_C(1000000000)
 #endif
@@ -78,7 +78,7 @@ bool pn_is_raised(const pn_ctx_t *cx, const char *name);
 void pn_clear_error(pn_ctx_t *cx);
 
 #define PN_PI 3.141592653589793
-#define PN_E 2.718281828459045
+#define PN_E  2.718281828459045
 
 /* Integers: `int` has 31 bits (pn_int_*), or 64 (pn_wide_*) in nets generated so; beyond them Overflow is raised. Model
  * time has 64 bits, beyond which is PN_ERR_LARGE, that no handler catches. IntInf.int has no limit: see pn_big.h. */
@@ -174,7 +174,8 @@ static inline double pn_int_to_real(int64_t a)
     return (double)a;
 }
 
-/* Rounding to `int`: Overflow outside the 31-bit range, Domain for nan. `round` goes to the even neighbour at a half. */
+/* Rounding to `int`: Overflow outside the 31-bit range, Domain for nan. `round` goes to the even neighbour at a half.
+ */
 int64_t pn_real_floor(pn_ctx_t *cx, double x);
 int64_t pn_real_ceil(pn_ctx_t *cx, double x);
 int64_t pn_real_round(pn_ctx_t *cx, double x);
@@ -208,8 +209,8 @@ static inline bool pn_real_equal(double a, double b)
 bool pn_real_is_nan(double x);
 bool pn_real_is_finite(double x);
 
-/* Shortest decimal that reads back to the same double, as Python's repr writes it; `out` has PN_REAL_TEXT_SIZE bytes. Returns
- * the length. */
+/* Shortest decimal that reads back to the same double, as Python's repr writes it; `out` has PN_REAL_TEXT_SIZE bytes.
+ * Returns the length. */
 size_t pn_real_repr(char *out, double x);
 
 /* -1, 0, 1 in the order of colour sets: nan before every number, 0.0 and -0.0 equal. */

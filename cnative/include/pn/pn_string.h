@@ -68,9 +68,10 @@ size_t pn_int_sml(char *out, size_t capacity, int64_t value);
 size_t pn_real_sml(char *out, size_t capacity, double value);
 /* The same with another number of significant digits. */
 size_t pn_real_general(char *out, size_t capacity, double value, int64_t digits);
-/* The digits of a positive finite number as SML/NJ finds them, `wanted` in all or behind the point, and the exponent of the
- * first; returns how many. It multiplies by ten with rounded arithmetic, and finds at most PN_REAL_DIGITS, one more if they are
- * rounded up to a power of ten; a last digit that is just in the middle becomes even. `digit` ends with a zero. */
+/* The digits of a positive finite number as SML/NJ finds them, `wanted` in all or behind the point, and the exponent of
+ * the first; returns how many. It multiplies by ten with rounded arithmetic, and finds at most PN_REAL_DIGITS, one more
+ * if they are rounded up to a power of ten; a last digit that is just in the middle becomes even. `digit` ends with a
+ * zero. */
 #define PN_REAL_DIGITS 15
 int pn_real_digits(double value, int64_t wanted, bool behind, char *digit, int *exponent);
 

@@ -4,11 +4,21 @@
 #ifndef PN_TYPES_H
 #define PN_TYPES_H
 
+#include <float.h>
 #include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 
-/* Model time: an integer, or a real (option `realtimestamp` of the net). pn_net_t.real_time says which member counts. */
+/* The values of a net are those of the token game only where a double is a double and sums keep their order. */
+#if defined(__FAST_MATH__)
+#error "compile without -ffast-math: a net would compute other values than those that were verified"
+#endif
+#if FLT_EVAL_METHOD != 0
+#error "this compiler computes with another precision than double's (32-bit x86: add -msse2 -mfpmath=sse)"
+#endif
+
+/* Model time: an integer, or a real (option `realtimestamp` of the net). pn_net_t.real_time says which member counts.
+ */
 typedef union pn_time {
     int64_t integer;
     double real;
@@ -16,23 +26,24 @@ typedef union pn_time {
 
 typedef enum pn_error {
     PN_OK = 0,
-    PN_ERR_OVERFLOW,   /* CPN ML exception Overflow */
-    PN_ERR_DIV,        /* Div */
-    PN_ERR_MATCH,      /* Match: no rule fits */
-    PN_ERR_BIND,       /* Bind: a val pattern does not fit */
-    PN_ERR_SUBSCRIPT,  /* Subscript */
-    PN_ERR_EMPTY,      /* Empty: hd, tl of an empty list */
-    PN_ERR_DOMAIN,     /* Domain, Size, Chr and the like */
-    PN_ERR_COLOUR,     /* a value that is not in the colour set */
-    PN_ERR_CAPACITY,   /* a place or array is full */
-    PN_ERR_MEMORY,     /* the arena is full */
-    PN_ERR_DEPTH,      /* recursion too deep */
-    PN_ERR_SUBTRACT,   /* multi-set difference of what is not contained */
-    PN_ERR_RAISED,     /* an exception of the net itself */
-    PN_ERR_ENDLESS,    /* an evaluation that does not come to an end; not an exception of CPN ML */
-    PN_ERR_LARGE,      /* a model time beyond 64 bits; not an exception of CPN ML */
-    PN_ERR_UNSUPPORTED, /* a library function that exists in CPN Tools and cannot run here; the name says which and why */
-    PN_ERR_INTERNAL    /* a contract of the runtime was broken */
+    PN_ERR_OVERFLOW,    /* CPN ML exception Overflow */
+    PN_ERR_DIV,         /* Div */
+    PN_ERR_MATCH,       /* Match: no rule fits */
+    PN_ERR_BIND,        /* Bind: a val pattern does not fit */
+    PN_ERR_SUBSCRIPT,   /* Subscript */
+    PN_ERR_EMPTY,       /* Empty: hd, tl of an empty list */
+    PN_ERR_DOMAIN,      /* Domain, Size, Chr and the like */
+    PN_ERR_COLOUR,      /* a value that is not in the colour set */
+    PN_ERR_CAPACITY,    /* a place or array is full */
+    PN_ERR_MEMORY,      /* the arena is full */
+    PN_ERR_DEPTH,       /* recursion too deep */
+    PN_ERR_SUBTRACT,    /* multi-set difference of what is not contained */
+    PN_ERR_RAISED,      /* an exception of the net itself */
+    PN_ERR_ENDLESS,     /* an evaluation that does not come to an end; not an exception of CPN ML */
+    PN_ERR_LARGE,       /* a model time beyond 64 bits; not an exception of CPN ML */
+    PN_ERR_UNSUPPORTED, /* a library function that exists in CPN Tools and cannot run here; the name says which and why
+                         */
+    PN_ERR_INTERNAL     /* a contract of the runtime was broken */
 } pn_error_t;
 
 struct pn_arena;

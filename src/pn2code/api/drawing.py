@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from pn2code.whole_file import whole_file
+from pn2code.base.whole_file import whole_file
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from pn2code.diagnostics import Diagnostic, Diagnostics, render
-from pn2code.semantics.game import GameError
+from pn2code.semantics.game.token_game import GameError
 
 
 class NetError(Exception):

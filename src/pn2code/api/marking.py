@@ -8,17 +8,17 @@ from typing import TYPE_CHECKING, Any
 
 from pn2code.api.drawing import Drawing
 from pn2code.api.errors import playing
-from pn2code.semantics import report
-from pn2code.semantics.colours import TEXTS
-from pn2code.semantics.game import NotEnabled
-from pn2code.semantics.marking import (
+from pn2code.semantics.game import report
+from pn2code.semantics.game.marking import (
     BindingElement,
     binding_to_json,
     element_text,
     place_text,
     place_to_json,
 )
-from pn2code.semantics.marking import Marking as State
+from pn2code.semantics.game.marking import Marking as State
+from pn2code.semantics.game.token_game import NotEnabled
+from pn2code.semantics.values.colours import TEXTS
 
 if TYPE_CHECKING:
     from pn2code.api.net import Net
@@ -142,7 +142,7 @@ class Marking:
             NetError: a guard or an inscription raises an exception.
         """
         with playing():
-            return Marking(self.net, self.net.game.settle(self._state))
+            return Marking(self.net, self.net.game.advance_time(self._state))
 
     def fire(self, binding: Binding) -> Marking:
         """The marking after an occurrence.
@@ -156,7 +156,7 @@ class Marking:
         """
         game = self.net.game
         with playing():
-            obstacle = game.obstacle(self._state, binding._element)
+            obstacle = game.why_disabled(self._state, binding._element)
             if obstacle is not None:
                 raise NotEnabled(f"{binding}: {obstacle}")
             after, _ = game.occur(self._state, binding._element)

@@ -13,14 +13,14 @@ from pn2code.api.marking import Marking
 from pn2code.api.simulation import Simulation, simulate
 from pn2code.api.verification import Verification, verify
 from pn2code.diagnostics import Diagnostic, Diagnostics
-from pn2code.diagnostics.near import nearest
+from pn2code.diagnostics.suggestions import nearest
 from pn2code.drawing.picture import picture
 from pn2code.drawing.state import State, enabled_in
 from pn2code.drawing.svg import Overlay
 from pn2code.net.finding import Finder
 from pn2code.net.flat import FlatNet
 from pn2code.reading.document import RawPage
-from pn2code.semantics.game import Game
+from pn2code.semantics.game.token_game import Game
 from pn2code.verdict import checking
 from pn2code.verdict.opened import OpenNet, read
 

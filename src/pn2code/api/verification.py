@@ -10,14 +10,14 @@ from pathlib import Path
 from typing import Any
 
 from pn2code.api.errors import playing, refuse
-from pn2code.deadline import Deadline
+from pn2code.base.deadline import Deadline
 from pn2code.diagnostics import Diagnostics
 from pn2code.verdict import properties as own
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.whole import MOST_COLOURS, Said, conclude, look, question, stem, trace_folder
-from pn2code.verify.answers import Answer, Verdict
-from pn2code.verify.explore import Wishes
-from pn2code.verify.limits import Limits, cores
+from pn2code.verify.answers.properties import Answer, Verdict
+from pn2code.verify.exploring.explore import ExploreOptions
+from pn2code.verify.exploring.limits import Limits, cores
 
 INT_BITS = 31
 """Of `int` in the programs of a cell."""
@@ -113,7 +113,7 @@ def verify(
     with ExitStack() as stack:
         place = traces or Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="pn2code-")))
         folder = stack.enter_context(trace_folder(place, wanted=True, needed=True))
-        wishes = Wishes(
+        wishes = ExploreOptions(
             traces=folder,
             stem=stem(opened),
             colours=MOST_COLOURS,

@@ -8,10 +8,10 @@ from dataclasses import field
 from pathlib import Path
 from typing import Any, Literal
 
+from pn2code.base.frozen import frozen
 from pn2code.cell.partition import ChannelKind
 from pn2code.cell.toml_file import Locator
 from pn2code.diagnostics import Origin
-from pn2code.frozen import frozen
 
 CommandName = Literal["move_joint", "move_linear", "move_home", "measure", "tool", "wait"]
 COMMANDS: tuple[CommandName, ...] = (

@@ -17,8 +17,8 @@ from pn2code.cell.config import CellConfig, ChannelConfig
 from pn2code.cell.partition import Channel, ChannelKind, Input, Owner, OwnerKind, Partition
 from pn2code.cell.scalars import scalars_of
 from pn2code.diagnostics import Diagnostics, Note, Origin
-from pn2code.diagnostics.near import did_you_mean
-from pn2code.ml.colsets import Colset, Kind
+from pn2code.diagnostics.suggestions import did_you_mean
+from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.net.finding import Finder
 from pn2code.net.flat import ArcKind, FlatNet, FlatPlace
 

@@ -30,7 +30,7 @@ from pn2code.cell.partition import ChannelKind
 from pn2code.cell.tables import KeyPath, Tables
 from pn2code.cell.toml_file import Locator, read
 from pn2code.diagnostics import Diagnostics, Origin, PlacedText
-from pn2code.diagnostics.near import did_you_mean
+from pn2code.diagnostics.suggestions import did_you_mean
 
 _TOP = {
     "net",

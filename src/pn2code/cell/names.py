@@ -9,8 +9,8 @@ from pn2code.cell import codes
 from pn2code.cell.config import CellConfig
 from pn2code.cell.divide import PlaceFinder
 from pn2code.diagnostics import Diagnostics
-from pn2code.diagnostics.near import did_you_mean
-from pn2code.ml.colsets import Colset, Kind
+from pn2code.diagnostics.suggestions import did_you_mean
+from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.net.finding import Finder
 from pn2code.net.flat import FlatNet
 

@@ -10,7 +10,7 @@ from dataclasses import field
 from enum import Enum
 from typing import TYPE_CHECKING
 
-from pn2code.frozen import frozen
+from pn2code.base.frozen import frozen
 from pn2code.net.flat import FlatNet
 
 if TYPE_CHECKING:

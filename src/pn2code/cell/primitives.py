@@ -22,9 +22,9 @@ from pn2code.cell.config import CellConfig, CommandName, Primitive
 from pn2code.cell.partition import Owner, Partition
 from pn2code.cell.reach import Reach
 from pn2code.diagnostics import Diagnostics, Span
-from pn2code.diagnostics.near import nearest
-from pn2code.ml import core
-from pn2code.ml.types import INT, REAL, UNIT, TFun, TRecord, TVar, Type
+from pn2code.diagnostics.suggestions import nearest
+from pn2code.ml.core import terms as core
+from pn2code.ml.core.types import INT, REAL, UNIT, TFun, TRecord, TVar, Type
 from pn2code.net.flat import CodeSegment, FlatTransition
 from pn2code.net.uses import walk
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from pn2code.diagnostics import Span
-from pn2code.ml import core
+from pn2code.ml.core import terms as core
 from pn2code.net.uses import pattern_variables, walk
 
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import Enum
 
-from pn2code.ml.colsets import Colset, Kind
+from pn2code.ml.core.colsets import Colset, Kind
 
 
 class ScalarKind(Enum):

@@ -11,7 +11,7 @@ from typing import Any, cast
 from pn2code.cell import codes
 from pn2code.cell.toml_file import Locator
 from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.diagnostics.near import did_you_mean
+from pn2code.diagnostics.suggestions import did_you_mean
 
 KeyPath = tuple[str | int, ...]
 """Of a table or key; tables of arrays are numbered from 0."""

@@ -14,10 +14,10 @@ from copy import copy
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.os_reason import os_reason
 from pn2code.cell.toml_text import positions
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.diagnostics.keys import in_words
-from pn2code.os_reason import os_reason
 
 
 class Locator:

@@ -12,8 +12,8 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Origin, SourceText
-from pn2code.frozen import frozen
 
 Path = tuple[str, ...]
 """Of a key; tables of arrays are numbered from 0."""

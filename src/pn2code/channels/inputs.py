@@ -1,4 +1,5 @@
-"""Input files: one token of a place, as `cnative/src/supervisor_input.c` reads it when the supervisor starts.
+"""Input files: one token of a place, as `cnative/src/supervisor/supervisor_input.c` reads it when the supervisor
+starts.
 
 problem("5\\n1 2 x\\n", lines_of(colset))      # Mistake(2, 5, "`x` is not a number (...)"); None: the file is right
 """

@@ -1,6 +1,7 @@
 """The scalars of a token as one line of text (docs/protocol.md, "Format").
 
-`format_scalars` and `parse_scalars` write and read what `cnative/src/pn_channel.c` reads and writes, to the last digit.
+`format_scalars` and `parse_scalars` write and read what `cnative/src/channel/pn_channel.c` reads and writes, to the
+last digit.
 
     scalars = scalars_of(pose)                      # (Scalar(REAL, "x", "COORD"), Scalar(REAL, "y", "COORD"))
     format_scalars(scalars, (5750.0, 166.66666))    # "5750.0000 166.66666"

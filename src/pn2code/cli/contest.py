@@ -9,13 +9,13 @@ from typing import Annotated
 
 import typer
 
+from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.cli.options import Exit, Format, print_diagnostics, stop
 from pn2code.contest.engine import Space, engine
 from pn2code.contest.examinations import ALL, SPACE, Asked, asked
 from pn2code.contest.formulas import FormulaError
 from pn2code.contest.portfolio import METHODS, answers, space
 from pn2code.contest.tables import Tables
-from pn2code.deadline import Deadline, TimeIsOverError
 from pn2code.diagnostics import Diagnostics
 from pn2code.net import front
 from pn2code.unfold.unfold import unfold

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import pn2code
+from pn2code.base.whole_file import whole_file
 from pn2code.cli.nets import open_net, playing
 from pn2code.cli.options import (
     Exit,
@@ -19,7 +20,6 @@ from pn2code.cli.options import (
     stop,
 )
 from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.whole_file import whole_file
 
 if TYPE_CHECKING:
     from pn2code.net.flat import FlatNet
@@ -100,7 +100,7 @@ def _text(
     """The file's contents; None after errors."""
     from pn2code.convert import cpn, pnml_plain, pnml_symmetric, promela
     from pn2code.drawing.scene import positions
-    from pn2code.ml.colsets import Kind
+    from pn2code.ml.core.colsets import Kind
     from pn2code.unfold.unfold import unfold
 
     if kind == ".cpn":

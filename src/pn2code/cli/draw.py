@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
+from pn2code.base.os_reason import os_reason
+from pn2code.base.whole_file import whole_file
 from pn2code.cell.locate import locate
 from pn2code.cli.options import (
     DEFAULT_SEED,
@@ -22,19 +24,17 @@ from pn2code.cli.options import (
     stop,
 )
 from pn2code.diagnostics import Diagnostics, Origin, Severity
-from pn2code.diagnostics.near import nearest
+from pn2code.diagnostics.suggestions import nearest
 from pn2code.drawing.codes import DRAW_ARRANGED, DRAW_OUTPUT, DRAW_PAGE, DRAW_TRACE
 from pn2code.net import front
-from pn2code.os_reason import os_reason
 from pn2code.reading.document import Document, RawPage
-from pn2code.semantics.constants import compute
-from pn2code.whole_file import whole_file
+from pn2code.semantics.evaluation.constants import compute
 
 if TYPE_CHECKING:
     from pn2code.drawing.state import State
     from pn2code.drawing.svg import Overlay, Problem
     from pn2code.net.flat import FlatNet
-    from pn2code.verify.moments import Moment
+    from pn2code.verify.report.trace_frames import TraceFrame
 
 EPILOG = """Examples:
 
@@ -113,7 +113,7 @@ def draw(
         stop(d, form)
     pages = _chosen(document, page, form)
     state: State | None = None
-    moments: list[Moment] = []
+    moments: list[TraceFrame] = []
     chosen = last = 0
     storage = config.storage if config else {}
     if step is not None and trace is None:
@@ -203,11 +203,11 @@ def _state(flat: FlatNet, storage: Mapping[str, str], seed: int, form: Format) -
     """The initial marking, at the first time at which something is enabled."""
     from pn2code.cli.nets import playing  # the token game is needed for this only
     from pn2code.drawing.state import State, enabled_in
-    from pn2code.semantics.game import Game
+    from pn2code.semantics.game.token_game import Game
 
     with playing(form):
         game = Game(flat, storage, seed=seed)
-        marking = game.settle(game.marking)
+        marking = game.advance_time(game.marking)
         return State(flat, marking, enabled_in(game, marking))
 
 
@@ -218,11 +218,11 @@ def _moments(
     step: int | None,
     around: int,
     form: Format,
-) -> tuple[list[Moment], int, int]:
+) -> tuple[list[TraceFrame], int, int]:
     """The wanted step of a trace (the last one) with some around it, its number, and how many steps there are."""
     from pn2code.cli.nets import playing
-    from pn2code.simulate.script import Trace, TraceRefusedError
-    from pn2code.verify.moments import follow
+    from pn2code.trace.script import Trace, TraceRefusedError
+    from pn2code.verify.report.trace_frames import follow
 
     try:
         last = sum(1 for _ in Trace.open(trace, flat, is_shown=True).steps())
@@ -315,11 +315,11 @@ class _Drawing:
         return draw_net(shown, Facts(path.name, remark, self.base.problems), figures)
 
     def steps(
-        self, path: Path, moments: list[Moment], chosen: int, last: int, trace: Path | None
+        self, path: Path, moments: list[TraceFrame], chosen: int, last: int, trace: Path | None
     ) -> str:
         """One HTML file with the steps of a trace."""
-        from pn2code.verify.lasso import read_loop
-        from pn2code.verify.steps_page import steps_page
+        from pn2code.verify.answers.lasso import read_loop
+        from pn2code.verify.report.steps_page import steps_page
 
         loop = None if trace is None else read_loop(trace)
         return steps_page(self.document, self.pages, moments, chosen, last, path.name, loop)

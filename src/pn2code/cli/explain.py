@@ -10,7 +10,7 @@ import typer
 
 from pn2code.cli.options import Exit
 from pn2code.diagnostics.codes import all_codes
-from pn2code.diagnostics.near import did_you_mean
+from pn2code.diagnostics.suggestions import did_you_mean
 
 EPILOG = """Examples:
 
@@ -27,7 +27,7 @@ REGISTERING = (
     "pn2code.convert.codes",
     "pn2code.drawing.codes",
     "pn2code.lowering.codes",
-    "pn2code.lowering.robot_codes",
+    "pn2code.robot_scripts.codes",
     "pn2code.ml.codes",
     "pn2code.monitors.codes",
     "pn2code.net.codes",

@@ -11,33 +11,36 @@ import os
 import signal
 import sys
 import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from types import FrameType
 from typing import Annotated, Any, NoReturn
 
 import typer
-from typer.core import TyperGroup
+from typer.core import TyperCommand, TyperGroup
 
 import pn2code
 from pn2code.cli.options import Exit
 
-VERBS = (
-    "check",
-    "marking",
-    "enabled",
-    "simulate",
-    "replay",
-    "verify",
-    "structure",
-    "conform",
-    "generate",
-    "run",
-    "robot",
-    "draw",
-    "convert",
-    "contest",
-    "dump",
-    "explain",
-)
+VERBS = {
+    "check": "Check the syntax, types, bindings and hierarchy of a net, and the cell beside it.",
+    "marking": "Print the initial marking of each place in the form of CPN Tools.",
+    "enabled": "Print the binding elements that are enabled in the initial marking.",
+    "simulate": "Simulate a net: choose an enabled binding element at random, let it occur, and repeat this.",
+    "replay": "Repeat a recorded run, and check that each step is enabled when its turn comes.",
+    "verify": "Explore the whole state space of a net, and report its properties.",
+    "structure": "Compute invariants, siphons, traps, bounds and classes of a net from its structure alone.",
+    "conform": "Compare the compiled net, the supervisor and each robot program with the net, state by state.",
+    "generate": "Generate a C supervisor and, if there is a cell.toml, a script for each robot.",
+    "run": "Run a cell: build the supervisor, run it together with the robots' programs, and report.",
+    "robot": "Run one robot's script in real time, as a process of its own.",
+    "draw": "Draw the pages of a net. Elements with errors are red.",
+    "convert": "Convert a net to PNML or to a Promela model for SPIN, or a PNML net to a net of CPN Tools.",
+    "contest": "Answer an examination of the Model Checking Contest, in its own words.",
+    "dump": "Print the net as it is after a stage of the pipeline.",
+    "explain": "Explain a diagnostic code.",
+}
+"""What each verb does, in a sentence: the list of verbs is printed without loading them."""
 
 
 _FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
@@ -47,14 +50,40 @@ _FULL = frozenset({errno.ENOSPC, errno.EDQUOT, errno.EFBIG})
 class _Verbs(TyperGroup):
     """Loads a verb's module when it is asked for: `check` need not wait for what only `run` needs."""
 
+    _is_listing = False
+
+    def format_help(self, ctx: Any, formatter: Any) -> None:
+        """The list of verbs."""
+        with self._listing():
+            super().format_help(ctx, formatter)
+
+    def shell_complete(self, ctx: Any, incomplete: str) -> Any:
+        """The verbs that begin so."""
+        with self._listing():
+            return super().shell_complete(ctx, incomplete)
+
+    @contextmanager
+    def _listing(self) -> Iterator[None]:
+        """While the block lasts only names and sentences are wanted, for which no verb is loaded."""
+        self._is_listing = True
+        try:
+            yield
+        finally:
+            self._is_listing = False
+
     def list_commands(self, ctx: Any) -> list[str]:
         return list(VERBS)
 
     def get_command(self, ctx: Any, cmd_name: str) -> Any:
         if cmd_name in VERBS:
-            return _command(cmd_name)
-        self.commands.update({verb: _command(verb) for verb in VERBS})  # for "did you mean"
+            return _named(cmd_name) if self._is_listing else _command(cmd_name)
+        self.commands.update({verb: _named(verb) for verb in VERBS})  # for "did you mean"
         return None
+
+
+def _named(verb: str) -> Any:
+    """A verb as it stands in the list."""
+    return TyperCommand(verb, help=VERBS[verb])
 
 
 def _command(verb: str) -> Any:

@@ -21,7 +21,7 @@ from pn2code.cli.options import (
     SetOption,
     parse_values,
 )
-from pn2code.semantics import report
+from pn2code.semantics.game import report
 
 EPILOG = """Examples:
 

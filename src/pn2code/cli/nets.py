@@ -11,7 +11,7 @@ import typer
 from pn2code.cell.config import CellConfig
 from pn2code.cli.options import DEFAULT_INT_BITS, Format, print_diagnostics, stop
 from pn2code.diagnostics import Diagnostics, Severity
-from pn2code.semantics.game import GameError
+from pn2code.semantics.game.token_game import GameError
 from pn2code.verdict.opened import OpenNet, read
 
 

@@ -24,12 +24,12 @@ from pn2code.cli.options import (
     parse_values,
 )
 from pn2code.cli.replay_claims import Claims, claims, refuse
-from pn2code.semantics import replay as own
-from pn2code.semantics.files import Files
-from pn2code.semantics.json_text import BadJson, parse_json
-from pn2code.semantics.recording import NotARecording, Recording, recording
-from pn2code.semantics.replay_recording import follow
-from pn2code.semantics.report import places, time_text
+from pn2code.semantics.evaluation.files import Files
+from pn2code.semantics.game.report import places, time_text
+from pn2code.trace import replay as own
+from pn2code.trace.json_text import BadJson, parse_json
+from pn2code.trace.recording import NotARecording, Recording, recording
+from pn2code.trace.replay_recording import follow
 from pn2code.verdict.opened import OpenNet
 
 EPILOG = """Examples:

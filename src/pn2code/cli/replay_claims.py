@@ -10,8 +10,8 @@ import typer
 
 from pn2code.cli.options import Exit, Format, stop
 from pn2code.diagnostics import Diagnostics
-from pn2code.semantics import replay as own
-from pn2code.semantics.parties import Parties
+from pn2code.trace import replay as own
+from pn2code.trace.parties import Parties
 from pn2code.verdict.opened import OpenNet
 
 
@@ -23,7 +23,7 @@ def refuse(message: str) -> NoReturn:
 
 @dataclass(frozen=True, slots=True)
 class Claims:
-    """What the claims of a trace are compared with; see `semantics.replay.replay`."""
+    """What the claims of a trace are compared with; see `trace.replay.replay`."""
 
     parties: Parties
     check_digest: bool

@@ -9,15 +9,15 @@ from typing import Any
 from pn2code.cli.options import DEFAULT_SEED, Engine, Format, stop
 from pn2code.cli.replay_claims import Claims, refuse
 from pn2code.diagnostics import Diagnostics
-from pn2code.semantics.game import NotEnabled
-from pn2code.semantics.json_text import BadJson, parse_json
-from pn2code.semantics.replay_end import Ending, end_problem
-from pn2code.semantics.replay_recording import Followed
-from pn2code.semantics.report import PlaceRow, places
-from pn2code.semantics.trace_lines import digest_problem, form_problem
+from pn2code.semantics.game.report import PlaceRow, places
+from pn2code.semantics.game.token_game import NotEnabled
 from pn2code.simulate.recorded import repeat, repeat_occurrences
 from pn2code.simulate.run import Outcome
-from pn2code.simulate.script import TraceRefusedError
+from pn2code.trace.json_text import BadJson, parse_json
+from pn2code.trace.lines import digest_problem, form_problem
+from pn2code.trace.replay_end import Ending, end_problem
+from pn2code.trace.replay_recording import Followed
+from pn2code.trace.script import TraceRefusedError
 from pn2code.verdict.opened import OpenNet
 
 

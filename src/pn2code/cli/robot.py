@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 
 import typer
 
+from pn2code.base.os_reason import os_reason
 from pn2code.cell.codes import CELL_MISSING
 from pn2code.cell.divide import divide
 from pn2code.cell.locate import locate
@@ -19,11 +20,10 @@ from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.diagnostics.codes import register
 from pn2code.emission.manifest import NAME as MANIFEST
 from pn2code.net import front
-from pn2code.os_reason import os_reason
 from pn2code.robot.commands import Command
 from pn2code.run.robot import Arm, InstantArm, RobotPlayer, script_specs
 from pn2code.run.sensors import Sensors
-from pn2code.semantics.constants import compute
+from pn2code.semantics.evaluation.constants import compute
 from pn2code.tdl import flow
 from pn2code.tdl import tree as t
 from pn2code.tdl.check import CheckedProgram, check

@@ -8,6 +8,7 @@ from typing import Annotated
 
 import typer
 
+from pn2code.base.os_reason import os_reason
 from pn2code.cli.options import (
     Exit,
     Format,
@@ -20,7 +21,6 @@ from pn2code.cli.options import (
 )
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.write import OutputFolderError
-from pn2code.os_reason import os_reason
 
 EPILOG = """Examples:
 

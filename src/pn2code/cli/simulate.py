@@ -9,6 +9,7 @@ from typing import Annotated, Any
 
 import typer
 
+from pn2code.base.os_reason import os_reason
 from pn2code.cli.interrupts import Interrupts
 from pn2code.cli.nets import open_net
 from pn2code.cli.options import (
@@ -26,17 +27,16 @@ from pn2code.cli.options import (
     stop,
 )
 from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.os_reason import os_reason
 from pn2code.semantics.codes import TRACE_REFUSED
-from pn2code.semantics.report import places
+from pn2code.semantics.game.report import places
 from pn2code.simulate.choose import Wish, monitors_of
 from pn2code.simulate.choose import simulate as play
 from pn2code.simulate.codes import TRACE_UNWRITABLE
 from pn2code.simulate.progress import ProgressLine
 from pn2code.simulate.report import text
 from pn2code.simulate.run import Outcome, Request
-from pn2code.simulate.script import TraceRefusedError
-from pn2code.simulate.trace import TraceUnwritableError
+from pn2code.trace.script import TraceRefusedError
+from pn2code.trace.writing import TraceUnwritableError
 from pn2code.verdict.opened import OpenNet
 
 EPILOG = """Examples:

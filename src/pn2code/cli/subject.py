@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pn2code import pipeline
-from pn2code.deadline import NEVER, Deadline, TimeIsOverError
+from pn2code.base.deadline import NEVER, Deadline, TimeIsOverError
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.output import OutputFile
 from pn2code.verdict.opened import OpenNet

@@ -12,6 +12,9 @@ from typing import Annotated, NoReturn
 
 import typer
 
+from pn2code.base.deadline import Deadline, TimeIsOverError
+from pn2code.base.os_reason import os_reason
+from pn2code.base.whole_file import whole_file
 from pn2code.cli.interrupts import Interrupts
 from pn2code.cli.nets import open_net, playing, refuse_wide
 from pn2code.cli.options import (
@@ -29,10 +32,8 @@ from pn2code.cli.options import (
 )
 from pn2code.cli.subject import Subject
 from pn2code.cli.verify_screen import closing, full, screen
-from pn2code.deadline import Deadline, TimeIsOverError
 from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.os_reason import os_reason
-from pn2code.verdict import medium, properties
+from pn2code.verdict import channel_model, properties
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.whole import (
     MOST_COLOURS,
@@ -45,14 +46,13 @@ from pn2code.verdict.whole import (
     trace_folder,
 )
 from pn2code.verify.codes import REPORT_UNWRITABLE, TIME_OVER
-from pn2code.verify.explore import Wishes
-from pn2code.verify.limits import Approximation, Limits, Order, Reduction, cores
-from pn2code.verify.pictures import GRAPH_KINDS, PLOT_KINDS, Pictures
-from pn2code.verify.progress import ProgressLine
-from pn2code.verify.report import report
-from pn2code.verify.result import Exploration, Seen
-from pn2code.verify.webpage import webpage
-from pn2code.whole_file import whole_file
+from pn2code.verify.exploring.explore import ExploreOptions
+from pn2code.verify.exploring.limits import Approximation, Limits, Order, Reduction, cores
+from pn2code.verify.exploring.result import Exploration, Seen
+from pn2code.verify.report.pictures import GRAPH_KINDS, PLOT_KINDS, Pictures
+from pn2code.verify.report.progress import ProgressLine
+from pn2code.verify.report.text import report
+from pn2code.verify.report.webpage import webpage
 
 EPILOG = """Examples:
 
@@ -282,7 +282,7 @@ def verify(
         properties.unnamed_runs(asked, folder) as unnamed,
     ):
         with Interrupts() as interrupts, ProgressLine(shown=not (as_json or quiet)) as progress:
-            wishes = Wishes(
+            wishes = ExploreOptions(
                 traces=folder if most_traces else None,
                 stem=stem(opened),
                 colours=None if in_full else MOST_COLOURS,
@@ -395,7 +395,7 @@ def _write_report(said: Said, subject: Subject | None, path: Path, d: Diagnostic
             now,
             said.answers,
             said.control,
-            medium=list(medium.rows(said.medium)),
+            medium=list(channel_model.rows(said.medium)),
             subject=subject.rows,
             remark=subject.remark,
             deadline=said.deadline,
@@ -403,7 +403,7 @@ def _write_report(said: Said, subject: Subject | None, path: Path, d: Diagnostic
     else:
         body = report(said.net, said.found, now, said.answers, said.control)
         if said.medium:
-            body = f"{body.rstrip()}\n\n\n{medium.told(said.medium)}\n"
+            body = f"{body.rstrip()}\n\n\n{channel_model.told(said.medium)}\n"
         body = f"{body.rstrip()}\n\n\n{closing(said)}\n"
     try:
         with whole_file(path) as beside:

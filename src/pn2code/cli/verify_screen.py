@@ -13,21 +13,22 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
-from pn2code.deadline import TimeIsOverError
+from pn2code.base.deadline import TimeIsOverError
 from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.game import GameError
-from pn2code.simulate.script import TraceRefusedError
-from pn2code.verdict import medium
+from pn2code.semantics.game.token_game import GameError
+from pn2code.trace.script import TraceRefusedError
+from pn2code.verdict import channel_model
 from pn2code.verdict.whole import Said
-from pn2code.verify import basis, control_text, standstill
-from pn2code.verify.control_types import TITLES
-from pn2code.verify.path import play, steps, text
-from pn2code.verify.properties_text import said as said_of
-from pn2code.verify.properties_text import told
-from pn2code.verify.reasons import clause
-from pn2code.verify.report import bounded_places, error_text, report
-from pn2code.verify.result import Exploration, Trace
+from pn2code.verify.answers import basis, why_disabled
+from pn2code.verify.answers.path import play, steps, text
+from pn2code.verify.answers.reasons import clause
+from pn2code.verify.controller.control_types import TITLES
+from pn2code.verify.exploring.result import Exploration, Trace
+from pn2code.verify.report import control_text
+from pn2code.verify.report.properties_text import said as said_of
+from pn2code.verify.report.properties_text import told
+from pn2code.verify.report.text import bounded_places, error_text, report
 
 MOST_LINES = 40
 """Of one screen."""
@@ -76,7 +77,7 @@ def full(said: Said) -> str:
             way = _told(said, found.error_trace, goal)
             parts.append(f"{way}\n  then {error_text(net, found)}")
     if said.medium:
-        parts.append(medium.told(said.medium))
+        parts.append(channel_model.told(said.medium))
     return "\n\n\n".join([*parts, closing(said)])
 
 
@@ -211,7 +212,7 @@ def _items(said: Said) -> Iterator[_Item]:
     for m in said.medium:
         kind = {"yes": "good", "no": "bad"}.get(m.answer, "open")
         lines = next((tuple(e.lines) for e in m.evidence), ())
-        says = {"open": f"not known: {m.why}", "bad": medium.shown(m)}.get(kind, m.says)
+        says = {"open": f"not known: {m.why}", "bad": channel_model.shown(m)}.get(kind, m.says)
         yield _Item(f"{m.check[:1].upper()}{m.check[1:]}", kind, says, None, lines)
     for a in said.answers:
         kind = "open" if a.answer == "inconclusive" else "good" if a.is_expected else "bad"
@@ -327,7 +328,7 @@ def _last(said: Said, file: Path, goal: str, most: int, loop: int | None = None)
             shown = [step for step, _ in islice(played, MOST_STEPS)]
             if loop is None and len(shown) < MOST_STEPS:
                 with suppress(GameError):  # an inscription raises an exception there
-                    why = standstill.reasons(game)
+                    why = why_disabled.reasons(game)
     except TimeIsOverError:
         return [f"The run {goal} is in {file}; there was no time to show it."]
     except (TraceRefusedError, GameError, OSError) as problem:

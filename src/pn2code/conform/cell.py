@@ -21,9 +21,9 @@ from pn2code.conform.scheme import MOST_STATES
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.emission.output import OutputFile
 from pn2code.pipeline import Generated, generate
-from pn2code.semantics.files import Files
-from pn2code.semantics.game import Game, GameError
-from pn2code.semantics.marking import PlaceMarking, place_from_json
+from pn2code.semantics.evaluation.files import Files
+from pn2code.semantics.game.marking import PlaceMarking, place_from_json
+from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.tdl.check import check
 from pn2code.tdl.parse import parse
 from pn2code.toolchain import programs

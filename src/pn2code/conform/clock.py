@@ -5,8 +5,8 @@ clock = Clock(net)
 clock.relative(marking)          # the same, its stamps counted from its time on; at time 0
 clock.tokens(tokens, now=17)     # the same of one place
 
-A net that runs in a circle has infinitely many markings otherwise (`verify/time_reduction.py` says when this is
-possible, and why). Where it is not, or in an untimed net, markings stay as they are.
+A net that runs in a circle has infinitely many markings otherwise (`verify/exploring/time_reduction.py` says when
+this is possible, and why). Where it is not, or in an untimed net, markings stay as they are.
 """
 
 from __future__ import annotations
@@ -14,9 +14,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.marking import Marking, PlaceMarking
-from pn2code.semantics.multiset import TimedMultiSet
-from pn2code.verify.time_reduction import obstacle
+from pn2code.semantics.game.marking import Marking, PlaceMarking
+from pn2code.semantics.values.multiset import TimedMultiSet
+from pn2code.verify.exploring.time_reduction import obstacle
 
 
 class Clock:

@@ -21,19 +21,14 @@ from pn2code.conform.clock import Clock
 from pn2code.conform.scheme import MOST_STATES
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.files import Files
-from pn2code.semantics.game import Game, GameError
-from pn2code.semantics.marking import (
-    Marking,
-    binding_to_json,
-    place_from_json,
-    place_to_json,
-)
-from pn2code.semantics.references import Held
-from pn2code.semantics.replay import replay
+from pn2code.semantics.evaluation.files import Files
+from pn2code.semantics.evaluation.references import Held
+from pn2code.semantics.game.marking import Marking, binding_to_json, place_from_json, place_to_json
+from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.simulate import programs
-from pn2code.verify.explore import Wishes, explore
-from pn2code.verify.limits import Limits, Reduction
+from pn2code.trace.replay import replay
+from pn2code.verify.exploring.explore import ExploreOptions, explore
+from pn2code.verify.exploring.limits import Limits, Reduction
 
 WALKS = 20
 WALK_STEPS = 500
@@ -85,7 +80,7 @@ def compare(
     """
     with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
         graph = Path(name) / "graph.jsonl"
-        wishes = Wishes(graph=graph, graph_limit=most)
+        wishes = ExploreOptions(graph=graph, graph_limit=most)
         clock = Clock(net)
         reductions = (Reduction.TIME,) if clock.is_relative else ()
         limits = Limits(max_states=most, traces=0, reductions=reductions)
@@ -150,7 +145,7 @@ class _Whole:
         if node not in self._references:
             raise _Differs(f"no node before it leads to {_short(places)}")
         at = time if net.real_time else int(time)
-        marking = game.settle(Marking(at, tokens, self._references[node]))
+        marking = game.advance_time(Marking(at, tokens, self._references[node]))
         expected: dict[str, Held] = {}  # one arc for each binding element: equal ones are one
         for element in game.enabled_in(marking):
             after, occurred = game.occur(marking, element)

@@ -14,8 +14,8 @@ from collections.abc import Iterator, Mapping
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Partition
 from pn2code.cell.scalars import ScalarKind, scalars_of
-from pn2code.ml.colsets import Colset, Kind
-from pn2code.semantics.game import Game
+from pn2code.ml.core.colsets import Colset, Kind
+from pn2code.semantics.game.token_game import Game
 from pn2code.tdl import tree as t
 from pn2code.tdl.check import CheckedProgram
 from pn2code.tdl.types import POSE_FIELDS, Type

@@ -13,10 +13,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from pn2code.base.os_reason import os_reason
 from pn2code.conform.codes import GENERATED_UNREADABLE
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.emission.output import OutputFile
-from pn2code.os_reason import os_reason
 
 PROGRAM = ("net.c", "net.h", "cell_config.c")
 """The supervisor's own files."""

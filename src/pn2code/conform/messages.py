@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from pn2code.channels.scalars import ScalarValue, scalars_of_json
-from pn2code.ml.colsets import Colset
-from pn2code.semantics.colour_json import to_json
-from pn2code.semantics.values import Timed
+from pn2code.ml.core.colsets import Colset
+from pn2code.semantics.values.colour_json import to_json
+from pn2code.semantics.values.data import Timed
 
 
 def scalars(c: Colset, token: Any) -> tuple[ScalarValue, ...]:

@@ -18,8 +18,8 @@ from pn2code.cell.partition import Partition
 from pn2code.conform.primitives import Calls, Listener
 from pn2code.net.flat import BindAll, BindRandom, FlatTransition
 from pn2code.robot.commands import ToolAction
-from pn2code.semantics.game import Game, GameError
-from pn2code.semantics.parties import RUN
+from pn2code.semantics.game.token_game import Game, GameError
+from pn2code.trace.parties import RUN
 
 _Action = tuple[str, float]
 _ROUNDING_S = 0.01
@@ -122,7 +122,7 @@ class RunNotes:
 
     def _goes_on(self, game: Game, owner: int) -> bool:
         try:
-            enabled = game.enabled_in(game.settle(game.marking))
+            enabled = game.enabled_in(game.advance_time(game.marking))
             return any(self._owner[e.transition] == owner for e in enabled)
         except GameError:
             return True

@@ -22,11 +22,11 @@ from typing import Any
 
 from pn2code.cell.config import Primitive
 from pn2code.cell.reach import Reach
-from pn2code.ml.types import UNIT, TFun
+from pn2code.ml.core.types import UNIT, TFun
 from pn2code.robot import commands
-from pn2code.semantics.evaluate import Evaluator
-from pn2code.semantics.game import Game
-from pn2code.semantics.values import Native, Value
+from pn2code.semantics.evaluation.evaluate import Evaluator
+from pn2code.semantics.game.token_game import Game
+from pn2code.semantics.values.data import Native, Value
 
 _NAMES = ("x", "y", "z", "rx", "ry", "rz")
 

@@ -1,4 +1,4 @@
-"""The supervisor under test: the deployed program over files in memory (`cnative/src/conform_port.c`), asked
+"""The supervisor under test: the deployed program over files in memory (`cnative/src/conform/conform_port.c`), asked
 state by state.
 
 with closing(Probe(program, options)) as probe:
@@ -27,6 +27,8 @@ from pn2code.toolchain.programs import Host
 
 HOST = Host(
     "conform",
+    flags=("-DPN_TRACE",),  # the header of its trace says what it has read from its input files
+    net=("-DPN_OWN_ONLY",),
     libraries=("-Wl,--wrap=sup_run_cell", "-lm"),
     also=("supervisor",),
     instead=("port_posix.c",),

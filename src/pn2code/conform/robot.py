@@ -24,14 +24,10 @@ from pn2code.conform.primitives import Calls, Listener, Unknown
 from pn2code.conform.scheme import MOST_STATES, Scheme
 from pn2code.net.flat import BindAll, BindRandom, FlatTransition
 from pn2code.robot import commands
-from pn2code.semantics.colour_json import to_json
-from pn2code.semantics.game import Game, GameError
-from pn2code.semantics.marking import (
-    Marking,
-    binding_to_json,
-    element_text,
-)
-from pn2code.semantics.values import Timed
+from pn2code.semantics.game.marking import Marking, binding_to_json, element_text
+from pn2code.semantics.game.token_game import Game, GameError
+from pn2code.semantics.values.colour_json import to_json
+from pn2code.semantics.values.data import Timed
 from pn2code.tdl.check import CheckedProgram
 from pn2code.tdl.interpret import (
     AwaitFile,
@@ -270,7 +266,9 @@ class _Product:
     def _later(self, state: _State) -> _State | None:
         """Time goes on to where something can happen."""
         now = state.marking.time
-        times = [t for t in (self._game.settle(state.marking).time, state.until) if t is not None]
+        times = [
+            t for t in (self._game.advance_time(state.marking).time, state.until) if t is not None
+        ]
         ahead = [t for t in times if t > now]
         if not ahead:
             return None

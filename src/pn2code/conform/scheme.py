@@ -16,8 +16,8 @@ from dataclasses import dataclass, replace
 
 from pn2code.cell.partition import Partition
 from pn2code.net.flat import FlatTransition
-from pn2code.semantics.game import Game, GameError
-from pn2code.semantics.marking import BindingElement, Marking, PlaceMarking, element_text
+from pn2code.semantics.game.marking import BindingElement, Marking, PlaceMarking, element_text
+from pn2code.semantics.game.token_game import Game, GameError
 
 MOST_STATES = 20_000
 """Up to which a program is compared in all states, unless somebody says otherwise."""

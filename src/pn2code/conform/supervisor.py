@@ -18,11 +18,11 @@ from pn2code.cell.partition import ChannelKind, Partition
 from pn2code.channels.message import EMPTY, ChannelSpec, Message, compose, parse, specs_of
 from pn2code.conform.clock import Clock
 from pn2code.conform.messages import scalars
+from pn2code.conform.observations import Observation, ObservedChange, look
 from pn2code.conform.probe import SESSION, Answer, Probe
 from pn2code.conform.scheme import MOST_STATES, SUPERVISOR, Scheme
-from pn2code.conform.sights import Sight, Turn, look
-from pn2code.semantics.game import Game
-from pn2code.semantics.marking import Marking, place_from_json, place_text
+from pn2code.semantics.game.marking import Marking, place_from_json, place_text
+from pn2code.semantics.game.token_game import Game
 
 MOST_DEPTH = 4000
 """Saved states at a time, each of which is a process."""
@@ -87,7 +87,7 @@ class _State:
         sent: the number of messages so far in each channel, in the order of the partition.
     """
 
-    sight: Sight
+    sight: Observation
     time: float
     sent: tuple[int, ...]
 
@@ -96,11 +96,11 @@ class _State:
 class _Move:
     """Something that can happen. `sight`: what it leads to; None: it is the supervisor's cycle."""
 
-    turn: Turn
-    sight: Sight | None
+    turn: ObservedChange
+    sight: Observation | None
 
 
-_CYCLE = _Move(Turn("the supervisor's cycle"), None)
+_CYCLE = _Move(ObservedChange("the supervisor's cycle"), None)
 
 
 class _Product:
@@ -128,7 +128,7 @@ class _Product:
         )
         self._is_first = True  # before its first cycle the program makes the files
         self._path: list[_Move] = []
-        self._seen: set[Sight] = set()
+        self._seen: set[Observation] = set()
         self._late: list[tuple[_Move, ...]] = []  # ways to sights that are too deep to go on from
 
     def run(self) -> Report:
@@ -144,7 +144,7 @@ class _Product:
     def _run(self) -> None:
         none_sent = (0,) * len(self._partition.channels)
         initial = self._game.marking
-        sight = Sight(self._clock.relative(initial), frozenset())
+        sight = Observation(self._clock.relative(initial), frozenset())
         start = _State(sight, initial.time, none_sent)
         first = self._compared(start, self._probe.first)
         if first is None:
@@ -271,7 +271,7 @@ class _Product:
             )
         if answer.ended:
             return None
-        sight = Sight(
+        sight = Observation(
             self._clock.relative(expected.marking), self._scheme.unconsumed(expected.marking)
         )
         return _State(sight, state.time, sent)

@@ -19,9 +19,8 @@ from pn2code.convert import pnml
 from pn2code.convert.codes import UNSUPPORTED_IN_PNML
 from pn2code.convert.pnml import element
 from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.ml.builtins import FALSE, TRUE
-from pn2code.ml.colsets import Colset, Kind
-from pn2code.ml.core import (
+from pn2code.ml.core.colsets import Colset, Kind
+from pn2code.ml.core.terms import (
     Apply,
     Builtin,
     Con,
@@ -35,13 +34,14 @@ from pn2code.ml.core import (
     Symbol,
     Var,
 )
+from pn2code.ml.library.builtins import FALSE, TRUE
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatTransition, Form
 from pn2code.pnml.declarations import minus_text
-from pn2code.semantics.evaluate import variables
-from pn2code.semantics.game import Game
-from pn2code.semantics.marking import Marking
-from pn2code.semantics.multiset import MultiSet
-from pn2code.semantics.values import MlException, MlLimit, Value
+from pn2code.semantics.evaluation.evaluate import variables
+from pn2code.semantics.game.marking import Marking
+from pn2code.semantics.game.token_game import Game
+from pn2code.semantics.values.data import MlException, MlLimit, Value
+from pn2code.semantics.values.multiset import MultiSet
 from pn2code.unfold.purity import impure
 
 Positions = Mapping[str, tuple[float, float]]
@@ -265,7 +265,7 @@ class _Writer:
                 raise _NotSymmetricError(f"`{own.name}` is none of {_FINITE}")
 
     def parts(self, c: Colset, value: Any) -> Iterable[tuple[Colset, Any]]:
-        from pn2code.semantics.colours import parts_of
+        from pn2code.semantics.values.colours import parts_of
 
         return [(part, item) for _, part, item in parts_of(c, value)]
 

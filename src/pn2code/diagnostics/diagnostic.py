@@ -11,9 +11,9 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from enum import Enum
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics.codes import require_code
 from pn2code.diagnostics.origin import Origin, Span
-from pn2code.frozen import frozen
 
 MAX_ITEMS = 10_000
 """Nobody reads more; a file with more wrong than that is not what it should be."""

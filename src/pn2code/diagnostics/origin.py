@@ -10,7 +10,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from dataclasses import field, replace
 
-from pn2code.frozen import frozen
+from pn2code.base.frozen import frozen
 
 
 @frozen

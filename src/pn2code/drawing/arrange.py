@@ -16,8 +16,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
+from pn2code.base.frozen import frozen
 from pn2code.drawing.geometry import Point
-from pn2code.frozen import frozen
 
 GAP_X, GAP_Y = 90.0, 80.0
 """Between the nodes of a layer, and between layers: room for inscriptions."""

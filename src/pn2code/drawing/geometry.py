@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from pn2code.frozen import frozen
+from pn2code.base.frozen import frozen
 
 Point = tuple[float, float]
 

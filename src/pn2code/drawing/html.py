@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import field
 
-from pn2code import resources
+from pn2code.base import resources
+from pn2code.base.frozen import frozen
 from pn2code.drawing import text
 from pn2code.drawing.geometry import Box
 from pn2code.drawing.scene import Scene, build
 from pn2code.drawing.svg import MARGIN, Links, Overlay, Problem, figure, svg_attributes
 from pn2code.drawing.text import escape
-from pn2code.frozen import frozen
 from pn2code.reading.document import (
     Document,
     RawBlock,

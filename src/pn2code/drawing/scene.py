@@ -11,11 +11,11 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 
+from pn2code.base.frozen import frozen
 from pn2code.drawing import text
 from pn2code.drawing.arrange import Arrangement, arrange
 from pn2code.drawing.geometry import Box, Point, along, around, enter, of_points, union
 from pn2code.drawing.units import in_points
-from pn2code.frozen import frozen
 from pn2code.reading.document import (
     Document,
     Inscription,

@@ -7,9 +7,9 @@ from collections.abc import Collection, Mapping
 from pn2code.drawing.svg import Overlay, Tokens
 from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.reading.document import RawPage
-from pn2code.semantics import report
-from pn2code.semantics.game import Game
-from pn2code.semantics.marking import Marking
+from pn2code.semantics.game import report
+from pn2code.semantics.game.marking import Marking
+from pn2code.semantics.game.token_game import Game
 
 
 class State:

@@ -15,6 +15,7 @@ import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import field
 
+from pn2code.base.frozen import frozen
 from pn2code.drawing import text
 from pn2code.drawing.geometry import Box, Point, around, towards, union
 from pn2code.drawing.scene import Label, Line, Scene, Shape, Tag, build, text_box
@@ -28,7 +29,6 @@ from pn2code.drawing.style import (
     colour,
     dash,
 )
-from pn2code.frozen import frozen
 from pn2code.reading.document import Document, RawPage
 
 MARGIN = 12.0

@@ -17,10 +17,10 @@ from pn2code.emission.c_transitions import Transitions
 from pn2code.emission.environment import render
 from pn2code.emission.names import stem
 from pn2code.emission.output import Block, OutputFile
-from pn2code.lowering import ir
-from pn2code.lowering.calls import called, ir_nodes
-from pn2code.lowering.ir import NetIR, Rep
-from pn2code.lowering.packing import key_bits, packed_bits
+from pn2code.ir import nodes as ir
+from pn2code.ir.calls import called, ir_nodes
+from pn2code.ir.nodes import NetIR, Rep
+from pn2code.lowering.nets.packing import key_bits, packed_bits
 
 _MARK = "\x01"
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from pn2code.emission.c_places import staying_pairs
-from pn2code.lowering import ir
-from pn2code.lowering.calls import called, ir_nodes
-from pn2code.lowering.ir import Rep
-from pn2code.lowering.purity import is_impure_builtin
+from pn2code.ir import nodes as ir
+from pn2code.ir.calls import called, ir_nodes
+from pn2code.ir.nodes import Rep
+from pn2code.lowering.expressions.purity import is_impure_builtin
 
 _EXAMINED = (
     ir.ForTokens, ir.TokenValue, ir.UnlessAvailable, ir.UnlessHeld, ir.UnlessEmpty, ir.Take, ir.TakeAll,

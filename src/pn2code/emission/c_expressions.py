@@ -8,8 +8,8 @@ from pn2code.emission import c_ops
 from pn2code.emission.c_ops import OPS, Call, Compared, Infix, Literal, Prefix
 from pn2code.emission.environment import c_float
 from pn2code.emission.names import Names, Scope, label
-from pn2code.lowering import ir
-from pn2code.lowering.ir import Ir, IrType, Rep
+from pn2code.ir import nodes as ir
+from pn2code.ir.nodes import Ir, IrType, Rep
 
 _PRIMARY, _POSTFIX, _UNARY, _CONDITIONAL = 17, 16, 14, 3
 

@@ -15,9 +15,9 @@ from pn2code.emission.c_places import is_count, staying_pairs
 from pn2code.emission.c_slots import is_structural
 from pn2code.emission.c_statements import Statements
 from pn2code.emission.names import Scope
-from pn2code.lowering import ir
-from pn2code.lowering.ir import Descriptor, Rep, Stmt
-from pn2code.lowering.ir_types import is_restricted
+from pn2code.ir import nodes as ir
+from pn2code.ir.nodes import Descriptor, Rep, Stmt
+from pn2code.ir.types import is_restricted
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from pn2code.emission.c_expressions import op_needs_context
-from pn2code.lowering import ir
-from pn2code.lowering.calls import ir_nodes
-from pn2code.lowering.ir import Ir, Rep, Stmt
+from pn2code.ir import nodes as ir
+from pn2code.ir.calls import ir_nodes
+from pn2code.ir.nodes import Ir, Rep, Stmt
 
 
 def does_nothing(value: Ir) -> bool:

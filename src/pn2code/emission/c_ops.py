@@ -1,4 +1,5 @@
-"""How built-in functions look in C: the table from names of `ml.builtins` (and of lowering's own operations) to C.
+"""How built-in functions look in C: the table from names of `ml.library.builtins` (and of lowering's own operations)
+to C.
 
 Three forms: an infix operator, a function, a function that takes the context (because it may raise or needs
 the arena).

@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 
 from pn2code.emission.c_expressions import PackedPlace, Types, c_integer
 from pn2code.emission.names import Names, label
-from pn2code.lowering import ir
-from pn2code.lowering.ir import Descriptor, Rep
-from pn2code.lowering.packing import colours
+from pn2code.ir import nodes as ir
+from pn2code.ir.nodes import Descriptor, Rep
+from pn2code.lowering.nets.packing import colours
 
 
 class Numbers:

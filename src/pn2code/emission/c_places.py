@@ -7,9 +7,9 @@ from collections.abc import Container, Iterable, Mapping, Sequence
 
 from pn2code.emission.c_expressions import Types
 from pn2code.emission.names import Names, label
-from pn2code.lowering import ir
-from pn2code.lowering.calls import ir_nodes
-from pn2code.lowering.ir import Descriptor, Rep
+from pn2code.ir import nodes as ir
+from pn2code.ir.calls import ir_nodes
+from pn2code.ir.nodes import Descriptor, Rep
 
 _SCALAR = frozenset({Rep.BOOL, Rep.INT, Rep.CHAR, Rep.ENUM})
 """Representations whose values C compares in the order of the colour set."""

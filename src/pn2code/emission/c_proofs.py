@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from textwrap import wrap
 
-from pn2code.lowering import ir
+from pn2code.ir import nodes as ir
 
 _WIDTH = 118
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from pn2code.emission.c_expressions import c_integer
 from pn2code.emission.c_lines import WIDTH, wrap
 from pn2code.emission.environment import c_bool, c_float, c_string
-from pn2code.lowering import ir
+from pn2code.ir import nodes as ir
 
 
 def braces(head: str, members: Iterable[str], end: str = ";", indent: str = "") -> list[str]:
@@ -105,13 +105,16 @@ def place(p: ir.Place, bag_name: str, initial: str, shares: str) -> list[str]:
     return braces("", members, ",", "    ")
 
 
-def transition(t: ir.Transition, code: str, further: Sequence[str]) -> list[str]:
+def transition(
+    t: ir.Transition, code: str, further: Sequence[str], *, is_others: bool = False
+) -> list[str]:
     """What hosts know of an instance of a transition.
 
     Args:
         t: the instance.
         code: the stem of the names of its functions.
         further: members that not all have.
+        is_others: it is played by another program than the supervisor.
     """
     members = [
         f"/* {t.index} */ .name = {c_string(t.name)}",
@@ -119,7 +122,7 @@ def transition(t: ir.Transition, code: str, further: Sequence[str]) -> list[str]
         f".origin = {c_string(t.origin.describe())}",
         f".owner = {t.owner}",
         f".priority = {t.priority}",
-        f"PN_CODE({code})",
+        f"{'PN_OTHERS' if is_others else 'PN_CODE'}({code})",
         *further,
     ]
     return braces("", members, ",", "    ")

@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from pn2code.lowering import ir
-from pn2code.lowering.ir import Transition
+from pn2code.ir import nodes as ir
+from pn2code.ir.nodes import Transition
 
 Agree = Callable[[int, int], bool]
 """Whether two places are kept in the same way."""

@@ -16,10 +16,10 @@ from pn2code.emission.c_slots import SCALARS
 from pn2code.emission.c_sums import Sum
 from pn2code.emission.environment import c_comment
 from pn2code.emission.names import Names, Scope
-from pn2code.lowering import ir
-from pn2code.lowering.calls import ir_nodes
-from pn2code.lowering.ir import Ir, Rep, Stmt
-from pn2code.lowering.values import is_atomic
+from pn2code.ir import nodes as ir
+from pn2code.ir.calls import ir_nodes
+from pn2code.ir.nodes import Ir, Rep, Stmt
+from pn2code.lowering.expressions.values import is_atomic
 
 _INDENT = "    "
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from pn2code.emission.c_expressions import Types, c_big_initialiser, c_integer
 from pn2code.emission.c_lines import wrap
 from pn2code.emission.environment import c_comment, c_float, c_string
 from pn2code.emission.names import label
-from pn2code.lowering import ir
-from pn2code.lowering.ir import Definition, Descriptor, Rep
+from pn2code.ir import nodes as ir
+from pn2code.ir.nodes import Definition, Descriptor, Rep
 
 _KINDS = {
     Rep.UNIT: "PN_KIND_UNIT",
@@ -152,6 +154,15 @@ class Tables:
         if d.fields:
             lines += self._fields(d, name, c_type)
             members += [f".count = {len(d.fields)}U", f".field = {name}_fields"]
+        if d.fields and d.type.rep is Rep.STRUCT:
+            parts = list(self._parts(key))
+            lines.append(f"static const pn_part_t {name}_parts[] = {{")
+            lines += [
+                f"    {{ &{self._names.table(part)}, offsetof({c_type}, {member}) }},"
+                for part, member in parts
+            ]
+            lines.append("};")
+            members += [f".part_count = {len(parts)}U", f".part = {name}_parts"]
         if d.element and d.type.rep is Rep.REF:
             members.append(f".element = &{self._names.table(d.element)}")
         elif d.element:
@@ -164,6 +175,19 @@ class Tables:
         if d.member:
             members.append(f".member = {self._members[d.member]}")
         return [*lines, *wrap(f"static const pn_type_t {name} = {{ {', '.join(members)} }};")]
+
+    def _parts(self, key: str) -> Iterator[tuple[str, str]]:
+        """Tables and members of what a record consists of; a record in it only if it is a subset, after its parts."""
+        for text, part in self._descriptors[key].fields:
+            inner = self._descriptors[part]
+            member = label(text)
+            if inner.type.rep is not Rep.STRUCT:
+                yield part, member
+                continue
+            for further, path in self._parts(part):
+                yield further, f"{member}.{path}"
+            if inner.member:
+                yield part, member
 
     @staticmethod
     def _flags(d: Descriptor) -> list[str]:

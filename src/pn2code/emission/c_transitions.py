@@ -15,8 +15,9 @@ from pn2code.emission.c_sums import Sum
 from pn2code.emission.c_texts import where
 from pn2code.emission.environment import c_comment
 from pn2code.emission.names import Members
-from pn2code.lowering import ir
-from pn2code.lowering.calls import ir_nodes
+from pn2code.emission.needs import SIDE
+from pn2code.ir import nodes as ir
+from pn2code.ir.calls import ir_nodes
 
 
 class Transitions(Frame):
@@ -83,8 +84,12 @@ class Transitions(Frame):
         return {
             "index": t.index,
             "code": code,
-            "lines": c_rows.transition(t, stem, further),
+            "lines": c_rows.transition(t, stem, further, is_others=self._is_others(t)),
         }
+
+    def _is_others(self, t: ir.Transition) -> bool:
+        """Whether it is played by another program than the supervisor of the cell."""
+        return 0 <= t.owner < len(self._net.owners) and self._net.owners[t.owner] != SIDE
 
     def _binding_name(self, shared: Shared) -> str:
         """The name of the instance, or of the page's transition where there are several."""

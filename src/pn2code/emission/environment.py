@@ -14,8 +14,8 @@ from functools import cache
 from jinja2 import Environment, FileSystemBytecodeCache, FileSystemLoader, StrictUndefined
 from jinja2.bccache import Bucket
 
-from pn2code.private_folder import private_folder
-from pn2code.resources import templates_folder
+from pn2code.base.private_folder import private_folder
+from pn2code.base.resources import templates_folder
 
 
 def c_comment(text: str) -> str:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from pn2code.base.resources import cnative_folder
 from pn2code.emission.output import OutputFile
-from pn2code.resources import cnative_folder
 
 HOSTS = ("simulate", "supervisor", "explore", "conform", "messages", "tables")
 """What a net can be linked with: the sources of a host begin with its name; all others are common to them."""

@@ -15,12 +15,10 @@ from pathlib import Path
 from pn2code.cell.partition import Channel, ChannelKind, OwnerKind, Partition
 from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
 from pn2code.diagnostics import Origin
+from pn2code.emission import c_flags, needs
 from pn2code.emission.environment import c_float, c_int, render
 from pn2code.emission.output import Block, OutputFile
 from pn2code.net.flat import FlatPlace
-
-SIDE = "supervisor"
-"""The supervisor's name in the shared directory."""
 
 _INT_MIN, _INT_MAX = -(2**63), 2**63 - 1
 _REAL_MAX = 1.7976931348623157e308
@@ -120,6 +118,7 @@ def emit(
     version: str,
     verdicts: Sequence[str] = (),
     arena: int | None = None,
+    net_c: str | None,
 ) -> tuple[OutputFile, ...]:
     """`cell_config.c` and `Makefile`.
 
@@ -129,6 +128,7 @@ def emit(
         digest: of net and cell, the same as in net.c.
         version: of pn2code.
         verdicts: lines about what was checked, for the head.
+        net_c: the generated net, for what it needs of the runtime; None: it is not linked with it.
         arena: bytes for lists and strings; None: the usual number.
     """
     net = partition.net
@@ -170,13 +170,16 @@ def emit(
         )
     is_cell = bool(peers or channels)
     source_name = Path(net.file).name
+    required = needs.of(net_c, is_cell=bool(channels)) if net_c is not None else None
     config = render(
         "c/cell_config.c.j2",
+        needs=required,
+        transitions=len(net.transitions),
         version=version,
         source=source_name,
         digest=digest,
         name=name,
-        side=SIDE,
+        side=needs.SIDE,
         verdicts=verdicts,
         owner=supervisor if is_cell else -1,
         reply_timeout_s=float(reply_timeout_s),
@@ -189,7 +192,12 @@ def emit(
         finals=[{"place": p, "name": net.places[p].name} for p in partition.final_places],
     )
     makefile = render(
-        "c/Makefile.j2", version=version, source=" ".join(source_name.split()), has_simulate=True
+        "c/Makefile.j2",
+        version=version,
+        source=" ".join(source_name.split()),
+        has_simulate=True,
+        c_flags=c_flags,
+        needs=required,
     )
     elements = [
         (net.places[c.place].name, net.places[c.place].origins[0], f".place = {c.place}U,")

@@ -14,7 +14,7 @@ from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.diagnostics.render import report
 from pn2code.emission.environment import render
 from pn2code.emission.output import Block, OutputFile
-from pn2code.lowering.robot_ir import (
+from pn2code.robot_scripts.ir import (
     Chain,
     Comment,
     Declared,
@@ -25,7 +25,7 @@ from pn2code.lowering.robot_ir import (
     Repeat,
     RobotIR,
 )
-from pn2code.lowering.robot_names import identifier
+from pn2code.robot_scripts.names import identifier
 from pn2code.tdl import tree as t
 from pn2code.tdl.check import check
 from pn2code.tdl.parse import parse

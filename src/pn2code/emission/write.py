@@ -10,9 +10,9 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
+from pn2code.base.os_reason import os_reason
 from pn2code.emission.manifest import NAME as MANIFEST
 from pn2code.emission.output import OutputFile
-from pn2code.os_reason import os_reason
 
 
 @dataclass(frozen=True, slots=True)

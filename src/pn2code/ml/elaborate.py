@@ -21,19 +21,34 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from pn2code.diagnostics import Diagnostics, Origin, PlacedText, Severity, SourceText, Span
-from pn2code.ml import codes, core, library
-from pn2code.ml import syntax as s
-from pn2code.ml.annotations import Annotations
-from pn2code.ml.builtins import INFIX
-from pn2code.ml.colset_specs import Colsets, ColsetSpec
-from pn2code.ml.colsets import Colset
-from pn2code.ml.computing import Compute, Computed, Computing
-from pn2code.ml.constants import Constant, fold
-from pn2code.ml.context import Context, TooDeepError, suggestion
-from pn2code.ml.core import Program, Symbol
-from pn2code.ml.declarations import Declarations
-from pn2code.ml.declared import break_modules, declared_by, types_declared_by
-from pn2code.ml.environment import (
+from pn2code.ml import codes, library
+from pn2code.ml.core import terms as core
+from pn2code.ml.core.colsets import Colset
+from pn2code.ml.core.computing import Compute, Computed, Computing
+from pn2code.ml.core.constants import Constant, fold
+from pn2code.ml.core.terms import Program, Symbol
+from pn2code.ml.core.types import STRING, Type
+from pn2code.ml.library.builtins import INFIX
+from pn2code.ml.parsing import syntax as s
+from pn2code.ml.parsing.fixity import (
+    Fixities,
+    resolve_declaration,
+    resolve_expression,
+    resolve_pattern,
+)
+from pn2code.ml.parsing.parser import (
+    declared_names,
+    is_layered,
+    parse_expression,
+    parse_layered,
+    parse_program,
+)
+from pn2code.ml.typing.annotations import Annotations
+from pn2code.ml.typing.colset_specs import Colsets, ColsetSpec
+from pn2code.ml.typing.context import Context, TooDeepError, suggestion
+from pn2code.ml.typing.declarations import Declarations
+from pn2code.ml.typing.declared import break_modules, declared_by, types_declared_by
+from pn2code.ml.typing.environment import (
     Binding,
     BrokenEntry,
     BrokenType,
@@ -42,22 +57,13 @@ from pn2code.ml.environment import (
     Scope,
     UnsupportedEntry,
 )
-from pn2code.ml.expressions import Expressions
-from pn2code.ml.fixity import Fixities, resolve_declaration, resolve_expression, resolve_pattern
-from pn2code.ml.inference import ICon, TypeTooLargeError, from_type
-from pn2code.ml.inscriptions import Inscriptions, TypedCode
-from pn2code.ml.names import Names
-from pn2code.ml.parser import (
-    declared_names,
-    is_layered,
-    parse_expression,
-    parse_layered,
-    parse_program,
-)
-from pn2code.ml.patterns import Patterns
-from pn2code.ml.repeats import Repeats
-from pn2code.ml.types import STRING, Type
-from pn2code.ml.used_files import UsedFiles
+from pn2code.ml.typing.expressions import Expressions
+from pn2code.ml.typing.inference import ICon, TypeTooLargeError, from_type
+from pn2code.ml.typing.inscriptions import Inscriptions, TypedCode
+from pn2code.ml.typing.names import Names
+from pn2code.ml.typing.patterns import Patterns
+from pn2code.ml.typing.repeats import Repeats
+from pn2code.ml.typing.used_files import UsedFiles
 
 __all__ = ["ColsetSpec", "Elaborator", "TypedCode", "is_layered"]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 
-from pn2code.semantics.files import FileProblem, Files, OutStream
+from pn2code.semantics.evaluation.files import FileProblem, Files, OutStream
 
 
 class Folder:

@@ -16,14 +16,14 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from pn2code.diagnostics import Diagnostic, Diagnostics, Severity, SourceText, Span
-from pn2code.ml.core import Dec, Let, RecBind, RecordExp, Symbol, Var
+from pn2code.ml.core.terms import Dec, Let, RecBind, RecordExp, Symbol, Var
+from pn2code.ml.core.types import label_key, record
 from pn2code.ml.elaborate import Elaborator
-from pn2code.ml.types import label_key, record
 from pn2code.monitors.codes import MONITOR_ERROR, UNSUPPORTED_MONITOR
 from pn2code.monitors.kinds import COLLECTORS, Kind, Monitor, ml_name
 from pn2code.net.flat import FlatNet, FlatTransition
-from pn2code.semantics.evaluate import Evaluator
-from pn2code.semantics.values import UNIT, Data, Native, Value
+from pn2code.semantics.evaluation.evaluate import Evaluator
+from pn2code.semantics.values.data import UNIT, Data, Native, Value
 
 _WRITTEN = frozenset({Kind.DATA_COLLECTION, Kind.BREAKPOINT, Kind.WRITE_IN_FILE, Kind.USER_DEFINED})
 """Kinds with functions that the author writes."""

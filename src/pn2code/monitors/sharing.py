@@ -11,12 +11,12 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
-from pn2code.ml.core import Dec, RecBind, Symbol, ValBind
-from pn2code.ml.types import TCon, TFun, TRecord, Type
+from pn2code.ml.core.terms import Dec, RecBind, Symbol, ValBind
+from pn2code.ml.core.types import TCon, TFun, TRecord, Type
 from pn2code.monitors.functions import MonitorProgram
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.effects import Effect, Effects
-from pn2code.semantics.evaluate import variables
+from pn2code.semantics.evaluation.effects import Effect, Effects
+from pn2code.semantics.evaluation.evaluate import variables
 
 
 def shared_references(program: MonitorProgram, net: FlatNet) -> tuple[str, ...]:

@@ -1,4 +1,4 @@
-"""Monitors without functions, told to the compiled simulator (cnative/src/simulate_watch.c).
+"""Monitors without functions, told to the compiled simulator (cnative/src/simulate/simulate_watch.c).
 
 simple = Simple.of(program, net, breakpoints=True)       # None: the token game has to watch
 simple.options()                                         # ["--watch", "S 3 0,4", ...]

@@ -15,12 +15,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Span
-from pn2code.frozen import frozen
-from pn2code.ml import core
-from pn2code.ml.colsets import Colset
-from pn2code.ml.colsets import Kind as ColsetKind
-from pn2code.ml.types import INT, UNIT, TCon, label_key, record
+from pn2code.ml.core import terms as core
+from pn2code.ml.core.colsets import Colset
+from pn2code.ml.core.colsets import Kind as ColsetKind
+from pn2code.ml.core.types import INT, UNIT, TCon, label_key, record
 from pn2code.monitors.functions import Checked, MonitorProgram, constructor
 from pn2code.monitors.kinds import Kind, Monitor
 from pn2code.net.flat import (
@@ -32,8 +32,8 @@ from pn2code.net.flat import (
     FlatTransition,
     Form,
 )
-from pn2code.semantics.effects import Effect, Effects
-from pn2code.semantics.evaluate import variables
+from pn2code.semantics.evaluation.effects import Effect, Effects
+from pn2code.semantics.evaluation.evaluate import variables
 
 
 @frozen

@@ -26,13 +26,13 @@ from pn2code.monitors.kinds import BREAKPOINTS, COLLECTORS, Kind, Monitor, kind_
 from pn2code.monitors.statistics import Number, Statistics, Untimed
 from pn2code.monitors.statistics import Timed as TimedStatistics
 from pn2code.net.flat import FlatNet, PlaceInstance
-from pn2code.semantics.enabling import GameError, running
-from pn2code.semantics.files import FileProblem, Files
-from pn2code.semantics.game import Game
-from pn2code.semantics.marking import BindingElement, PlaceMarking
-from pn2code.semantics.multiset import MultiSet
-from pn2code.semantics.report import time_text
-from pn2code.semantics.values import MlUnavailable, Timed, Value, int_text
+from pn2code.semantics.evaluation.files import FileProblem, Files
+from pn2code.semantics.game.enabling import GameError, running
+from pn2code.semantics.game.marking import BindingElement, PlaceMarking
+from pn2code.semantics.game.report import time_text
+from pn2code.semantics.game.token_game import Game
+from pn2code.semantics.values.data import MlUnavailable, Timed, Value, int_text
+from pn2code.semantics.values.multiset import MultiSet
 
 
 class _Unavailable(Exception):  # noqa: N818

@@ -17,7 +17,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from pn2code.diagnostics import Diagnostics, Note, Origin, Span
-from pn2code.ml.core import Apply, Builtin, Exp, If, Pat, RecordExp, Symbol
+from pn2code.ml.core.terms import Apply, Builtin, Exp, If, Pat, RecordExp, Symbol
 from pn2code.net.codes import CODE_OUTPUT_BOUND, LOCAL_NAME, SUMMANDS_SHARE, UNBOUND_VARIABLE
 from pn2code.net.enumerable import DECLARED, SMALL, size
 from pn2code.net.flat import (

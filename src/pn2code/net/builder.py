@@ -12,11 +12,11 @@ from collections.abc import Container, Sequence
 from dataclasses import replace
 from itertools import count
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Origin, SourceText, Span
-from pn2code.frozen import frozen
-from pn2code.ml import types
-from pn2code.ml.colsets import Colset, Kind
-from pn2code.ml.core import Apply, Builtin, Exp, If, Lit, RecordExp, Symbol, Var
+from pn2code.ml.core import types
+from pn2code.ml.core.colsets import Colset, Kind
+from pn2code.ml.core.terms import Apply, Builtin, Exp, If, Lit, RecordExp, Symbol, Var
 from pn2code.ml.elaborate import Elaborator
 from pn2code.net.binding import Parts, Planner
 from pn2code.net.flat import (

@@ -11,13 +11,13 @@ from dataclasses import replace
 from pathlib import Path
 
 from pn2code.diagnostics import Diagnostics, Note, Origin, SourceText
-from pn2code.diagnostics.near import did_you_mean
-from pn2code.ml.colsets import Colset, Kind
-from pn2code.ml.computing import Compute
-from pn2code.ml.core import Exp, Lit
+from pn2code.diagnostics.suggestions import did_you_mean
+from pn2code.ml.core.colsets import Colset, Kind
+from pn2code.ml.core.computing import Compute
+from pn2code.ml.core.terms import Exp, Lit
+from pn2code.ml.core.types import INT, Type, list_of, timed_of
 from pn2code.ml.elaborate import ColsetSpec, Elaborator, is_layered
-from pn2code.ml.parser import declared_names, odd_declaration
-from pn2code.ml.types import INT, Type, list_of, timed_of
+from pn2code.ml.parsing.parser import declared_names, odd_declaration
 from pn2code.net import initial_effects, reserved_words, space_names
 from pn2code.net.binding import Parts, Planner
 from pn2code.net.codes import (

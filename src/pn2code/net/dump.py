@@ -14,7 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from pn2code.ml.core import Exp
+from pn2code.ml.core.terms import Exp
 from pn2code.net.flat import (
     BindAll,
     BindEquation,

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from pn2code.ml.core import Symbol
+from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import ArcKind
 from pn2code.net.typed import TypedArc
 from pn2code.net.uses import NetVariables, pattern_variables

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from pn2code.ml.colsets import Colset, Kind
-from pn2code.ml.core import ListExp
+from pn2code.ml.core.colsets import Colset, Kind
+from pn2code.ml.core.terms import ListExp
 
 SMALL = 100
 """CPN Tools' limit for enumerating a variable that nothing binds."""

@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from pn2code.frozen import frozen
+from pn2code.base.frozen import frozen
 from pn2code.net.engine_names import EngineNames, legal_name
 from pn2code.net.flat import FlatNet, PlaceInstance
 

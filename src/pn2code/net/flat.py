@@ -14,10 +14,10 @@ from collections.abc import Mapping
 from dataclasses import field
 from enum import Enum
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Origin
-from pn2code.frozen import frozen
-from pn2code.ml.colsets import Colset
-from pn2code.ml.core import Exp, Pat, Program, Symbol
+from pn2code.ml.core.colsets import Colset
+from pn2code.ml.core.terms import Exp, Pat, Program, Symbol
 
 
 class ArcKind(Enum):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pn2code.diagnostics import Diagnostics, TooManyDiagnosticsError
-from pn2code.ml.computing import Compute
+from pn2code.ml.core.computing import Compute
 from pn2code.net.check import check
 from pn2code.net.flat import FlatNet
 from pn2code.net.flatten import check_hierarchy, flatten
@@ -52,8 +52,8 @@ def examine(
         values: replacements for `val` declarations of the net: name -> CPN ML text.
         int_bits: width of `int`: 31, as in CPN Tools, or 64.
         drawn: whether the document will be drawn, that is, has its layout.
-        compute: evaluates bounds of colour sets and priorities that cannot be folded (`semantics.constants`); without
-            it nets that need it are refused.
+        compute: evaluates bounds of colour sets and priorities that cannot be folded
+            (`semantics.evaluation.constants`); without it nets that need it are refused.
     """
     try:
         return _examine(path, d, values, int_bits, drawn, compute)

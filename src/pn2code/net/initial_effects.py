@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from pn2code.diagnostics import Diagnostics
-from pn2code.ml.core import Builtin, Exp, Program, RecBind, Symbol, ValBind, Var
-from pn2code.ml.types import TCon, TFun, TRecord, Type
+from pn2code.ml.core.terms import Builtin, Exp, Program, RecBind, Symbol, ValBind, Var
+from pn2code.ml.core.types import TCon, TFun, TRecord, Type
 from pn2code.net.codes import INITIAL_EFFECT
 from pn2code.net.typed import TypedPage
 from pn2code.net.uses import pattern_variables, walk

@@ -8,8 +8,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import field
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Origin
-from pn2code.frozen import frozen
 from pn2code.net.flat import ArcKind
 from pn2code.reading.document import Document, Inscription, Layout, RawDeclaration
 

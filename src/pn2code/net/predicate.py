@@ -5,10 +5,10 @@
 
 from __future__ import annotations
 
-from pn2code.frozen import frozen
-from pn2code.ml import core
-from pn2code.ml.core import Symbol
-from pn2code.ml.types import Type, list_of, timed_of
+from pn2code.base.frozen import frozen
+from pn2code.ml.core import terms as core
+from pn2code.ml.core.terms import Symbol
+from pn2code.ml.core.types import Type, list_of, timed_of
 from pn2code.net.flat import FlatPlace
 
 

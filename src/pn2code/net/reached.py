@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 
 from pn2code.diagnostics import Diagnostic, Origin
-from pn2code.ml.builtins import BUILTINS
 from pn2code.ml.codes import UNSUPPORTED_BUILTIN
-from pn2code.ml.core import Builtin, Exp, Lambda, RecBind, Symbol, ValBind, Var
+from pn2code.ml.core.terms import Builtin, Exp, Lambda, RecBind, Symbol, ValBind, Var
+from pn2code.ml.library.builtins import BUILTINS
 from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.net.uses import pattern_variables, walk
 

@@ -12,9 +12,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from pn2code.diagnostics import Diagnostics, Origin, SourceText, Span
-from pn2code.ml import syntax as s
-from pn2code.ml.declared import declared_by, types_declared_by
-from pn2code.ml.lexer import tokenize
+from pn2code.ml.parsing import syntax as s
+from pn2code.ml.parsing.lexer import tokenize
+from pn2code.ml.typing.declared import declared_by, types_declared_by
 from pn2code.net.codes import NOT_IN_CPN_ML, RESERVED_WORD
 from pn2code.reading.document import RawColset, RawDeclaration, RawVar
 

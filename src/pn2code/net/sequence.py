@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Sequence
 from itertools import islice
 
-from pn2code.ml.core import Symbol
+from pn2code.ml.core.terms import Symbol
 
 Names = frozenset[Symbol]
 MOST = 1_000

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.ml.core import DatatypeDec, ExceptionDec, Program, RecBind, ValBind
+from pn2code.ml.core.terms import DatatypeDec, ExceptionDec, Program, RecBind, ValBind
 from pn2code.net.codes import SPACE_NAME
 from pn2code.net.uses import pattern_variables
 

@@ -12,7 +12,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from pn2code.diagnostics import Diagnostics
-from pn2code.ml.core import (
+from pn2code.ml.core.terms import (
     Apply,
     Builtin,
     Con,
@@ -31,7 +31,7 @@ from pn2code.ml.core import (
     Sequence,
     Var,
 )
-from pn2code.ml.types import INT, TRecord
+from pn2code.ml.core.types import INT, TRecord
 from pn2code.net.codes import UNSUPPORTED_TIMED_INPUT
 from pn2code.net.flat import Form, Term
 from pn2code.net.uses import NetVariables, pattern_variables

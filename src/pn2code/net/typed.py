@@ -7,10 +7,10 @@ from __future__ import annotations
 
 from dataclasses import field
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Origin
-from pn2code.frozen import frozen
-from pn2code.ml.colsets import Colset
-from pn2code.ml.core import Exp, Program, Symbol
+from pn2code.ml.core.colsets import Colset
+from pn2code.ml.core.terms import Exp, Program, Symbol
 from pn2code.ml.elaborate import Elaborator
 from pn2code.net.flat import ArcInscription, ArcKind, BindStep, CodeSegment, Form
 from pn2code.net.linked import FusionSet, Net, SubstitutionTransition

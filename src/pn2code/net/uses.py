@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from pn2code.diagnostics import Span
-from pn2code.ml.core import (
+from pn2code.ml.core.terms import (
     Apply,
     Builtin,
     Case,

@@ -13,7 +13,7 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 
 from pn2code.diagnostics import Diagnostics, Note, Origin, SourceText
-from pn2code.diagnostics.near import did_you_mean
+from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.pnml.codes import PNML_ELEMENT, PNML_REFERENCE, UNSUPPORTED_PNML
 from pn2code.pnml.names import Names
 from pn2code.pnml.nodes import Strangers

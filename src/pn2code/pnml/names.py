@@ -10,7 +10,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from pn2code.ml.builtins import BUILTINS, DATATYPES, EXCEPTIONS, INFIX, STRUCTURES, TYPE_ARITY
+from pn2code.ml.library.builtins import (
+    BUILTINS,
+    DATATYPES,
+    EXCEPTIONS,
+    INFIX,
+    STRUCTURES,
+    TYPE_ARITY,
+)
 
 _LEGAL = re.compile(r"[A-Za-z][A-Za-z0-9_']*")
 _OTHER = re.compile(r"[^A-Za-z0-9_']+")

@@ -14,7 +14,7 @@ import re
 from dataclasses import replace
 
 from pn2code.diagnostics import Diagnostics, Note, Origin, SourceText, TooManyDiagnosticsError
-from pn2code.diagnostics.near import did_you_mean
+from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.pnml.codes import (
     NOT_PNML,
     PNML_ELEMENT,

@@ -11,12 +11,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Literal, assert_never
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Note, SourceText, Span
-from pn2code.frozen import frozen
-from pn2code.ml import core
 from pn2code.ml.codes import TYPE_MISMATCH
+from pn2code.ml.core import terms as core
+from pn2code.ml.core.types import BOOL, INT, TFun, Type, tuple_of
 from pn2code.ml.elaborate import Elaborator
-from pn2code.ml.types import BOOL, INT, TFun, Type, tuple_of
 from pn2code.net.flat import FlatNet
 from pn2code.net.predicate import Predicate, marking_type
 from pn2code.properties import codes

@@ -18,12 +18,12 @@ from pn2code.net.flat import FlatNet
 from pn2code.net.predicate import Predicate
 from pn2code.properties import judge_ltl
 from pn2code.properties import meaning as m
-from pn2code.semantics.files import Files
-from pn2code.semantics.game import Game
-from pn2code.semantics.graph import state_space
-from pn2code.semantics.marking import Marking
-from pn2code.semantics.multiset import MultiSet
-from pn2code.semantics.values import Timed, Value
+from pn2code.semantics.evaluation.files import Files
+from pn2code.semantics.game.graph import state_space
+from pn2code.semantics.game.marking import Marking
+from pn2code.semantics.game.token_game import Game
+from pn2code.semantics.values.data import Timed, Value
+from pn2code.semantics.values.multiset import MultiSet
 
 Nodes = frozenset[int]
 

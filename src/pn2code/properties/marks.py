@@ -11,9 +11,9 @@ from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Any
 
 from pn2code.diagnostics import Diagnostics, SourceText
-from pn2code.ml import syntax as s
-from pn2code.ml.core import Exp, Symbol, Var
+from pn2code.ml.core.terms import Exp, Symbol, Var
 from pn2code.ml.elaborate import Elaborator
+from pn2code.ml.parsing import syntax as s
 from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.net.predicate import marking_type
 from pn2code.net.uses import walk

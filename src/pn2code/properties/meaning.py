@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Origin
-from pn2code.frozen import frozen
-from pn2code.ml import core
+from pn2code.ml.core import terms as core
 from pn2code.net.predicate import Predicate
 
 

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sequence
 from typing import Literal
 
 from pn2code.diagnostics import Diagnostics, Span
-from pn2code.diagnostics.near import did_you_mean, nearest
+from pn2code.diagnostics.suggestions import did_you_mean, nearest
 from pn2code.net.engine_names import EngineNames
 from pn2code.net.finding import Finder, Instance
 from pn2code.net.flat import FlatNet

@@ -13,10 +13,10 @@ from lark import Lark, Token, Transformer, v_args
 from lark.exceptions import UnexpectedCharacters, UnexpectedToken, VisitError
 from lark.tree import Meta
 
+from pn2code.base.parser_cache import kept_lark
 from pn2code.diagnostics import Diagnostics, SourceText, Span
-from pn2code.diagnostics.near import did_you_mean
-from pn2code.expected import listed, literal
-from pn2code.parser_cache import kept_lark
+from pn2code.diagnostics.expected import listed, literal
+from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.properties import codes
 from pn2code.properties import tree as t
 from pn2code.properties.chunks import blanked, part

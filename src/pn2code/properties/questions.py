@@ -4,7 +4,7 @@
     1 not 0
     ? invariant 1       questions, one for each property, in order
 
-(The numbers of the items are not written.) cnative/src/explore_query.c reads them.
+(The numbers of the items are not written.) cnative/src/explore/query/explore_query.c reads them.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from typing import Any
 from pn2code.cell.config import CellConfig
 from pn2code.cell.toml_file import Locator, read
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
-from pn2code.diagnostics.near import did_you_mean
+from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.ml.elaborate import Elaborator
 from pn2code.net.flat import FlatNet
 from pn2code.properties import codes

@@ -16,12 +16,12 @@ from dataclasses import replace
 from itertools import product
 from pathlib import Path
 
-from pn2code.frozen import frozen
-from pn2code.ml import core
-from pn2code.ml.types import BOOL, TFun
+from pn2code.base.frozen import frozen
+from pn2code.base.whole_file import whole_file
+from pn2code.ml.core import terms as core
+from pn2code.ml.core.types import BOOL, TFun
 from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.properties import meaning as m
-from pn2code.whole_file import whole_file
 
 MOST = 4
 """Conditions on one transition that one net is made for."""

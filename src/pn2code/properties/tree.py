@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from dataclasses import field
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import SourceText, Span
-from pn2code.frozen import frozen
 
 
 @frozen

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from dataclasses import field
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Origin, SourceText
-from pn2code.frozen import frozen
 
 
 @frozen

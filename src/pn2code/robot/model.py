@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.diagnostics.near import did_you_mean
+from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes, urdf
 from pn2code.robot.transforms import Array
 from pn2code.robot.urdf import Joint, Urdf

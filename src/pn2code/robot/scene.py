@@ -20,7 +20,7 @@ import numpy as np
 
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.keys import in_words
-from pn2code.diagnostics.near import did_you_mean
+from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes
 from pn2code.robot.commands import Pose
 from pn2code.robot.kinematics import BRANCH_NAMES, Branch, Kinematics

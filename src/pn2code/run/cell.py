@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any
 
 from pn2code import pipeline
+from pn2code.base.os_reason import os_reason
 from pn2code.cell.codes import CELL_MISSING
 from pn2code.cell.config import CellConfig
 from pn2code.cell.names import counted
@@ -29,7 +30,6 @@ from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.diagnostics.codes import register
 from pn2code.emission.output import OutputFile
 from pn2code.emission.write import OutputFolderError, write
-from pn2code.os_reason import os_reason
 from pn2code.report.rows import rows_tsv
 from pn2code.report.summary import summarise
 from pn2code.robot import scene
@@ -44,10 +44,10 @@ from pn2code.run.realtime import RealtimeEngine
 from pn2code.run.record import RunRecord, RunWarning
 from pn2code.run.sensors import load as load_sensors
 from pn2code.run.supervisor import EXIT_USAGE, Exit, SupervisorProcess
-from pn2code.run.trace import GrowingTrace, trace_text
 from pn2code.tdl.check import CheckedProgram, check
 from pn2code.tdl.parse import parse
 from pn2code.toolchain import build
+from pn2code.trace.growing import GrowingTrace, trace_text
 
 RUN_NO_CELL = register(
     "run-no-cell",
@@ -146,7 +146,7 @@ def prepare(path: Path, options: RunOptions, d: Diagnostics) -> Prepared | None:
         return None
     folder = options.out / "program"
     write(folder, generated.files)
-    program = build.build(folder, generated.files, d)
+    program = build.build(folder, generated.files, d, target="supervisor.traced")
     if program is None:
         return None
     return Prepared(generated, config, robot_cell, scripts, program)

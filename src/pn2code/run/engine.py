@@ -47,7 +47,6 @@ from pn2code.run.files import RobotFiles
 from pn2code.run.record import ActionRecord, ActivityRecord, MessageRecord, RunRecord
 from pn2code.run.sensors import Sensors
 from pn2code.run.supervisor import SupervisorProcess
-from pn2code.run.trace import GrowingTrace
 from pn2code.tdl.check import CheckedProgram
 from pn2code.tdl.interpret import (
     MOST_AT_ONCE,
@@ -63,6 +62,7 @@ from pn2code.tdl.interpret import (
     Scalar,
     Sense,
 )
+from pn2code.trace.growing import GrowingTrace
 
 
 class Observer(Protocol):

@@ -8,6 +8,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NoReturn, TypeVar
 
+from pn2code.base.os_reason import os_reason
 from pn2code.channels import (
     Message,
     NotWritten,
@@ -17,7 +18,6 @@ from pn2code.channels import (
     SharedDirectory,
     Status,
 )
-from pn2code.os_reason import os_reason
 from pn2code.tdl.interpret import FileError
 
 T = TypeVar("T")

@@ -15,8 +15,8 @@ from typing import Any
 from pn2code.channels import LOOK_S, PeerState
 from pn2code.robot.commands import Command
 from pn2code.run.engine import CellStoppedError, Engine, RobotRunner
-from pn2code.run.merge import merge
 from pn2code.run.record import RunRecord
+from pn2code.trace.merge import merge
 
 PAUSE_S = 0.001
 """Between two looks at the files: the cycle time of a robot controller's background task."""

@@ -14,13 +14,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from pn2code.base.os_reason import os_reason
 from pn2code.cell.codes import CELL_FILE, CELL_MISSING, CELL_VALUE
 from pn2code.cell.config import CellConfig, SensorConfig
 from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
 from pn2code.channels.scalars import Malformed, format_scalars, parse_scalars, quote
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.net.flat import FlatNet
-from pn2code.os_reason import os_reason
 
 Value = int | float | bool | str
 _NAMED = 5

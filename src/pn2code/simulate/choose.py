@@ -19,7 +19,7 @@ from pn2code.net.front import Examined
 from pn2code.simulate import compiled, programs, reference
 from pn2code.simulate.codes import ENGINE_CHANGED, SIMULATOR_FAILED
 from pn2code.simulate.run import Outcome, Request
-from pn2code.simulate.script import Trace
+from pn2code.trace.script import Trace
 
 GROWTH = 16
 MOST_ROOM = 1 << 22

@@ -1,4 +1,4 @@
-"""A run by the compiled net: a process of its own that tells how it goes on (cnative/src/simulate_report.c).
+"""A run by the compiled net: a process of its own that tells how it goes on (cnative/src/simulate/simulate_report.c).
 
 Monitors without functions are watched by the process. With others it also sends its trace, and the token game follows
 it step by step: it repeats each occurrence, without looking for what is enabled, and the monitors watch that. Then the
@@ -24,14 +24,14 @@ from pn2code.monitors.simple import Simple
 from pn2code.monitors.stops import Stopping
 from pn2code.monitors.watch import not_one_list
 from pn2code.net.flat import FlatNet, FlatTransition
-from pn2code.semantics.colour_json import from_json
-from pn2code.semantics.marking import BindingElement, Marking, place_from_json
-from pn2code.semantics.report import value_text
+from pn2code.semantics.game.marking import BindingElement, Marking, place_from_json
+from pn2code.semantics.game.report import value_text
+from pn2code.semantics.values.colour_json import from_json
 from pn2code.simulate.codes import SIMULATOR_FAILED
 from pn2code.simulate.reference import ReferenceRun
 from pn2code.simulate.run import Failure, Outcome, Output, Request
-from pn2code.simulate.script import Trace, TraceRefusedError
-from pn2code.simulate.trace import TraceUnwritableError
+from pn2code.trace.script import Trace, TraceRefusedError
+from pn2code.trace.writing import TraceUnwritableError
 
 ENDLESS_S = 120.0
 """Without a word for so long, the process is in an expression that has no end: between steps it says something."""

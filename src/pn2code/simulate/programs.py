@@ -15,13 +15,13 @@ from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission import c as emit_c
 from pn2code.emission.output import OutputFile
-from pn2code.lowering import net as lower_net
-from pn2code.lowering.packing import MOST_WIDTH, Packing
+from pn2code.lowering.nets import net as lower_net
+from pn2code.lowering.nets.packing import MOST_WIDTH, Packing
 from pn2code.net.flat import FlatNet
 from pn2code.toolchain import programs
 from pn2code.toolchain.programs import Host
 
-HOST = Host("simulate", without="; or use `--engine reference`", whole="simulate_play.c")
+HOST = Host("simulate", without="; or use `--engine reference`", whole="simulate/simulate_play.c")
 ROOM = 1 << 14
 """Different tokens that a place can hold at first. What is not used costs address space only."""
 PACKING = Packing({}, MOST_WIDTH, most_colours=2, successors=False)

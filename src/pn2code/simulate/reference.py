@@ -13,15 +13,15 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.monitors.folder import Folder
 from pn2code.monitors.watch import Breakpoint, Watch
 from pn2code.net.flat import FlatTransition
-from pn2code.semantics.colour_json import to_json
-from pn2code.semantics.enabling import GameError
-from pn2code.semantics.files import Files
-from pn2code.semantics.game import Game
-from pn2code.semantics.marking import BindingElement, Marking, variable_text
-from pn2code.semantics.random import CHOICE, RandomStream
+from pn2code.semantics.evaluation.files import Files
+from pn2code.semantics.evaluation.random import CHOICE, RandomStream
+from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.marking import BindingElement, Marking, variable_text
+from pn2code.semantics.game.token_game import Game
+from pn2code.semantics.values.colour_json import to_json
 from pn2code.simulate.run import Failure, Outcome, Output, Request
-from pn2code.simulate.script import Step, Trace, TraceRefusedError
-from pn2code.simulate.trace import TraceFile, json_text
+from pn2code.trace.script import Step, Trace, TraceRefusedError
+from pn2code.trace.writing import TraceFile, json_text
 
 
 def run(request: Request, d: Diagnostics) -> Outcome:
@@ -109,7 +109,7 @@ class ReferenceRun:
         game = self.game
         assert game is not None
         try:
-            is_over = done > 0 and not game.enabled_transitions(game.settle(game.marking))
+            is_over = done > 0 and not game.enabled_transitions(game.advance_time(game.marking))
         except GameError as error:
             return self._fail(error)
         return "finished" if is_over else "steps"
@@ -204,7 +204,7 @@ class ReferenceRun:
         enabled = game.enabled_transitions(game.marking)
         if enabled:
             return enabled, "until" if self._is_beyond(now) else ""
-        later = game.settle(game.marking) if game.net.timed else game.marking
+        later = game.advance_time(game.marking) if game.net.timed else game.marking
         if later.time == now:
             return [], "finished"
         if self._is_beyond(later.time):
@@ -292,7 +292,7 @@ class ReferenceRun:
                     f"it says time {step.time}, but the clock shows {game.marking.time}", step.line
                 )
             element = BindingElement.make(step.transition, step.bound)
-            obstacle = game.obstacle(game.marking, element)
+            obstacle = game.why_disabled(game.marking, element)
         except GameError as error:
             return self._fail(error, step.transition)
         if obstacle is not None:

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.report import marking_text, places, time_text
+from pn2code.semantics.game.report import marking_text, places, time_text
 from pn2code.simulate.run import Outcome
 
 _WHY = {

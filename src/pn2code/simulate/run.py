@@ -11,8 +11,8 @@ from pn2code.diagnostics import Diagnostics, Note, Origin, Span
 from pn2code.monitors.functions import MonitorProgram
 from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.semantics.codes import RUNTIME_ERROR
-from pn2code.semantics.enabling import GameError
-from pn2code.semantics.marking import Marking
+from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.marking import Marking
 
 Progress = Callable[[int, int | float], None]
 """Is told the number of steps and the model time, now and then."""

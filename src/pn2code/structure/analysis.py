@@ -13,10 +13,10 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.effects import Effects, outside
-from pn2code.semantics.evaluate import Evaluator
-from pn2code.semantics.game import Game, GameError
-from pn2code.semantics.multiset import MultiSet, TimedMultiSet
+from pn2code.semantics.evaluation.effects import Effects, outside
+from pn2code.semantics.evaluation.evaluate import Evaluator
+from pn2code.semantics.game.token_game import Game, GameError
+from pn2code.semantics.values.multiset import MultiSet, TimedMultiSet
 from pn2code.structure import flows, siphons
 from pn2code.structure.bounds import (
     MOST_PROGRAMS,

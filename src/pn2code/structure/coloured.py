@@ -15,12 +15,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from pn2code.ml.colsets import Colset, Kind
-from pn2code.ml.types import REAL, UNIT, TCon, TFun, TRecord, Type
+from pn2code.ml.core.colsets import Colset, Kind
+from pn2code.ml.core.types import REAL, UNIT, TCon, TFun, TRecord, Type
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.evaluate import Evaluator
-from pn2code.semantics.multiset import MultiSet, TimedMultiSet
-from pn2code.semantics.values import MlException, MlLimit, MlUnavailable, Value
+from pn2code.semantics.evaluation.evaluate import Evaluator
+from pn2code.semantics.values.data import MlException, MlLimit, MlUnavailable, Value
+from pn2code.semantics.values.multiset import MultiSet, TimedMultiSet
 from pn2code.structure import flows
 from pn2code.structure.skeleton import Skeleton
 from pn2code.structure.symbolic import (

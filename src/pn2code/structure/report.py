@@ -6,12 +6,12 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from pn2code.ml import core
+from pn2code.ml.core import terms as core
 from pn2code.net.dump import text_of
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.colours import Colours
-from pn2code.semantics.multiset import MultiSet
-from pn2code.semantics.values import MlException, MlLimit, MlUnavailable
+from pn2code.semantics.values.colours import Colours
+from pn2code.semantics.values.data import MlException, MlLimit, MlUnavailable
+from pn2code.semantics.values.multiset import MultiSet
 from pn2code.structure.analysis import Analysis, PInvariant, TInvariant
 from pn2code.structure.bounds import PlaceBound, Proof
 from pn2code.structure.coloured import ColouredInvariant, Projection

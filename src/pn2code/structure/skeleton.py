@@ -17,15 +17,15 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from pn2code.diagnostics import NOWHERE, SourceText, Span
-from pn2code.ml import core
-from pn2code.ml.colsets import Colset, Kind
-from pn2code.ml.types import INT
+from pn2code.ml.core import terms as core
+from pn2code.ml.core.colsets import Colset, Kind
+from pn2code.ml.core.types import INT
 from pn2code.net.dump import text_of
 from pn2code.net.enumerable import size as number_of_values
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatTransition
 from pn2code.net.uses import NetVariables
-from pn2code.semantics.evaluate import Evaluator, Limits
-from pn2code.semantics.values import MlException, MlLimit, MlUnavailable
+from pn2code.semantics.evaluation.evaluate import Evaluator, Limits
+from pn2code.semantics.values.data import MlException, MlLimit, MlUnavailable
 from pn2code.structure.symbolic import Atom, Facts, Part, Sum, Symbolic, add, scaled
 
 MOST_CONDITIONS = 4

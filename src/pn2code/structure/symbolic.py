@@ -18,12 +18,12 @@ import itertools
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
-from pn2code.ml import core
-from pn2code.ml.types import INT, STRING, TCon, TRecord, Type
+from pn2code.ml.core import terms as core
+from pn2code.ml.core.types import INT, STRING, TCon, TRecord, Type
 from pn2code.net.flat import ArcInscription, FlatNet, FlatTransition, Form
 from pn2code.net.uses import pattern_variables, walk
-from pn2code.semantics.effects import Effects
-from pn2code.semantics.evaluate import Evaluator
+from pn2code.semantics.evaluation.effects import Effects
+from pn2code.semantics.evaluation.evaluate import Evaluator
 
 UNFOLDED_DEPTH = 8
 """So many functions are unfolded inside one another."""

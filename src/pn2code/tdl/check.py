@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 
 from pn2code.diagnostics import Diagnostics, Note, Span
-from pn2code.diagnostics.near import did_you_mean
+from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.tdl import codes, flow, paths
 from pn2code.tdl import tree as t
 from pn2code.tdl.evaluate import ScriptError, ScriptValue, evaluate

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import Final, assert_never
 
 from pn2code.diagnostics import Diagnostics, Span
-from pn2code.diagnostics.near import did_you_mean
+from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.tdl import codes
 from pn2code.tdl import tree as t
 from pn2code.tdl.types import (

@@ -19,7 +19,7 @@ from pathlib import PurePath
 from typing import Any, Final, Protocol, assert_never, cast
 
 import pn2code.robot.commands as commands
-from pn2code.real_json import real_to_json
+from pn2code.base.real_json import real_to_json
 from pn2code.tdl import flow, paths
 from pn2code.tdl import tree as t
 from pn2code.tdl.check import CheckedProgram

@@ -15,9 +15,9 @@ from lark import Lark, Token, Transformer, Tree, v_args
 from lark.exceptions import UnexpectedCharacters, UnexpectedToken, VisitError
 from lark.tree import Meta
 
+from pn2code.base.parser_cache import kept_lark
 from pn2code.diagnostics import Diagnostics, Origin, SourceText, Span
-from pn2code.expected import listed, literal
-from pn2code.parser_cache import kept_lark
+from pn2code.diagnostics.expected import listed, literal
 from pn2code.tdl import codes
 from pn2code.tdl import tree as t
 from pn2code.tdl.grammar import GRAMMAR, KEYWORDS

@@ -13,8 +13,8 @@ from dataclasses import field
 from enum import Enum
 from typing import Final, Literal
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import NOWHERE, SourceText, Span
-from pn2code.frozen import frozen
 from pn2code.tdl.types import Type
 
 GENERATED: Final = Span(SourceText("", NOWHERE), 0, 0)

@@ -5,10 +5,13 @@ program = build(folder, files, d)       # folder/supervisor, or None and diagnos
 
 from __future__ import annotations
 
+import importlib.util
 import os
 import re
+import shlex
 import shutil
 import subprocess
+import sys
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -20,7 +23,8 @@ TOOL_MISSING = register(
     "tool-missing",
     "a C compiler or make is missing",
     "Generated C is built by `make` and a C11 compiler (gcc or clang). On Debian: apt-get install gcc libc6-dev make. "
-    "Another compiler is chosen by the environment variable CC.",
+    "Another compiler is chosen by the environment variable CC. Without any, that of the Python package `ziglang` is "
+    "used: pip install 'pn2code[compiler]'.",
 )
 C_ERROR = register(
     "c-error",
@@ -35,17 +39,31 @@ BUILD_FAILED = register(
     "is a usual reason.",
 )
 
+WITHOUT_ROOT = "elsewhere, for the compiler: pip install 'pn2code[compiler]'"
 LOG = "build.log"
 _COMPLAINT = re.compile(r"^([\w./-]+):(\d+):(\d+): (?:fatal )?error: (.*)$", re.MULTILINE)
 _MOST = 10
 
 
 def find_compiler() -> str | None:
-    """The C compiler: `CC`, or the first of cc, gcc, clang that there is."""
+    """The C compiler as a shell would start it: `CC`, the first of cc, gcc, clang that there is, or that of ziglang."""
     for name in (os.environ.get("CC", ""), "cc", "gcc", "clang"):
-        if name and shutil.which(name.split()[0]):
+        if name and shutil.which(shlex.split(name)[0]):
             return name
-    return None
+    return shlex.join(_zig("cc")) or None
+
+
+def find_archiver() -> tuple[str, ...]:
+    """What puts object files together as a library, as a list: `ar`, or that of ziglang; () if there is none."""
+    found = shutil.which("ar")
+    return (found,) if found else _zig("ar")
+
+
+def _zig(tool: str) -> tuple[str, ...]:
+    """A tool of the Python package `ziglang`, which has a C compiler for every machine; () if it is not installed."""
+    if importlib.util.find_spec("ziglang") is None:
+        return ()
+    return sys.executable, "-m", "ziglang", tool
 
 
 def build(
@@ -56,7 +74,7 @@ def build(
     Args:
         folder: where the files were written.
         files: the generated files, for their blocks.
-        target: "supervisor" or "simulate".
+        target: "supervisor", which is deployed; "supervisor.traced", the same with `--trace`; or "simulate".
 
     Returns:
         The program, or None after a diagnostic.
@@ -68,7 +86,8 @@ def build(
             TOOL_MISSING,
             f"{missing} is not installed",
             Origin(str(folder)),
-            hint="on Debian or Ubuntu type: sudo apt-get install gcc libc6-dev make",
+            hint="on Debian or Ubuntu type: sudo apt-get install gcc libc6-dev make"
+            + ("" if compiler else f"; {WITHOUT_ROOT}"),
         )
         return None
     done = subprocess.run(

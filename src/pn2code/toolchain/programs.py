@@ -14,6 +14,7 @@ from __future__ import annotations
 import atexit
 import hashlib
 import os
+import shlex
 import shutil
 import signal
 import subprocess
@@ -26,13 +27,20 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+from pn2code.base.os_reason import os_reason
+from pn2code.base.private_folder import private_folder, without_folder
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.codes import register
-from pn2code.emission import runtime
+from pn2code.emission import c_flags, runtime
 from pn2code.emission.output import OutputFile
-from pn2code.os_reason import os_reason
-from pn2code.private_folder import private_folder, without_folder
-from pn2code.toolchain.build import BUILD_FAILED, TOOL_MISSING, find_compiler, report_failure
+from pn2code.toolchain.build import (
+    BUILD_FAILED,
+    TOOL_MISSING,
+    WITHOUT_ROOT,
+    find_archiver,
+    find_compiler,
+    report_failure,
+)
 
 CACHE_UNUSABLE = register(
     "program-cache",
@@ -42,14 +50,12 @@ CACHE_UNUSABLE = register(
     "only. Set XDG_CACHE_HOME to a folder of your own.",
 )
 
-FLAGS = ("-std=c11", "-O2", "-pipe", "-ffp-contract=off")
-"""`-ffp-contract=off`: sums of products are rounded as in the token game, on every processor."""
+FLAGS = (c_flags.STANDARD, "-O2", "-pipe", *c_flags.FLOATS)
+"""For all that is compiled here: what decides about the results is what the generated Makefile has, too."""
 LARGE = 1_000_000
 """Characters of generated C beyond which a net is not compiled in one piece with its host."""
 MOST_PROGRAMS = 64
 """Programs of a host that are kept; the ones that were not used for the longest time go first."""
-GROUPS = 8
-"""Calls of the compiler for the runtime."""
 STALE_S = 6 * 3600.0
 """After that a folder in which something is built belongs to a process that was killed."""
 _BUILDS = "build-"
@@ -63,6 +69,7 @@ class Host:
     Args:
         name: the beginning of its sources' names, of its programs', and what diagnostics call it.
         flags: for the C compiler, added to `FLAGS`.
+        own: those for the host's own sources alone, after the others, not for what computes the values of a net.
         net: those for the net alone, after the others; the runtime is compiled without them.
         libraries: for the linker.
         without: what to do without a C compiler, the end of a sentence.
@@ -74,6 +81,7 @@ class Host:
 
     name: str
     flags: tuple[str, ...] = ()
+    own: tuple[str, ...] = ()
     net: tuple[str, ...] = ()
     libraries: tuple[str, ...] = ("-lm",)
     without: str = ""
@@ -109,7 +117,7 @@ class Compiler:
         """The compiler that is there; None after a diagnostic."""
         name = find_compiler()
         if name is not None:
-            command = tuple(name.split())
+            command = tuple(shlex.split(name))
             said = _run([*command, "--version"])
             if said is not None and said.returncode == 0:
                 return Compiler(command, said.stdout)
@@ -117,7 +125,7 @@ class Compiler:
             TOOL_MISSING,
             "a C compiler is not installed",
             Origin(host.name),
-            hint=f"on Debian or Ubuntu type: sudo apt-get install gcc libc6-dev{host.without}",
+            hint=f"on Debian or Ubuntu type: sudo apt-get install gcc libc6-dev; {WITHOUT_ROOT}{host.without}",
         )
         return None
 
@@ -231,6 +239,7 @@ class _Builder:
         self.files = tuple(files)
         self.runtime = host.runtime()
         tools = [*compiler.command, compiler.version, *self.flags, *host.libraries]
+        tools += ["own", *host.own] if host.own else []
         self.library = folder / f"{host.name}-runtime-{_digest(tools, self.runtime)}.a"
         tools += ["net", *host.net] if host.net else []
         self.program = folder / f"{host.name}-{_digest(tools, [*self.runtime, *self.files])}"
@@ -290,17 +299,17 @@ class _Builder:
         objects = [f"{Path(s).stem}.o" for s in sources]
         # Large ones first, so that all processors are busy to the end.
         sources.sort(key=lambda name: -(room / name).stat().st_size)
-        groups = [sources[i::GROUPS] for i in range(min(GROUPS, len(sources)))]
 
-        def compiled(group: Sequence[str]) -> bool:
-            return self._compiler(room, "-Iruntime/include", "-c", *group, d=d)
+        def compiled(source: str) -> bool:
+            own = self.host.own if self._is_own(source) else ()
+            return self._compiler(room, *own, "-Iruntime/include", "-c", source, d=d)
 
         with ThreadPoolExecutor(max(os.cpu_count() or 1, 1)) as pool:
-            if not all(list(pool.map(compiled, groups))):
+            if not all(list(pool.map(compiled, sources))):
                 return False
         made = room / "runtime.a"
-        archiver = shutil.which("ar")
-        done = _run([archiver or "ar", "rcs", made.name, *objects], room, self.interrupted)
+        archiver = find_archiver() or ("ar",)
+        done = _run([*archiver, "rcs", made.name, *objects], room, self.interrupted)
         if done is None or done.returncode != 0:
             said = "`ar` is not installed" if done is None else done.stderr.strip()
             d.error(
@@ -312,6 +321,9 @@ class _Builder:
         made.replace(self.library)
         return True
 
+    def _is_own(self, source: str) -> bool:
+        return Path(source).name.startswith(self.host.name)
+
     def _net(self, room: Path, d: Diagnostics) -> bool:
         """net.o: the net in one piece with the host's source that calls it, or alone.
 
@@ -320,7 +332,8 @@ class _Builder:
         """
         includes = (*self.host.net, "-Iruntime/include", "-I.")
         others = [f.path for f in self._sources() if f.path != "net.c"]
-        if others and not self._compiler(room, *includes, "-c", *others, d=d):
+        # One a call: of several sources `zig cc` makes one object only.
+        if not all(self._compiler(room, *includes, "-c", source, d=d) for source in others):
             return False
         if len(others) == len(self._sources()):
             return True  # a host that needs no net

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from pn2code.frozen import frozen
-from pn2code.ml.core import Symbol
+from pn2code.base.frozen import frozen
+from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.values import Value
+from pn2code.semantics.values.data import Value
 
 
 @frozen

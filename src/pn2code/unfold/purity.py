@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from typing import Any
 
-from pn2code.ml.core import Builtin, Dec, Program, RecBind, Symbol, ValBind, Var
+from pn2code.ml.core.terms import Builtin, Dec, Program, RecBind, Symbol, ValBind, Var
 
 _IMPURE = frozenset({"Ms.random", "Colset.ran"})
 _IMPURE_STRUCTURES = (

@@ -17,15 +17,15 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.ml.colsets import Kind
-from pn2code.ml.core import PVar, Symbol
+from pn2code.ml.core.colsets import Kind
+from pn2code.ml.core.terms import PVar, Symbol
 from pn2code.net.flat import ArcKind, BindTerm, FlatArc, FlatNet, FlatTransition
-from pn2code.semantics.enabling import Enabling, GameError
-from pn2code.semantics.evaluate import Evaluator, match
-from pn2code.semantics.game import Game
-from pn2code.semantics.marking import Binding, Marking
-from pn2code.semantics.multiset import MultiSet
-from pn2code.semantics.values import Value
+from pn2code.semantics.evaluation.evaluate import Evaluator, match
+from pn2code.semantics.game.enabling import Enabling, GameError
+from pn2code.semantics.game.marking import Binding, Marking
+from pn2code.semantics.game.token_game import Game
+from pn2code.semantics.values.data import Value
+from pn2code.semantics.values.multiset import MultiSet
 from pn2code.unfold.codes import UNFOLDING_FAULT, UNFOLDING_TOO_LARGE, UNSUPPORTED_UNFOLDING
 from pn2code.unfold.net import Fault, UnfoldedPlace, UnfoldedTransition, Unfolding
 from pn2code.unfold.purity import impure

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 
+from pn2code.base.os_reason import os_reason
 from pn2code.cell.codes import CELL_FILE, CELL_MISSING, CELL_VALUE
 from pn2code.cell.config import CellConfig, InputConfig
 from pn2code.cell.load import load as load_cell
@@ -16,9 +17,7 @@ from pn2code.cell.partition import Partition
 from pn2code.cell.scalars import lines_of
 from pn2code.channels import inputs
 from pn2code.diagnostics import Diagnostics, Note, Origin
-from pn2code.lowering.robot_ir import Chain, Line, Node, Region, Repeat, RobotIR
-from pn2code.ml.colsets import Colset
-from pn2code.os_reason import os_reason
+from pn2code.ml.core.colsets import Colset
 from pn2code.robot import codes, scene
 from pn2code.robot.backend import BackendUnavailableError
 from pn2code.robot.choose_backend import open_backend
@@ -27,6 +26,7 @@ from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion import MotionFault
 from pn2code.robot.scene import RobotCell
+from pn2code.robot_scripts.ir import Chain, Line, Node, Region, Repeat, RobotIR
 from pn2code.run.sensors import load as load_sensors
 from pn2code.tdl import tree as t
 from pn2code.tdl.evaluate import ScriptError, ScriptPose, ScriptValue, evaluate

@@ -15,7 +15,7 @@ from pn2code.cell.locate import locate
 from pn2code.diagnostics import Diagnostics
 from pn2code.net import front
 from pn2code.net.front import Examined
-from pn2code.semantics.constants import compute
+from pn2code.semantics.evaluation.constants import compute
 
 if TYPE_CHECKING:
     from pn2code.cell.config import CellConfig
@@ -71,8 +71,8 @@ def examine_cell(
         ahead: whether files beside the cell and the robots' places are looked at, which takes longer.
     """
     # Most nets have no cell, and these load NumPy and the like.
-    from pn2code.lowering.robot import lower_robots
     from pn2code.pipeline import check_geometry, divided
+    from pn2code.robot_scripts.translate import lower_robots
 
     if result.flat is None or d.has_errors:
         check_geometry(config, d, to_run=True)

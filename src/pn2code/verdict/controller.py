@@ -9,15 +9,15 @@ from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.properties import meaning as m
 from pn2code.verdict.opened import OpenNet
-from pn2code.verify import control
-from pn2code.verify.answers import Verdict
+from pn2code.verify.answers.properties import Verdict
 from pn2code.verify.codes import TRACE_UNWRITABLE
-from pn2code.verify.control_types import Control, Plan
-from pn2code.verify.explore import Wishes
-from pn2code.verify.limits import Limits
-from pn2code.verify.premises import Premises
-from pn2code.verify.proofs import declared
-from pn2code.verify.result import Exploration
+from pn2code.verify.controller import control
+from pn2code.verify.controller.control_types import Control, Plan
+from pn2code.verify.controller.premises import Premises
+from pn2code.verify.controller.proofs import declared
+from pn2code.verify.exploring.explore import ExploreOptions
+from pn2code.verify.exploring.limits import Limits
+from pn2code.verify.exploring.result import Exploration
 
 QUICK_STATES = 5_000
 """Of the net: beyond that it pays to have the compiler work longer."""
@@ -27,7 +27,7 @@ def look(
     opened: OpenNet,
     found: Exploration,
     limits: Limits,
-    wishes: Wishes,
+    wishes: ExploreOptions,
     folder: Path,
     d: Diagnostics,
     asked: m.Properties = m.Properties(),  # noqa: B008 - frozen

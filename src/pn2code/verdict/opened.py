@@ -11,9 +11,9 @@ from pn2code.cell.locate import locate
 from pn2code.diagnostics import Diagnostics
 from pn2code.net import front
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.constants import compute
-from pn2code.semantics.files import Files
-from pn2code.semantics.game import Game
+from pn2code.semantics.evaluation.constants import compute
+from pn2code.semantics.evaluation.files import Files
+from pn2code.semantics.game.token_game import Game
 
 
 @dataclass(frozen=True, slots=True)

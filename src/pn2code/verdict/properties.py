@@ -10,9 +10,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.cell.divide import divide
 from pn2code.cell.partition import Partition
-from pn2code.deadline import Deadline, TimeIsOverError
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
 from pn2code.properties import codes, sources
@@ -20,21 +20,22 @@ from pn2code.properties import meaning as m
 from pn2code.properties.ltl import TooLargeError
 from pn2code.properties.questions import Questions
 from pn2code.properties.split import NoSplitError, Split, groups, is_about_bindings
-from pn2code.semantics.effects import Effect, Effects
-from pn2code.semantics.game import GameError
-from pn2code.semantics.values import MlException, MlLimit
-from pn2code.simulate.script import TraceRefusedError
+from pn2code.semantics.evaluation.effects import Effect, Effects
+from pn2code.semantics.game.token_game import GameError
+from pn2code.semantics.values.data import MlException, MlLimit
+from pn2code.trace.script import TraceRefusedError
 from pn2code.verdict.opened import OpenNet
-from pn2code.verify import chance, confirm
-from pn2code.verify.answers import Answer, answers, drawn
-from pn2code.verify.cell_answers import of_cell
+from pn2code.verify.answers import confirm
+from pn2code.verify.answers.lasso import write_loop
+from pn2code.verify.answers.properties import Answer, answers, drawn
 from pn2code.verify.codes import TRACE_UNWRITABLE
-from pn2code.verify.control_types import Control
-from pn2code.verify.explore import Wishes, explore
-from pn2code.verify.lasso import write_loop
-from pn2code.verify.limits import Limits, Reduction
-from pn2code.verify.programs import Sizes
-from pn2code.verify.result import Exploration
+from pn2code.verify.controller.cell_answers import of_cell
+from pn2code.verify.controller.control_types import Control
+from pn2code.verify.exploring import nondeterminism
+from pn2code.verify.exploring.explore import ExploreOptions, explore
+from pn2code.verify.exploring.limits import Limits, Reduction
+from pn2code.verify.exploring.programs import Sizes
+from pn2code.verify.exploring.result import Exploration
 
 _CALLED = {"yes": "true", "no": "false", "inconclusive": "not known"}
 _WITH_RUNS = ("complete", "decided", "states", "memory", "error")
@@ -120,7 +121,7 @@ def of_bindings(
     opened: OpenNet,
     found: Exploration,
     limits: Limits,
-    wishes: Wishes,
+    wishes: ExploreOptions,
     d: Diagnostics,
     control: Control | None = None,
 ) -> tuple[Answer, ...]:
@@ -175,7 +176,7 @@ def _bindings_of_cell(
     closed: Sequence[Answer],
     number: int,
     limits: Limits,
-    wishes: Wishes,
+    wishes: ExploreOptions,
     d: Diagnostics,
 ) -> Sequence[Answer]:
     """Those of a cell as it runs: its net is made of the parts of the transitions."""
@@ -297,7 +298,7 @@ def answered(
         control: what a cell was looked at in; None: the net is no cell.
     """
     plain = answers(asked.plain, found.answers, found)
-    if chance.draws(opened.flat):
+    if nondeterminism.draws(opened.flat):
         plain, more = tuple(map(drawn, plain)), tuple(map(drawn, more))
     if control is not None and (partition := divided(opened, d)) is not None:
         plain = tuple(of_cell(asked.plain, control.answers, control, partition, plain))

@@ -10,23 +10,24 @@ from pathlib import Path
 from typing import Any
 
 from pn2code import pipeline
-from pn2code.deadline import NEVER, Deadline, TimeIsOverError
+from pn2code.base.deadline import NEVER, Deadline, TimeIsOverError
 from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.lowering.robot import lower_robots
 from pn2code.net.flat import FlatNet
-from pn2code.verdict import controller, medium, properties
+from pn2code.robot_scripts.translate import lower_robots
+from pn2code.verdict import channel_model as medium
+from pn2code.verdict import controller, properties
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.properties import Asked
-from pn2code.verify import chance
-from pn2code.verify.answers import Answer, Verdict, verdict
+from pn2code.verify.answers.properties import Answer, Verdict, verdict
+from pn2code.verify.answers.reasons import raised
 from pn2code.verify.codes import STATE_ERROR, TRACE_UNWRITABLE
-from pn2code.verify.control_types import Control
-from pn2code.verify.explore import Wishes, explore
-from pn2code.verify.limits import Limits
-from pn2code.verify.programs import Sizes
-from pn2code.verify.reasons import raised
-from pn2code.verify.result import Exploration
-from pn2code.verify.result import row as exploration_row
+from pn2code.verify.controller.control_types import Control
+from pn2code.verify.exploring import nondeterminism
+from pn2code.verify.exploring.explore import ExploreOptions, explore
+from pn2code.verify.exploring.limits import Limits
+from pn2code.verify.exploring.programs import Sizes
+from pn2code.verify.exploring.result import Exploration
+from pn2code.verify.exploring.result import row as exploration_row
 
 MOST_COLOURS = 200
 """Of a multi-set bound, unless all is wanted: a place with a colour for each marking has millions."""
@@ -128,7 +129,7 @@ def question(
         # What is said of a cell is said of its programs: without them there is nothing to say.
         lower_robots(partition, opened.config, d)
     asked = properties.asked(opened, texts, file, d, found=found)
-    chance.warn(opened.flat, d)
+    nondeterminism.warn(opened.flat, d)
     return asked
 
 
@@ -136,11 +137,11 @@ def look(
     opened: OpenNet,
     asked: Asked,
     limits: Limits,
-    wishes: Wishes,
+    wishes: ExploreOptions,
     folder: Path,
     d: Diagnostics,
     checks: Checks = Checks(),
-    own_wishes: Wishes | None = None,
+    own_wishes: ExploreOptions | None = None,
 ) -> Looked | None:
     """Explores everything that the answers need; None after an error that was reported.
 

@@ -46,8 +46,12 @@ static const pn_field_t s_BOX_fields[] = {
     { "part", &s_PART, offsetof(BOX_t, part), false },
     { "weight", &s_REAL, offsetof(BOX_t, weight), false },
 };
+static const pn_part_t s_BOX_parts[] = {
+    { &s_PART, offsetof(BOX_t, part) },
+    { &s_REAL, offsetof(BOX_t, weight) },
+};
 static const pn_type_t s_BOX = { .kind = PN_KIND_RECORD, .name = "BOX", .size = sizeof(BOX_t),
-    .count = 2U, .field = s_BOX_fields };
+    .count = 2U, .field = s_BOX_fields, .part_count = 2U, .part = s_BOX_parts };
 
 /* colset INT */
 static const pn_type_t s_INT = { .kind = PN_KIND_INT, .name = "INT", .size = sizeof(int64_t) };
@@ -246,6 +250,14 @@ static const uint32_t s_order[] = { 0U };
 static const pn_owner_t s_owners[] = {
     { "supervisor" },
 };
+
+/* As large as the largest binding. */
+union net_bindings {
+    max_align_t align;
+    Pick_binding_t Pick;
+};
+max_align_t net_binding[(sizeof(union net_bindings) + sizeof(max_align_t) - 1U) / sizeof(max_align_t)];
+const size_t net_binding_size = sizeof net_binding;
 
 const pn_net_t pn_net = {
     .abi = PN_NET_ABI,

@@ -54,4 +54,8 @@ typedef struct net_marking {
     BOX_array_64_t Out;
 } net_marking_t;
 
+/* Room for the binding of any transition, for a host without a heap (net.c). */
+extern max_align_t net_binding[];
+extern const size_t net_binding_size;
+
 #endif /* NET_H */

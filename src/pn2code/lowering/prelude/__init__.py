@@ -18,10 +18,9 @@ from pathlib import Path
 from typing import Any
 
 from pn2code.diagnostics import Diagnostics, Origin, SourceText, Span
-from pn2code.ml import core
-from pn2code.ml.core import Symbol
-from pn2code.ml.elaborate import Elaborator
-from pn2code.ml.types import (
+from pn2code.ml.core import terms as core
+from pn2code.ml.core.terms import Symbol
+from pn2code.ml.core.types import (
     BOOL,
     INT,
     INTINF,
@@ -34,6 +33,7 @@ from pn2code.ml.types import (
     Type,
     tuple_of,
 )
+from pn2code.ml.elaborate import Elaborator
 
 FOLDER = Path(__file__).resolve().parent
 

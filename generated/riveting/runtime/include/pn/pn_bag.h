@@ -6,8 +6,8 @@
  *     struct { uint32_t used; struct { pose_t value; uint32_t count; } token[64]; } Waiting;           untimed
  *     struct { uint32_t used; struct { pose_t value; uint32_t count; pn_time_t stamp; } token[64]; }   timed
  *
- * sorted by value, then stamp, without equal neighbours; or, if it is packed, a counter for each colour (pn_packed.h); or, if it holds
- * one token at most, a slot
+ * sorted by value, then stamp, without equal neighbours; or, if it is packed, a counter for each colour (pn_packed.h);
+ * or, if it holds one token at most, a slot
  *
  *     struct { pose_t value; bool full; } Waiting;
  *
@@ -19,33 +19,42 @@
 #include "pn/pn_type.h"
 
 typedef struct pn_bag {
-    const char *origin;      /* "page `Robot`, place `Waiting` (ID1407)" */
-    const pn_type_t *type;   /* colour set */
-    uint32_t capacity;       /* entries: so many distinct colours, with so many stamps, fit */
+    const char *origin;    /* "page `Robot`, place `Waiting` (ID1407)" */
+    const pn_type_t *type; /* colour set */
+    uint32_t capacity;     /* entries: so many distinct colours, with so many stamps, fit */
     bool is_timed;
-    bool is_real_time;       /* stamps are reals */
-    size_t at;               /* offset in the marking of what holds its tokens */
-    bool is_slot;            /* `used` is a bool, and there is one entry, of one token, which is a value and nothing else */
-    size_t used;             /* offset of `used` in the marking */
-    size_t first;            /* offset of token[0] in the marking */
-    size_t stride;           /* size of a token */
-    size_t value;            /* offsets in a token */
+    bool is_real_time; /* stamps are reals */
+    size_t at;         /* offset in the marking of what holds its tokens */
+    bool is_slot;      /* `used` is a bool, and there is one entry, of one token, which is a value and nothing else */
+    size_t used;       /* offset of `used` in the marking */
+    size_t first;      /* offset of token[0] in the marking */
+    size_t stride;     /* size of a token */
+    size_t value;      /* offsets in a token */
     size_t count;
     size_t stamp;
-    uint32_t early_count;      /* of the constant delays of input arcs (`x@+3`), by which tokens may be taken before their stamps */
+    uint32_t early_count; /* of the constant delays of input arcs (`x@+3`), by which tokens may be taken before their
+                             stamps */
     const pn_time_t *early;
-    /* A packed place holds, for each colour, a counter of `width` bits in the packed part of the marking. Counter i, of colour i in
-     * the order of the colour set, starts at bit `bit` + i * `width`; bit k of the packed part is bit k % 8 of byte k / 8. And the number
-     * of a colour (PN_NO_COLOUR: it is none), and the colour of a number. */
+    /* A packed place holds, for each colour, a counter of `width` bits in the packed part of the marking. Counter i, of
+     * colour i in the order of the colour set, starts at bit `bit` + i * `width`; bit k of the packed part is bit k % 8
+     * of byte k / 8. And the number of a colour (PN_NO_COLOUR: it is none), and the colour of a number. */
     bool is_packed;
     uint32_t bit;
-    uint32_t colours;          /* number of counters; 0 if it is not packed */
+    uint32_t colours; /* number of counters; 0 if it is not packed */
     uint32_t width;
     uint32_t (*number_of)(const void *value);
     void (*colour_of)(uint32_t number, void *value);
 } pn_bag_t;
 
 #define PN_NO_COLOUR UINT32_MAX
+
+/* Whether a place is packed; a net without packed places is compiled with -DPN_ARRAYS_ONLY, which leaves their code
+ * out. */
+#if defined(PN_ARRAYS_ONLY)
+#define PN_IS_PACKED(bag) (false)
+#else
+#define PN_IS_PACKED(bag) ((bag)->is_packed)
+#endif
 
 /* Room for a colour of a packed place. */
 typedef union pn_colour {
@@ -54,20 +63,18 @@ typedef union pn_colour {
 } pn_colour_t;
 
 /* The offsets of a place `member` of a marking, for the initialiser of a pn_bag_t. */
-#define PN_BAG_TOKENS(marking_type, member)                                                                        \
-    .at = offsetof(marking_type, member), .used = offsetof(marking_type, member.used),                             \
-    .first = offsetof(marking_type, member.token),                                                                 \
-    .stride = sizeof(((const marking_type *)0)->member.token[0]),                                                  \
-    .value = offsetof(marking_type, member.token[0].value) - offsetof(marking_type, member.token),                 \
+#define PN_BAG_TOKENS(marking_type, member)                                                                      \
+    .at = offsetof(marking_type, member), .used = offsetof(marking_type, member.used),                           \
+    .first = offsetof(marking_type, member.token), .stride = sizeof(((const marking_type *)0)->member.token[0]), \
+    .value = offsetof(marking_type, member.token[0].value) - offsetof(marking_type, member.token),               \
     .count = offsetof(marking_type, member.token[0].count) - offsetof(marking_type, member.token)
 /* The same for a slot, and for a timed array. */
-#define PN_BAG_SLOT(marking_type, member)                                                                          \
-    .at = offsetof(marking_type, member), .is_slot = true, .used = offsetof(marking_type, member.full),            \
-    .first = offsetof(marking_type, member.value),                                                                 \
-    .stride = sizeof(((const marking_type *)0)->member.value)
-#define PN_BAG_STAMPS(marking_type, member)                                                                        \
-    PN_BAG_TOKENS(marking_type, member),                                                                           \
-    .stamp = offsetof(marking_type, member.token[0].stamp) - offsetof(marking_type, member.token)
+#define PN_BAG_SLOT(marking_type, member)                                                               \
+    .at = offsetof(marking_type, member), .is_slot = true, .used = offsetof(marking_type, member.full), \
+    .first = offsetof(marking_type, member.value), .stride = sizeof(((const marking_type *)0)->member.value)
+#define PN_BAG_STAMPS(marking_type, member) \
+    PN_BAG_TOKENS(marking_type, member),    \
+        .stamp = offsetof(marking_type, member.token[0].stamp) - offsetof(marking_type, member.token)
 
 /* What holds the tokens of a place that is not packed. */
 static inline const void *pn_bag_look(const pn_bag_t *bag, const void *marking)
@@ -103,10 +110,11 @@ void pn_bag_clear(const pn_bag_t *bag, void *marking);
 void pn_bag_begin(const pn_bag_t *bag, void *marking);
 /* Integer stamps count from `by` on, and those that are not after it are 0 and equal. */
 void pn_bag_age(const pn_bag_t *bag, void *marking, pn_time_t by);
-/* The earliest time after `now` at which a token becomes available to arcs with constant delays, if it is before *next or *found is
- * false; and the same for arcs with one delay, which was computed. */
+/* The earliest time after `now` at which a token becomes available to arcs with constant delays, if it is before *next
+ * or *found is false; and the same for arcs with one delay, which was computed. */
 void pn_bag_next_time(const pn_bag_t *bag, const void *marking, pn_time_t now, bool *found, pn_time_t *next);
-void pn_bag_threshold(const pn_bag_t *bag, const void *marking, pn_time_t now, pn_time_t early, bool *found, pn_time_t *next);
+void pn_bag_threshold(const pn_bag_t *bag, const void *marking, pn_time_t now, pn_time_t early, bool *found,
+                      pn_time_t *next);
 void pn_bag_json(const pn_bag_t *bag, const void *marking, pn_text_t *out);
 uint32_t pn_bag_token(const pn_bag_t *bag, const void *marking, uint32_t i, pn_leaf_t *leaf, uint32_t capacity);
 /* Adds one token made of leaves, stamped with the context's time. */
@@ -134,13 +142,9 @@ static inline pn_time_t pn_time_real(double time)
 /* Order of two times. */
 int pn_time_order(bool is_real_time, pn_time_t a, pn_time_t b);
 
-/* --- moves: what a firing takes and puts --------------------------------------------------------------------------- */
+/* --- moves: what a firing takes and puts -------------------------------------------------------------------------- */
 
-typedef enum pn_move_kind {
-    PN_MOVE_TAKE,
-    PN_MOVE_PUT,
-    PN_MOVE_RESET
-} pn_move_kind_t;
+typedef enum pn_move_kind { PN_MOVE_TAKE, PN_MOVE_PUT, PN_MOVE_RESET } pn_move_kind_t;
 
 typedef struct pn_move {
     struct pn_move *next;
@@ -148,8 +152,8 @@ typedef struct pn_move {
     const pn_bag_t *bag;
     const void *value;
     uint32_t count;
-    pn_time_t time;      /* TAKE: latest stamp; PUT: the stamp */
-    pn_time_t taken;     /* TAKE, once done: the stamp of the token that was taken */
+    pn_time_t time;  /* TAKE: latest stamp; PUT: the stamp */
+    pn_time_t taken; /* TAKE, once done: the stamp of the token that was taken */
     bool is_done;
 } pn_move_t;
 
@@ -166,17 +170,22 @@ void pn_moves_init(pn_moves_t *moves, pn_ctx_t *cx);
 /* Wants `count` tokens (none if count <= 0) of a value with stamps not after `limit`. The value is copied. */
 void pn_moves_take(pn_moves_t *moves, const pn_bag_t *bag, const void *value, int64_t count, pn_time_t limit);
 /* Wants every element of a multi-set, a list with cells of `list`. */
-void pn_moves_take_list(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t *list, const void *multiset, pn_time_t limit);
+void pn_moves_take_list(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t *list, const void *multiset,
+                        pn_time_t limit);
 /* Puts tokens: narrowed, then checked against the colour set (PN_ERR_COLOUR). */
 void pn_moves_put(pn_moves_t *moves, const pn_bag_t *bag, const void *value, int64_t count, pn_time_t stamp);
-void pn_moves_put_list(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t *list, const void *multiset, pn_time_t stamp);
-/* Puts a timed multi-set: a list of { value; stamp } whose element type is the record `timed`; `delay` is added to each stamp. */
-void pn_moves_put_timed(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t *list, const void *multiset, pn_time_t delay);
+void pn_moves_put_list(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t *list, const void *multiset,
+                       pn_time_t stamp);
+/* Puts a timed multi-set: a list of { value; stamp } whose element type is the record `timed`; `delay` is added to each
+ * stamp. */
+void pn_moves_put_timed(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t *list, const void *multiset,
+                        pn_time_t delay);
 /* Empties a place at the end; a timed one keeps what is stamped after `now`. */
 void pn_moves_reset(pn_moves_t *moves, const pn_bag_t *bag, pn_time_t now);
 /* Whether the marking holds all that is wanted, together. Changes nothing. */
 bool pn_moves_are_possible(const pn_moves_t *moves, const void *marking);
-/* Takes, then puts, then resets. On error (also one that is there already) the marking is as before, and the answer false. */
+/* Takes, then puts, then resets. On error (also one that is there already) the marking is as before, and the answer
+ * false. */
 bool pn_moves_commit(pn_moves_t *moves, void *marking);
 
 #endif /* PN_BAG_H */

@@ -1,11 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * pn_big.h - IntInf.int: integers without limit.
  *
- * A number of up to 64 bits is kept as it is. A larger one is a sequence of bytes in the arena (or in a literal): a header of four
- * bytes, twice the number of digits, plus one if the number is negative; then the digits to the base 2^32, the lowest first, each as
- * four bytes, the lowest first. The highest digit is not zero, and what has up to 64 bits is never kept so: equal numbers are equal
- * bytes. On error the value is 0; PN_ERR_MEMORY if a number is too large for the arena, PN_ERR_ENDLESS if computing it would
- * take too long.
+ * A number of up to 64 bits is kept as it is. A larger one is a sequence of bytes in the arena (or in a literal): a
+ * header of four bytes, twice the number of digits, plus one if the number is negative; then the digits to the base
+ * 2^32, the lowest first, each as four bytes, the lowest first. The highest digit is not zero, and what has up to 64
+ * bits is never kept so: equal numbers are equal bytes. On error the value is 0; PN_ERR_MEMORY if a number is too large
+ * for the arena, PN_ERR_ENDLESS if computing it would take too long.
  */
 #ifndef PN_BIG_H
 #define PN_BIG_H
@@ -14,16 +14,16 @@
 #include "pn/pn_types.h"
 
 typedef struct pn_big {
-    int64_t small;        /* the number where `large` is NULL, else 0 */
+    int64_t small; /* the number where `large` is NULL, else 0 */
     const uint8_t *large;
 } pn_big_t;
 
 /* A number of up to 64 bits; one of the bytes of a string literal. */
-#define PN_BIG(number) ((pn_big_t){ (number), NULL })
+#define PN_BIG(number)      ((pn_big_t){ (number), NULL })
 #define PN_BIG_BYTES(bytes) ((pn_big_t){ 0, (const uint8_t *)(bytes) })
 
 /* The same as initialisers of static variables. */
-#define PN_BIG_INIT(number) { (number), NULL }
+#define PN_BIG_INIT(number)      { (number), NULL }
 #define PN_BIG_INIT_BYTES(bytes) { 0, (const uint8_t *)(bytes) }
 
 /* The bytes of a large number, header included. */
@@ -57,15 +57,15 @@ pn_big_t pn_big_difference(pn_ctx_t *cx, pn_big_t a, pn_big_t b);
 
 static inline pn_big_t pn_big_add(pn_ctx_t *cx, pn_big_t a, pn_big_t b)
 {
-    const bool is_near = (a.large == NULL) && (b.large == NULL) && (a.small < (INT64_MAX / 2)) && (a.small > (INT64_MIN / 2))
-                         && (b.small < (INT64_MAX / 2)) && (b.small > (INT64_MIN / 2));
+    const bool is_near = (a.large == NULL) && (b.large == NULL) && (a.small < (INT64_MAX / 2))
+                         && (a.small > (INT64_MIN / 2)) && (b.small < (INT64_MAX / 2)) && (b.small > (INT64_MIN / 2));
     return is_near ? PN_BIG(a.small + b.small) : pn_big_sum(cx, a, b);
 }
 
 static inline pn_big_t pn_big_sub(pn_ctx_t *cx, pn_big_t a, pn_big_t b)
 {
-    const bool is_near = (a.large == NULL) && (b.large == NULL) && (a.small < (INT64_MAX / 2)) && (a.small > (INT64_MIN / 2))
-                         && (b.small < (INT64_MAX / 2)) && (b.small > (INT64_MIN / 2));
+    const bool is_near = (a.large == NULL) && (b.large == NULL) && (a.small < (INT64_MAX / 2))
+                         && (a.small > (INT64_MIN / 2)) && (b.small < (INT64_MAX / 2)) && (b.small > (INT64_MIN / 2));
     return is_near ? PN_BIG(a.small - b.small) : pn_big_difference(cx, a, b);
 }
 
@@ -115,8 +115,8 @@ pn_big_t pn_big_shift_right(pn_ctx_t *cx, pn_big_t a, int64_t n);
 
 /* The number of these decimal digits. */
 pn_big_t pn_big_of_digits(pn_ctx_t *cx, const char *digits, size_t length, bool is_negative);
-/* In decimal, with `minus` in front of what is negative: at most `capacity` bytes, the terminator included. The length; SIZE_MAX
- * where there is no room. */
+/* In decimal, with `minus` in front of what is negative: at most `capacity` bytes, the terminator included. The length;
+ * SIZE_MAX where there is no room. */
 size_t pn_big_decimal(pn_big_t a, char minus, char *out, size_t capacity);
 /* As CPN ML writes it. */
 pn_string_t pn_big_string(pn_ctx_t *cx, pn_big_t a);

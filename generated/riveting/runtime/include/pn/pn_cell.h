@@ -1,24 +1,25 @@
 /* SPDX-License-Identifier: MIT
- * pn_cell.h - the generated configuration of a supervisor (cell_config.c): what it exchanges with whom, through which files.
+ * pn_cell.h - the generated configuration of a supervisor (cell_config.c): what it exchanges with whom, through which
+ * files.
  *
- * net.c says what the net does; pn_cell says which part of it this program plays. A net without a cell has the constant too,
- * with no channels: its supervisor owns every transition.
+ * net.c says what the net does; pn_cell says which part of it this program plays. A net without a cell has the constant
+ * too, with no channels: its supervisor owns every transition.
  */
 #ifndef PN_CELL_H
 #define PN_CELL_H
 
-#include "pn/pn_types.h"
+#include "pn/pn_net.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-#define PN_CELL_ABI 3U
+#define PN_CELL_ABI          4U
 #define PN_CELL_CHANNELS_MAX 128U
-#define PN_CELL_PEERS_MAX 64U
+#define PN_CELL_PEERS_MAX    64U
 
-/* One scalar of a token, as it is written in a file. The leaves of the place's tokens (pn_leaf_count) are the same scalars seen
- * from the net; here is what a reader needs besides: names of constructors and ranges. */
+/* One scalar of a token, as it is written in a file. The leaves of the place's tokens (pn_leaf_count) are the same
+ * scalars seen from the net; here is what a reader needs besides: names of constructors and ranges. */
 typedef enum pn_scalar_kind {
     PN_SCALAR_UNIT,   /* written 1 */
     PN_SCALAR_BOOL,   /* 0, 1 */
@@ -31,8 +32,8 @@ typedef enum pn_scalar_kind {
 
 typedef struct pn_scalar {
     pn_scalar_kind_t kind;
-    const char *label;        /* "p.x"; for messages */
-    const char *colset;       /* "COORD"; for messages */
+    const char *label;  /* "p.x"; for messages */
+    const char *colset; /* "COORD"; for messages */
     bool bounded;
     int64_t low, high;
     double real_low, real_high;
@@ -51,20 +52,20 @@ typedef enum pn_channel_kind {
 } pn_channel_kind_t;
 
 typedef struct pn_cell_channel {
-    const char *name;    /* "flag1_interno" */
-    const char *file;    /* "flag1_interno.robcad" */
-    uint32_t place;      /* index in pn_net.place */
+    const char *name;       /* "flag1_interno" */
+    const char *file;       /* "flag1_interno.robcad" */
+    uint32_t place;         /* index in pn_net.place */
     const char *place_name; /* must be that place's name: the two generated files belong together */
     pn_channel_direction_t direction;
     pn_channel_kind_t kind;
-    uint32_t peer;       /* index in pn_cell_t.peer */
+    uint32_t peer; /* index in pn_cell_t.peer */
     uint32_t scalar_count;
     const pn_scalar_t *scalar;
 } pn_cell_channel_t;
 
 typedef struct pn_cell_input {
     const char *name;
-    const char *file;    /* in the input directory */
+    const char *file; /* in the input directory */
     uint32_t place;
     const char *place_name;
     uint32_t scalar_count;
@@ -73,21 +74,46 @@ typedef struct pn_cell_input {
 
 /* The other side of channels: a robot. */
 typedef struct pn_cell_peer {
-    const char *name;    /* "robot1" */
-    int32_t owner;       /* index in pn_net.owner */
+    const char *name; /* "robot1" */
+    int32_t owner;    /* index in pn_net.owner */
 } pn_cell_peer_t;
 
+/* The supervisor host: what the program does from start to end, with a cell and without one. */
+struct sup;
+void sup_run_cell(struct sup *sup);
+void sup_run_alone(struct sup *sup);
+
+/* What this net needs besides what every supervisor does; NULL: nothing. Only what is named here is linked. */
+typedef struct pn_cell_needs {
+    void (*run)(struct sup *sup);            /* sup_run_cell; sup_run_alone: there is no cell */
+    bool (*allow_files)(const char *folder); /* pn_file_allow: the net reads or writes files */
+    void (*collect)(const pn_net_t *net, pn_ctx_t *cx,
+                    void *marking); /* pn_marking_collect: values refer into the arena */
+    bool (*next_time)(const pn_net_t *net, pn_ctx_t *cx, const void *marking,
+                      pn_time_t *next); /* pn_next_time: it is timed */
+} pn_cell_needs_t;
+
+/* Memory of a program that has no heap. */
+typedef struct pn_cell_room {
+    void *marking; /* aligned as max_align_t */
+    size_t marking_size;
+    void *binding; /* likewise; as large as the largest binding */
+    const size_t *binding_size;
+    uint64_t *fired_of; /* for each transition */
+    uint32_t transition_count;
+} pn_cell_room_t;
+
 typedef struct pn_cell {
-    uint32_t abi;              /* PN_CELL_ABI */
-    const char *name;          /* of the net, "cell" */
-    const char *version;       /* of pn2code that generated this */
-    const char *digest;        /* equals pn_net.digest */
-    const char *side;          /* this party's name in files: "supervisor" */
-    int32_t owner;             /* whose transitions this program plays; -1: all of them (no cell) */
-    double reply_timeout_s;    /* 0: none */
-    uint32_t channel_count;    /* data before flags, each in the order of cell.toml */
+    uint32_t abi;           /* PN_CELL_ABI */
+    const char *name;       /* of the net, "cell" */
+    const char *version;    /* of pn2code that generated this */
+    const char *digest;     /* equals pn_net.digest */
+    const char *side;       /* this party's name in files: "supervisor" */
+    int32_t owner;          /* whose transitions this program plays; -1: all of them (no cell) */
+    double reply_timeout_s; /* 0: none */
+    uint32_t channel_count; /* data before flags, each in the order of cell.toml */
     const pn_cell_channel_t *channel;
-    uint32_t between_count;    /* files of channels between two peers: this program only makes them, empty (I7) */
+    uint32_t between_count; /* files of channels between two peers: this program only makes them, empty (I7) */
     const char *const *between;
     uint32_t input_count;
     const pn_cell_input_t *input;
@@ -95,8 +121,11 @@ typedef struct pn_cell {
     const pn_cell_peer_t *peer;
     uint32_t final_count;
     const uint32_t *final_place;
-    void *arena;               /* memory for lists and strings (pn_arena.h), aligned as max_align_t; as much as was found to be enough */
+    void *arena; /* memory for lists and strings (pn_arena.h), aligned as max_align_t; as much as was found to be enough
+                  */
     size_t arena_size;
+    pn_cell_room_t room;
+    pn_cell_needs_t needs;
 } pn_cell_t;
 
 extern const pn_cell_t pn_cell;

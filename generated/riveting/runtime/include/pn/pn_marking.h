@@ -28,20 +28,22 @@ static inline void pn_set_now(const pn_net_t *net, void *marking, pn_time_t now)
 
 /* Bytes of the largest binding; 1 where there are no transitions. */
 size_t pn_binding_size(const pn_net_t *net);
-/* Makes the initial marking in any memory, and gives the variables outside the marking their first values. Empties the arena before.
- * False on error. */
+/* Makes the initial marking in any memory, and gives the variables outside the marking their first values. Empties the
+ * arena before. False on error. */
 PN_NODISCARD bool pn_marking_init(const pn_net_t *net, pn_ctx_t *cx, void *marking);
-/* Puts one token made of leaves into a place, stamped with the marking's time. False (the context has the error) when they do not fit
- * the colour set or the place is full. */
-PN_NODISCARD bool pn_marking_put(const pn_net_t *net, pn_ctx_t *cx, void *marking, uint32_t place, const pn_leaf_t *leaf, uint32_t leaves);
-/* The earliest time after now at which something may become enabled: a stamp ends, or the delay of an input arc lets a token be
- * taken before that. False if there is none, or after an error (delays are computed). */
+/* Puts one token made of leaves into a place, stamped with the marking's time. False (the context has the error) when
+ * they do not fit the colour set or the place is full. */
+PN_NODISCARD bool pn_marking_put(const pn_net_t *net, pn_ctx_t *cx, void *marking, uint32_t place,
+                                 const pn_leaf_t *leaf, uint32_t leaves);
+/* The earliest time after now at which something may become enabled: a stamp ends, or the delay of an input arc lets a
+ * token be taken before that. False if there is none, or after an error (delays are computed). */
 bool pn_next_time(const pn_net_t *net, pn_ctx_t *cx, const void *marking, pn_time_t *next);
 /* Canonical bytes of a marking: equal markings, equal bytes. Returns the length, 0 when `capacity` is too small. */
 size_t pn_marking_encode(const pn_net_t *net, const void *marking, uint8_t *out, size_t capacity);
 /* Reads them back into any memory. False when they are malformed or a place is full. */
 PN_NODISCARD bool pn_marking_decode(const pn_net_t *net, pn_ctx_t *cx, void *marking, const uint8_t *in, size_t length);
-/* Between occurrences: moves what the marking and the variables outside refer to into the other half of the arena (pn_arena.h). */
+/* Between occurrences: moves what the marking and the variables outside refer to into the other half of the arena
+ * (pn_arena.h). */
 void pn_marking_collect(const pn_net_t *net, pn_ctx_t *cx, void *marking);
 
 #ifdef __cplusplus

@@ -1,18 +1,19 @@
 /* SPDX-License-Identifier: MIT
  * pn_packed.h - packed places: a multi-set over few colours as counters of a few bits each.
  *
- * The colours of the place's colour set are numbered from 0 in the colour set's order. Counter i, the number of tokens of colour i,
- * is `width` bits at bit `bit` + i * `width` of the packed part, the array of 64-bit words with which a marking begins (bit k is bit
- * k % 64 of word k / 64). A counter never lies across two words. Bits that belong to no counter are 0: equal markings, equal bytes.
+ * The colours of the place's colour set are numbered from 0 in the colour set's order. Counter i, the number of tokens
+ * of colour i, is `width` bits at bit `bit` + i * `width` of the packed part, the array of 64-bit words with which a
+ * marking begins (bit k is bit k % 64 of word k / 64). A counter never lies across two words. Bits that belong to no
+ * counter are 0: equal markings, equal bytes.
  *
  * PN_PACKED_PLACE makes, for a place, what PN_UNTIMED_PLACE of pn_place.h makes for others, and
  *
  *     place_count_of(m, i)    the number of tokens of colour i
- *     place_next(m, i)        the first colour from i on of which there is a token; the number of colours if there is none
- *     place_is_empty(m)       whether there is no token
- *     place_check(cx, v)      raises PN_ERR_COLOUR at the place if the value is not in the colour set: that is always asked where not
- *                             every number is that of a colour (`is_whole`: subsets), but only until it is known of a colour
- *     place_has_sum(m, s)     whether there are all tokens of a sum; place_take_sum takes, place_add_sum puts them
+ *     place_next(m, i)        the first colour from i on of which there is a token; the number of colours if there is
+ * none place_is_empty(m)       whether there is no token place_check(cx, v)      raises PN_ERR_COLOUR at the place if
+ * the value is not in the colour set: that is always asked where not every number is that of a colour (`is_whole`:
+ * subsets), but only until it is known of a colour place_has_sum(m, s)     whether there are all tokens of a sum;
+ * place_take_sum takes, place_add_sum puts them
  *
  * Unlike there, place_add changes nothing when a counter would overflow.
  */
@@ -85,7 +86,7 @@ PN_INLINE uint32_t pn_counter_next(const uint64_t *word, uint32_t bit, uint32_t 
     return colours;
 }
 
-/* --- sums: whole multi-sets as counters, in words of their own that lie as those of the place do -------------------- */
+/* --- sums: whole multi-sets as counters, in words of their own that lie as those of the place do ------------------ */
 
 /* Words of a sum. */
 #define PN_SUM_WORDS(first, colours, width) (((((first) % 64U) + ((colours) * (width))) + 63U) / 64U)
@@ -98,7 +99,8 @@ typedef enum pn_sum_state {
 } pn_sum_state_t;
 
 /* Makes a sum of a list with cells of `list`; unknown after an error. */
-pn_sum_state_t pn_sum_make(pn_ctx_t *cx, const pn_bag_t *bag, const pn_type_t *list, const void *multiset, uint64_t *sum);
+pn_sum_state_t pn_sum_make(pn_ctx_t *cx, const pn_bag_t *bag, const pn_type_t *list, const void *multiset,
+                           uint64_t *sum);
 
 PN_INLINE bool pn_sum_is_in(const uint64_t *word, uint32_t bit, uint32_t colours, uint32_t width, const uint64_t *sum)
 {
@@ -117,7 +119,8 @@ PN_INLINE bool pn_sum_is_in(const uint64_t *word, uint32_t bit, uint32_t colours
     return is_in;
 }
 
-PN_INLINE bool pn_sum_has_room(const uint64_t *word, uint32_t bit, uint32_t colours, uint32_t width, const uint64_t *sum)
+PN_INLINE bool pn_sum_has_room(const uint64_t *word, uint32_t bit, uint32_t colours, uint32_t width,
+                               const uint64_t *sum)
 {
     bool has_room = true;
     if (width == 1U) {
@@ -149,84 +152,85 @@ PN_INLINE void pn_sum_subtract(uint64_t *word, uint32_t bit, uint32_t colours, u
     }
 }
 
-#define PN_PACKED_PLACE(place, marking_t, value_t, number_of, first, colours, width, is_whole, bag)                \
-    PN_INLINE uint32_t place##_count_of(const marking_t *m, uint32_t i)                                            \
-    {                                                                                                              \
-        return pn_counter(m->packed, (first), (width), i);                                                         \
-    }                                                                                                              \
-    PN_INLINE uint32_t place##_next(const marking_t *m, uint32_t i)                                                \
-    {                                                                                                              \
-        return pn_counter_next(m->packed, (first), (colours), (width), i);                                         \
-    }                                                                                                              \
-    PN_INLINE bool place##_is_empty(const marking_t *m)                                                            \
-    {                                                                                                              \
-        return place##_next(m, 0U) == (colours);                                                                   \
-    }                                                                                                              \
-    PN_INLINE uint32_t place##_held(const marking_t *m, const value_t *v)                                          \
-    {                                                                                                              \
-        const uint32_t i = number_of(v);                                                                           \
-        return (i != PN_NO_COLOUR) ? place##_count_of(m, i) : 0U;                                                  \
-    }                                                                                                              \
-    PN_INLINE bool place##_holds(const marking_t *m, const value_t *v, const value_t *w)                           \
-    {                                                                                                              \
-        const uint32_t i = number_of(v);                                                                           \
-        const uint32_t k = number_of(w);                                                                           \
-        if ((i == PN_NO_COLOUR) || (k == PN_NO_COLOUR)) {                                                          \
-            return false;                                                                                          \
-        }                                                                                                          \
-        return (i == k) ? (place##_count_of(m, i) >= 2U) : ((place##_count_of(m, i) >= 1U) && (place##_count_of(m, k) >= 1U)); \
-    }                                                                                                              \
-    PN_INLINE bool place##_take(marking_t *m, const value_t *v, uint32_t n)                                        \
-    {                                                                                                              \
-        const uint32_t i = number_of(v);                                                                           \
-        if ((i == PN_NO_COLOUR) || (place##_count_of(m, i) < n)) {                                                 \
-            return false;                                                                                          \
-        }                                                                                                          \
-        pn_counter_subtract(m->packed, (first), (width), i, n);                                                    \
-        return true;                                                                                               \
-    }                                                                                                              \
-    PN_INLINE bool place##_add(pn_ctx_t *cx, marking_t *m, const value_t *v, uint32_t n)                           \
-    {                                                                                                              \
-        const uint32_t i = number_of(v);                                                                           \
-        if (n == 0U) {                                                                                             \
-            return true;                                                                                           \
-        }                                                                                                          \
-        if ((i == PN_NO_COLOUR) || (n > (pn_counter_most(width) - place##_count_of(m, i)))) {                      \
-            return pn_bag_fail_full(cx, &(bag));                                                                   \
-        }                                                                                                          \
-        pn_counter_add(m->packed, (first), (width), i, n);                                                         \
-        return true;                                                                                               \
-    }                                                                                                              \
-    PN_INLINE void place##_check(pn_ctx_t *cx, value_t *v)                                                         \
-    {                                                                                                              \
-        static PN_OF_THREAD bool is_colour[(is_whole) ? 1U : (colours)];                                           \
-        const uint32_t i = number_of(v);                                                                           \
-        if ((i == PN_NO_COLOUR) || !((is_whole) || is_colour[(is_whole) ? 0U : i])) {                              \
-            pn_bag_check(cx, &(bag), v);                                                                           \
-            if ((i != PN_NO_COLOUR) && !(is_whole) && pn_ok(cx)) {                                                 \
-                is_colour[i] = true;                                                                               \
-            }                                                                                                      \
-        }                                                                                                          \
-    }                                                                                                              \
-    PN_INLINE bool place##_has_sum(const marking_t *m, const uint64_t *sum)                                        \
-    {                                                                                                              \
-        return pn_sum_is_in(m->packed, (first), (colours), (width), sum);                                          \
-    }                                                                                                              \
-    PN_INLINE bool place##_take_sum(marking_t *m, const uint64_t *sum)                                             \
-    {                                                                                                              \
-        const bool is_in = pn_sum_is_in(m->packed, (first), (colours), (width), sum);                              \
-        if (is_in) {                                                                                               \
-            pn_sum_subtract(m->packed, (first), (colours), (width), sum);                                          \
-        }                                                                                                          \
-        return is_in;                                                                                              \
-    }                                                                                                              \
-    PN_INLINE bool place##_add_sum(pn_ctx_t *cx, marking_t *m, const uint64_t *sum)                                \
-    {                                                                                                              \
-        if (!pn_sum_has_room(m->packed, (first), (colours), (width), sum)) {                                       \
-            return pn_bag_fail_full(cx, &(bag));                                                                   \
-        }                                                                                                          \
-        pn_sum_add(m->packed, (first), (colours), (width), sum);                                                   \
-        return true;                                                                                               \
+#define PN_PACKED_PLACE(place, marking_t, value_t, number_of, first, colours, width, is_whole, bag) \
+    PN_INLINE uint32_t place##_count_of(const marking_t *m, uint32_t i)                             \
+    {                                                                                               \
+        return pn_counter(m->packed, (first), (width), i);                                          \
+    }                                                                                               \
+    PN_INLINE uint32_t place##_next(const marking_t *m, uint32_t i)                                 \
+    {                                                                                               \
+        return pn_counter_next(m->packed, (first), (colours), (width), i);                          \
+    }                                                                                               \
+    PN_INLINE bool place##_is_empty(const marking_t *m)                                             \
+    {                                                                                               \
+        return place##_next(m, 0U) == (colours);                                                    \
+    }                                                                                               \
+    PN_INLINE uint32_t place##_held(const marking_t *m, const value_t *v)                           \
+    {                                                                                               \
+        const uint32_t i = number_of(v);                                                            \
+        return (i != PN_NO_COLOUR) ? place##_count_of(m, i) : 0U;                                   \
+    }                                                                                               \
+    PN_INLINE bool place##_holds(const marking_t *m, const value_t *v, const value_t *w)            \
+    {                                                                                               \
+        const uint32_t i = number_of(v);                                                            \
+        const uint32_t k = number_of(w);                                                            \
+        if ((i == PN_NO_COLOUR) || (k == PN_NO_COLOUR)) {                                           \
+            return false;                                                                           \
+        }                                                                                           \
+        return (i == k) ? (place##_count_of(m, i) >= 2U)                                            \
+                        : ((place##_count_of(m, i) >= 1U) && (place##_count_of(m, k) >= 1U));       \
+    }                                                                                               \
+    PN_INLINE bool place##_take(marking_t *m, const value_t *v, uint32_t n)                         \
+    {                                                                                               \
+        const uint32_t i = number_of(v);                                                            \
+        if ((i == PN_NO_COLOUR) || (place##_count_of(m, i) < n)) {                                  \
+            return false;                                                                           \
+        }                                                                                           \
+        pn_counter_subtract(m->packed, (first), (width), i, n);                                     \
+        return true;                                                                                \
+    }                                                                                               \
+    PN_INLINE bool place##_add(pn_ctx_t *cx, marking_t *m, const value_t *v, uint32_t n)            \
+    {                                                                                               \
+        const uint32_t i = number_of(v);                                                            \
+        if (n == 0U) {                                                                              \
+            return true;                                                                            \
+        }                                                                                           \
+        if ((i == PN_NO_COLOUR) || (n > (pn_counter_most(width) - place##_count_of(m, i)))) {       \
+            return pn_bag_fail_full(cx, &(bag));                                                    \
+        }                                                                                           \
+        pn_counter_add(m->packed, (first), (width), i, n);                                          \
+        return true;                                                                                \
+    }                                                                                               \
+    PN_INLINE void place##_check(pn_ctx_t *cx, value_t *v)                                          \
+    {                                                                                               \
+        static PN_OF_THREAD bool is_colour[(is_whole) ? 1U : (colours)];                            \
+        const uint32_t i = number_of(v);                                                            \
+        if ((i == PN_NO_COLOUR) || !((is_whole) || is_colour[(is_whole) ? 0U : i])) {               \
+            pn_bag_check(cx, &(bag), v);                                                            \
+            if ((i != PN_NO_COLOUR) && !(is_whole) && pn_ok(cx)) {                                  \
+                is_colour[i] = true;                                                                \
+            }                                                                                       \
+        }                                                                                           \
+    }                                                                                               \
+    PN_INLINE bool place##_has_sum(const marking_t *m, const uint64_t *sum)                         \
+    {                                                                                               \
+        return pn_sum_is_in(m->packed, (first), (colours), (width), sum);                           \
+    }                                                                                               \
+    PN_INLINE bool place##_take_sum(marking_t *m, const uint64_t *sum)                              \
+    {                                                                                               \
+        const bool is_in = pn_sum_is_in(m->packed, (first), (colours), (width), sum);               \
+        if (is_in) {                                                                                \
+            pn_sum_subtract(m->packed, (first), (colours), (width), sum);                           \
+        }                                                                                           \
+        return is_in;                                                                               \
+    }                                                                                               \
+    PN_INLINE bool place##_add_sum(pn_ctx_t *cx, marking_t *m, const uint64_t *sum)                 \
+    {                                                                                               \
+        if (!pn_sum_has_room(m->packed, (first), (colours), (width), sum)) {                        \
+            return pn_bag_fail_full(cx, &(bag));                                                    \
+        }                                                                                           \
+        pn_sum_add(m->packed, (first), (colours), (width), sum);                                    \
+        return true;                                                                                \
     }
 
 #endif /* PN_PACKED_H */

@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * pn_read.h - values read from text, as `CS.output` writes them. Blanks and line ends may stand between any two signs; a string
- * ends at the next quotation mark.
+ * pn_read.h - values read from text, as `CS.output` writes them. Blanks and line ends may stand between any two signs;
+ * a string ends at the next quotation mark.
  *
  * `at` is where reading goes on in the text; after an error (exception IOError) it is where it was.
  */

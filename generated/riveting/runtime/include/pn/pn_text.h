@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * pn_text.h - text in a fixed buffer, and JSON as docs/trace.md writes it.
  *
- * A pn_text_t never writes beyond its buffer. What does not fit is cut, and `truncated` stays set until pn_text_clear: look
- * at it once, at the end.
+ * A pn_text_t never writes beyond its buffer. What does not fit is cut, and `truncated` stays set until pn_text_clear:
+ * look at it once, at the end.
  */
 #ifndef PN_TEXT_H
 #define PN_TEXT_H
@@ -31,7 +31,8 @@ void pn_text_fixed(pn_text_t *text, double value, int decimals);
 /* A JSON string with its quotes. Bytes that are not UTF-8 are taken as Latin-1. */
 void pn_text_json_str(pn_text_t *text, const char *zero_terminated);
 void pn_text_json_bytes(pn_text_t *text, const char *bytes, size_t length);
-/* The same of a string of CPN ML: each byte is one character, whatever UTF-8 it looks like, so that no two look the same. */
+/* The same of a string of CPN ML: each byte is one character, whatever UTF-8 it looks like, so that no two look the
+ * same. */
 void pn_text_json_string(pn_text_t *text, const char *bytes, size_t length);
 /* A JSON number, or "nan", "inf", "-inf". */
 void pn_text_json_real(pn_text_t *text, double value);

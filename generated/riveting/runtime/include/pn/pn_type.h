@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * pn_type.h - colour sets as tables, and what every value can do: compare, print, encode, check, copy.
  *
- * A generated net declares an ordinary C type for each colour set (`pose_t`), which its expressions use directly, and one constant
- * pn_type_t that describes it. Everything that is the same for all colour sets walks the table.
+ * A generated net declares an ordinary C type for each colour set (`pose_t`), which its expressions use directly, and
+ * one constant pn_type_t that describes it. Everything that is the same for all colour sets walks the table.
  *
  * Representation in C
  *
@@ -16,7 +16,9 @@
  *     ref              pointer to what it holds: a cell of pn_ref_new, or a static variable
  *     function, exn    as unions: the constructors are the functions, or exceptions, that there are
  *
- * The functions recurse over types and, for recursive data types, over values: never deeper than the value itself is nested.
+ * Records are walked by their tables of parts, without recursion. The functions recurse over lists, unions and what
+ * references hold, never deeper than the value itself is nested; a net without any of these is compiled with
+ * -DPN_FLAT_TYPES, which leaves that out.
  */
 #ifndef PN_TYPE_H
 #define PN_TYPE_H
@@ -31,8 +33,8 @@ typedef uint8_t pn_unit_t;
 typedef enum pn_kind {
     PN_KIND_UNIT,
     PN_KIND_BOOL,
-    PN_KIND_INT,    /* int, index */
-    PN_KIND_BIG,    /* intinf, time */
+    PN_KIND_INT, /* int, index */
+    PN_KIND_BIG, /* intinf, time */
     PN_KIND_REAL,
     PN_KIND_STRING,
     PN_KIND_CHAR,
@@ -47,36 +49,45 @@ struct pn_type;
 
 /* A component of a product or record, in declared order; or a constructor of a union. */
 typedef struct pn_field {
-    const char *label;            /* record: the label; product: "1", "2", ...; union: the constructor */
-    const struct pn_type *type;   /* NULL: a constructor without argument */
-    size_t offset;                /* in the struct */
-    bool is_boxed;                /* union: the member is a pointer to the argument */
+    const char *label;          /* record: the label; product: "1", "2", ...; union: the constructor */
+    const struct pn_type *type; /* NULL: a constructor without argument */
+    size_t offset;              /* in the struct */
+    bool is_boxed;              /* union: the member is a pointer to the argument */
 } pn_field_t;
+
+/* What a record consists of after all its records have been taken apart, in order; and after its own parts a record
+ * that is a subset. */
+typedef struct pn_part {
+    const struct pn_type *type;
+    size_t offset; /* in the whole */
+} pn_part_t;
 
 typedef struct pn_type {
     pn_kind_t kind;
-    const char *name;             /* of the colour set */
-    size_t size;                  /* sizeof its C type */
-    bool has_range;               /* INT: low..high; BIG: big_low..big_high; REAL: real_low..real_high; LIST: length low..high */
-    bool is_index;                /* INT: a value of an index colour set: `name_of_value[0] (number)` */
-    bool is_float32;              /* REAL: stored in single precision */
-    bool is_narrow;               /* something in it is stored in single precision */
-    bool is_tuple;                /* RECORD: printed as a JSON array; ENUM: a union of constants, printed as an array of one */
+    const char *name; /* of the colour set */
+    size_t size;      /* sizeof its C type */
+    bool has_range;   /* INT: low..high; BIG: big_low..big_high; REAL: real_low..real_high; LIST: length low..high */
+    bool is_index;    /* INT: a value of an index colour set: `name_of_value[0] (number)` */
+    bool is_float32;  /* REAL: stored in single precision */
+    bool is_narrow;   /* something in it is stored in single precision */
+    bool is_tuple;    /* RECORD: printed as a JSON array; ENUM: a union of constants, printed as an array of one */
     int64_t low;
     int64_t high;
     pn_big_t big_low;
     pn_big_t big_high;
     double real_low;
     double real_high;
-    bool has_chars;               /* STRING: characters char_low..char_high */
+    bool has_chars; /* STRING: characters char_low..char_high */
     uint8_t char_low;
     uint8_t char_high;
-    uint32_t count;               /* of fields, of names */
-    const pn_field_t *field;      /* RECORD, UNION */
+    uint32_t count;          /* of fields, of names */
+    const pn_field_t *field; /* RECORD, UNION */
+    uint32_t part_count;
+    const pn_part_t *part;            /* RECORD */
     const char *const *name_of_value; /* ENUM: constructors; UNIT, BOOL: as declared; INT with is_index: the stem */
     const struct pn_type *element;    /* LIST, REF */
-    size_t head;                  /* LIST: offset of the head in a cell; the tail is first */
-    size_t cell;                  /* LIST: size of a cell */
+    size_t head;                      /* LIST: offset of the head in a cell; the tail is first */
+    size_t cell;                      /* LIST: size of a cell */
     bool (*member)(pn_ctx_t *cx, const void *value); /* SUBSET: further condition; NULL: none */
 } pn_type_t;
 
@@ -95,9 +106,11 @@ void pn_mkstr(const pn_type_t *type, const void *value, pn_text_t *out);
 /* The same as a string in the arena. */
 pn_string_t pn_mkstr_string(pn_ctx_t *cx, const pn_type_t *type, const void *value);
 
-/* Whether the value is in the colour set: ranges, lengths, members of subsets, finite numbers where they are stored narrowly. */
+/* Whether the value is in the colour set: ranges, lengths, members of subsets, finite numbers where they are stored
+ * narrowly. */
 bool pn_is_legal(pn_ctx_t *cx, const pn_type_t *type, const void *value);
-/* Rounds what is stored in single precision, in place; lists are copied into the arena. PN_ERR_COLOUR if it is not finite then. */
+/* Rounds what is stored in single precision, in place; lists are copied into the arena. PN_ERR_COLOUR if it is not
+ * finite then. */
 void pn_narrow(pn_ctx_t *cx, const pn_type_t *type, void *value);
 
 /* Canonical bytes: appended at `out` if there is room; returns their number in any case. */
@@ -119,7 +132,8 @@ bool pn_type_has_position(const pn_type_t *type, const void *value);
 
 /* Leaves: see pn_net.h. How many there are in a value; 0: no fixed number. */
 uint32_t pn_leaf_count(const pn_type_t *type);
-/* How an input file is laid out: a line for each component, if any is composed itself; otherwise one line for all. 0: not at all. */
+/* How an input file is laid out: a line for each component, if any is composed itself; otherwise one line for all. 0:
+ * not at all. */
 uint32_t pn_line_count(const pn_type_t *type);
 uint32_t pn_line_leaves(const pn_type_t *type, uint32_t line);
 /* Number of leaves written, 0 if there are more than `capacity` or no fixed number. */
@@ -149,7 +163,8 @@ const void *pn_list_append(pn_ctx_t *cx, const pn_type_t *type, const void *firs
 const void *pn_list_reverse(pn_ctx_t *cx, const pn_type_t *type, const void *list);
 /* reverse first @ second */
 const void *pn_list_reverse_onto(pn_ctx_t *cx, const pn_type_t *type, const void *first, const void *second);
-/* The cell of element i, from 0 (NULL with Subscript when there is none), of the first, of the last (NULL with Empty). */
+/* The cell of element i, from 0 (NULL with Subscript when there is none), of the first, of the last (NULL with Empty).
+ */
 const void *pn_list_nth_cell(pn_ctx_t *cx, const void *list, int64_t i);
 const void *pn_list_first_cell(pn_ctx_t *cx, const void *list);
 const void *pn_list_last_cell(pn_ctx_t *cx, const void *list);
@@ -192,7 +207,7 @@ const void *pn_ms_times(pn_ctx_t *cx, const pn_type_t *type, int64_t n, const vo
 const void *pn_ms_only_cell(pn_ctx_t *cx, const void *multiset);
 const void *pn_ms_random_cell(pn_ctx_t *cx, const void *multiset);
 
-/* --- functions of a colour set ------------------------------------------------------------------------------------- */
+/* --- functions of a colour set ------------------------------------------------------------------------------------ */
 
 /* CPN'Error when the colour set is not small, or there is no such value. `value` is filled in any case. */
 int64_t pn_colset_size(pn_ctx_t *cx, const pn_type_t *type);

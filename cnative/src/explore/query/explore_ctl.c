@@ -1,0 +1,349 @@
+/* SPDX-License-Identifier: MIT
+ * explore_ctl.c - the operators of CTL over the graph, each in one pass over its arcs, and runs that show why a formula
+ * holds or not.
+ *
+ * Runs are maximal: one that comes to a dead node ends there. So there AX holds of anything and EX of nothing, AF and
+ * EG ask for the node itself. All operators are made of three: EX, and
+ *
+ *     E[a U b]  the least set with b, and with the nodes of a that have a successor in it
+ *     A[a U b]  the least set with b, and with the nodes of a that are not dead and have all successors in it
+ *
+ * Both grow from b backwards; for the second each node counts the successors that are not in it yet.
+ */
+#include "explore_query.h"
+
+static void complement(const ex_queries_t *queries, uint64_t *set)
+{
+    const ex_graph_t *const graph = queries->run->graph;
+    const uint64_t words = ex_set_words(graph);
+    for (uint64_t i = 0U; i < words; i++) {
+        set[i] = ~set[i];
+    }
+    if ((graph->nodes % 64U) != 0U) {
+        set[words - 1U] &= ((uint64_t)1U << (graph->nodes % 64U)) - 1U;
+    }
+}
+
+/* The arcs the other way round, once for all operators. */
+static bool turn_arcs(ex_queries_t *queries)
+{
+    ex_run_t *const run = queries->run;
+    const ex_graph_t *const graph = run->graph;
+    if (queries->in_source != NULL) {
+        return true;
+    }
+    uint64_t *const row = ex_table(run, (uint64_t)graph->nodes + 1U, sizeof *row);
+    uint32_t *const source = ex_table(run, graph->arcs, sizeof *source);
+    if ((row == NULL) || (source == NULL)) {
+        ex_free_table(run, row, (uint64_t)graph->nodes + 1U, sizeof *row);
+        ex_free_table(run, source, graph->arcs, sizeof *source);
+        return false;
+    }
+    for (uint64_t arc = 0U; arc < graph->arcs; arc++) {
+        row[graph->target[arc] + 1U] += 1U;
+    }
+    for (uint32_t node = 0U; node < graph->nodes; node++) {
+        row[node + 1U] += row[node];
+    }
+    /* From behind, so that row[i + 1] becomes the beginning of node i; then all move down by one. */
+    for (uint32_t node = graph->nodes; node > 0U; node--) {
+        for (uint64_t arc = graph->row[node]; arc > graph->row[node - 1U]; arc--) {
+            uint64_t *const end = &row[graph->target[arc - 1U] + 1U];
+            *end -= 1U;
+            source[*end] = node - 1U;
+        }
+    }
+    for (uint32_t node = 0U; node < graph->nodes; node++) {
+        row[node] = row[node + 1U];
+    }
+    row[graph->nodes] = graph->arcs;
+    queries->in_row = row;
+    queries->in_source = source;
+    return true;
+}
+
+/* The nodes with an arc (of a transition; UINT32_MAX: any) to a node of `a`. */
+static void add_before(const ex_queries_t *queries, const uint64_t *a, uint32_t transition, uint64_t *set)
+{
+    const ex_graph_t *const graph = queries->run->graph;
+    for (uint32_t node = 0U; node < graph->nodes; node++) {
+        for (uint64_t arc = graph->row[node]; arc < graph->row[node + 1U]; arc++) {
+            if ((EX_BIT(a, graph->target[arc]) != 0U)
+                && ((transition == UINT32_MAX) || (graph->label[arc] == transition))) {
+                EX_SET_BIT(set, node);
+                break;
+            }
+        }
+    }
+}
+
+/* Grows `set`, which holds b, to an until; a is NULL where every node will do. `left`: of each node the successors that
+ * are not in the set; NULL: one successor is enough. */
+static bool grow(ex_queries_t *queries, const uint64_t *a, uint64_t *set, uint32_t *left, uint32_t *stack)
+{
+    const ex_graph_t *const graph = queries->run->graph;
+    uint64_t waiting = 0U;
+    uint64_t steps = 0U;
+    for (uint32_t node = 0U; node < graph->nodes; node++) {
+        if (EX_BIT(set, node) != 0U) {
+            stack[waiting] = node;
+            waiting += 1U;
+        }
+        if (left != NULL) {
+            left[node] = (uint32_t)(graph->row[node + 1U] - graph->row[node]);
+        }
+    }
+    while (waiting > 0U) {
+        waiting -= 1U;
+        steps += 1U;
+        if (((steps & 0xffffU) == 0U) && ex_is_stopping(queries->run)) {
+            return false;
+        }
+        const uint32_t node = stack[waiting];
+        for (uint64_t i = queries->in_row[node]; i < queries->in_row[node + 1U]; i++) {
+            const uint32_t source = queries->in_source[i];
+            if (left != NULL) {
+                left[source] -= 1U;
+                if (left[source] > 0U) {
+                    continue;
+                }
+            }
+            if ((EX_BIT(set, source) == 0U) && ((a == NULL) || (EX_BIT(a, source) != 0U))) {
+                EX_SET_BIT(set, source);
+                stack[waiting] = source;
+                waiting += 1U;
+            }
+        }
+    }
+    return true;
+}
+
+static bool until(ex_queries_t *queries, const uint64_t *a, uint64_t *set, bool is_universal)
+{
+    ex_run_t *const run = queries->run;
+    const uint64_t nodes = run->graph->nodes;
+    uint32_t *const stack = ex_table(run, nodes, sizeof *stack);
+    uint32_t *const left = is_universal ? ex_table(run, nodes, sizeof *left) : NULL;
+    const bool has_memory = (stack != NULL) && (!is_universal || (left != NULL)) && turn_arcs(queries);
+    const bool is_done = has_memory && grow(queries, a, set, left, stack);
+    ex_free_table(run, stack, nodes, sizeof *stack);
+    if (is_universal) {
+        ex_free_table(run, left, nodes, sizeof *left);
+    }
+    return is_done;
+}
+
+uint64_t *ex_set(const ex_queries_t *queries)
+{
+    return ex_alloc(queries->run, ex_set_words(queries->run->graph) * sizeof(uint64_t));
+}
+
+static void copy(const ex_queries_t *queries, uint64_t *set, const uint64_t *from)
+{
+    (void)memcpy(set, from, ex_set_words(queries->run->graph) * sizeof *set);
+}
+
+static void combine(const ex_queries_t *queries, uint64_t *set, const uint64_t *a, const uint64_t *b, bool is_and)
+{
+    const uint64_t words = ex_set_words(queries->run->graph);
+    for (uint64_t i = 0U; i < words; i++) {
+        set[i] = is_and ? (a[i] & b[i]) : (a[i] | b[i]);
+    }
+}
+
+bool ex_ctl(ex_queries_t *queries, ex_item_t *item)
+{
+    const uint64_t *const a = queries->item[item->a].set;
+    const uint64_t *const b = queries->item[item->b].set;
+    uint64_t *const set = ex_set(queries);
+    bool is_fine = set != NULL;
+    if (!is_fine) {
+        return false;
+    }
+    switch (item->kind) {
+    case EX_ITEM_NOT:
+        copy(queries, set, a);
+        complement(queries, set);
+        break;
+    case EX_ITEM_AND:
+    case EX_ITEM_OR: combine(queries, set, a, b, item->kind == EX_ITEM_AND); break;
+    case EX_ITEM_EX: add_before(queries, a, UINT32_MAX, set); break;
+    case EX_ITEM_EXA: add_before(queries, a, item->number, set); break;
+    case EX_ITEM_EF:
+        copy(queries, set, a);
+        is_fine = until(queries, NULL, set, false);
+        break;
+    case EX_ITEM_AF:
+        copy(queries, set, a);
+        is_fine = until(queries, NULL, set, true);
+        break;
+    case EX_ITEM_EU:
+    case EX_ITEM_AU:
+        copy(queries, set, b);
+        is_fine = until(queries, a, set, item->kind == EX_ITEM_AU);
+        break;
+    case EX_ITEM_AX: { /* not EX not a */
+        uint64_t *const other = ex_set(queries);
+        is_fine = other != NULL;
+        if (is_fine) {
+            copy(queries, other, a);
+            complement(queries, other);
+            add_before(queries, other, UINT32_MAX, set);
+            complement(queries, set);
+        }
+        ex_free(queries->run, other, ex_set_words(queries->run->graph) * sizeof *other);
+        break;
+    }
+    case EX_ITEM_EG: /* not AF not a */
+    case EX_ITEM_AG: /* not EF not a */
+        copy(queries, set, a);
+        complement(queries, set);
+        is_fine = until(queries, NULL, set, item->kind == EX_ITEM_EG);
+        complement(queries, set);
+        break;
+    case EX_ITEM_TRUE:
+    case EX_ITEM_DEAD:
+    case EX_ITEM_INITIAL:
+    case EX_ITEM_PRED:
+    case EX_ITEM_ENABLED:
+    case EX_ITEM_WITHIN:
+    default:
+        is_fine = false; /* explore_query.c knows them */
+        break;
+    }
+    item->set = is_fine ? set : NULL;
+    return is_fine;
+}
+
+/* --- runs that show it -------------------------------------------------------------------------------------------- */
+
+/* What comes next in an explanation: whether an item holds at the end of the way. */
+typedef struct claim {
+    uint32_t item;
+    bool holds;
+    bool is_shown; /* there is nothing more to say */
+} claim_t;
+
+/* The complement of a set of an item, to be freed. */
+static uint64_t *without(const ex_queries_t *queries, uint32_t item)
+{
+    uint64_t *const set = ex_set(queries);
+    if (set != NULL) {
+        copy(queries, set, queries->item[item].set);
+        complement(queries, set);
+    }
+    return set;
+}
+
+/* A way to the nearest node that is (not) in an item. */
+static bool show_way(ex_queries_t *queries, const uint64_t *through, claim_t *claim, uint32_t item, bool holds,
+                     ex_path_t *way)
+{
+    uint64_t *const other = holds ? NULL : without(queries, item);
+    const uint64_t *const goal = holds ? queries->item[item].set : other;
+    const bool is_found = (goal != NULL) && ex_path_search(queries, through, goal, way);
+    ex_free(queries->run, other, (other != NULL) ? (ex_set_words(queries->run->graph) * sizeof *other) : 0U);
+    *claim = (claim_t){ .item = item, .holds = holds };
+    return is_found;
+}
+
+/* One step to a node that is (not) in an item. */
+static bool show_step(ex_queries_t *queries, claim_t *claim, const ex_item_t *item, bool holds, ex_path_t *way)
+{
+    const ex_graph_t *const graph = queries->run->graph;
+    const uint32_t node = ex_path_end(way);
+    const uint32_t a = item->a;
+    for (uint64_t arc = graph->row[node]; arc < graph->row[node + 1U]; arc++) {
+        const bool is_of_it = (item->kind != EX_ITEM_EXA) || (graph->label[arc] == item->number);
+        if (is_of_it && (ex_is_in(queries, a, graph->target[arc]) == holds)) {
+            ex_path_step(way, graph->label[arc], graph->target[arc]);
+            *claim = (claim_t){ .item = a, .holds = holds };
+            return !way->is_failed;
+        }
+    }
+    return false;
+}
+
+/* A run that stays in the item (or out of it) for ever, or until it ends. */
+static bool show_for_ever(ex_queries_t *queries, claim_t *claim, uint32_t item, bool holds, ex_path_t *way)
+{
+    bool is_accepting = true;
+    uint32_t first[] = { 0U, 1U };
+    ex_literal_t literal = { .item = item, .is_positive = holds };
+    ex_edge_t edge = { .literals = 1U, .literal = &literal };
+    const ex_automaton_t automaton = {
+        .states = 1U, .is_accepting = &is_accepting, .edges = 1U, .edge = &edge, .first = first
+    };
+    claim->is_shown = true;
+    return ex_lasso(queries, &automaton, ex_path_end(way), way) == EX_YES;
+}
+
+/* A[a U b] does not hold: b never comes, or something comes before it that is in neither. */
+static bool show_no_until(ex_queries_t *queries, claim_t *claim, const ex_item_t *item, ex_path_t *way)
+{
+    uint64_t *const before = without(queries, item->b);
+    uint64_t *const neither = ex_set(queries);
+    bool is_found = false;
+    if ((before != NULL) && (neither != NULL)) {
+        copy(queries, neither, queries->item[item->a].set);
+        complement(queries, neither);
+        combine(queries, neither, neither, before, true);
+        is_found = ex_path_search(queries, before, neither, way);
+        claim->is_shown = true;
+    }
+    ex_free(queries->run, before, ex_set_words(queries->run->graph) * sizeof *before);
+    ex_free(queries->run, neither, ex_set_words(queries->run->graph) * sizeof *neither);
+    return is_found || show_for_ever(queries, claim, item->b, false, way);
+}
+
+/* One operator; false: no run shows it. */
+static bool show(ex_queries_t *queries, claim_t *claim, ex_path_t *way)
+{
+    const ex_item_t *const item = &queries->item[claim->item];
+    const bool holds = claim->holds;
+    const uint32_t node = ex_path_end(way);
+    switch (item->kind) {
+    case EX_ITEM_NOT: *claim = (claim_t){ .item = item->a, .holds = !holds }; return true;
+    case EX_ITEM_AND:
+    case EX_ITEM_OR: /* the operand that decides; if both have to be shown, the second is the one that says more as a
+                        rule */
+        if (holds == (item->kind == EX_ITEM_AND)) {
+            *claim = (claim_t){ .item = item->b, .holds = holds };
+        } else {
+            *claim =
+                (claim_t){ .item = (ex_is_in(queries, item->a, node) == holds) ? item->a : item->b, .holds = holds };
+        }
+        return true;
+    case EX_ITEM_EX:
+    case EX_ITEM_EXA: return holds && show_step(queries, claim, item, true, way);
+    case EX_ITEM_AX: return !holds && show_step(queries, claim, item, false, way);
+    case EX_ITEM_EF: return holds && show_way(queries, NULL, claim, item->a, true, way);
+    case EX_ITEM_AG: return !holds && show_way(queries, NULL, claim, item->a, false, way);
+    case EX_ITEM_EU: return holds && show_way(queries, queries->item[item->a].set, claim, item->b, true, way);
+    case EX_ITEM_EG: return holds && show_for_ever(queries, claim, item->a, true, way);
+    case EX_ITEM_AF: return !holds && show_for_ever(queries, claim, item->a, false, way);
+    case EX_ITEM_AU: return !holds && show_no_until(queries, claim, item, way);
+    case EX_ITEM_TRUE:
+    case EX_ITEM_DEAD:
+    case EX_ITEM_INITIAL:
+    case EX_ITEM_PRED:
+    case EX_ITEM_ENABLED:
+    case EX_ITEM_WITHIN:
+    default: return false;
+    }
+}
+
+bool ex_ctl_explain(ex_queries_t *queries, uint32_t item, bool holds, ex_path_t *way)
+{
+    claim_t claim = { .item = item, .holds = holds };
+    bool is_shown = false;
+    /* Operands have smaller numbers, so that this ends. */
+    while (!claim.is_shown && !way->is_failed) {
+        const ex_item_kind_t kind = queries->item[claim.item].kind;
+        if (!show(queries, &claim, way)) {
+            break;
+        }
+        is_shown = is_shown || ((kind != EX_ITEM_NOT) && (kind != EX_ITEM_AND) && (kind != EX_ITEM_OR));
+    }
+    return is_shown && !way->is_failed;
+}

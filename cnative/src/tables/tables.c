@@ -1,0 +1,41 @@
+/* SPDX-License-Identifier: MIT
+ * tables.c - answer questions about a place/transition net.
+ *
+ *     tables FILE METHOD SECONDS MIB SEED
+ *
+ * METHOD is walk, explore, count, reach, ctl or ltl. The exit code is 0 when the method came to its end, 2 if the
+ * tables are wrong, 4 if memory ran out.
+ */
+#include "tables.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { ARGUMENTS = 6 };
+
+int main(int count, char **argument)
+{
+    static tb_job_t job;
+    if (count != (int)ARGUMENTS) {
+        tb_fail(TB_EXIT_WRONG, "usage: tables FILE METHOD SECONDS MIB SEED");
+    }
+    const char *method = argument[2];
+    const double seconds = strtod(argument[3], NULL);
+    tb_start_clock(seconds);
+    tb_limit_memory(strtoull(argument[4], NULL, 10) << 20U);
+    tb_read(&job, argument[1]);
+    if (strcmp(method, "walk") == 0) {
+        tb_walk(&job, strtoull(argument[5], NULL, 10), seconds);
+    } else if ((strcmp(method, "explore") == 0) || (strcmp(method, "count") == 0)) {
+        tb_explore(&job, strcmp(method, "count") == 0);
+    } else if (strcmp(method, "reach") == 0) {
+        tb_reach(&job, seconds);
+    } else if (strcmp(method, "ctl") == 0) {
+        tb_ctl(&job, seconds);
+    } else if (strcmp(method, "ltl") == 0) {
+        tb_ltl(&job, seconds);
+    } else {
+        tb_fail(TB_EXIT_WRONG, "`%s` is no method", method);
+    }
+    return 0;
+}

@@ -1,0 +1,169 @@
+/* SPDX-License-Identifier: MIT
+ * tables_reach.c - one question after the other, each by a search of its own over stubborn sets.
+ *
+ * The markings that seem nearest to the formula come first (tables_distance.c), so that a yes is found early; a no
+ * takes all of them. The largest value of a sum needs one search, too: with the transitions that enlarge the sum as
+ * seeds, a marking with the largest value stays reachable, whatever that value is.
+ */
+#include "tables.h"
+
+enum { FIRST_WAITING = 1 << 10 };
+
+typedef struct waiting {
+    double distance;
+    uint32_t number;
+} waiting_t;
+
+/* The waiting markings: a heap, the nearest first, and of equal ones the oldest. */
+typedef struct heap {
+    waiting_t *item;
+    uint32_t count;
+    uint32_t room;
+} heap_t;
+
+static bool comes_before(const waiting_t *a, const waiting_t *b)
+{
+    return (a->distance < b->distance) || (!(a->distance > b->distance) && (a->number < b->number));
+}
+
+static void push(heap_t *h, double distance, uint32_t number)
+{
+    if (h->count == h->room) {
+        const uint32_t room = 2U * h->room;
+        h->item = tb_grown(h->item, h->room, room, sizeof *h->item);
+        h->room = room;
+    }
+    const waiting_t item = { distance, number };
+    uint32_t at = h->count;
+    h->count++;
+    while ((at > 0U) && comes_before(&item, &h->item[(at - 1U) / 2U])) {
+        h->item[at] = h->item[(at - 1U) / 2U];
+        at = (at - 1U) / 2U;
+    }
+    h->item[at] = item;
+}
+
+static uint32_t pop(heap_t *h)
+{
+    const uint32_t first = h->item[0].number;
+    h->count--;
+    const waiting_t item = h->item[h->count];
+    uint32_t at = 0U;
+    for (uint32_t child = 1U; child < h->count; child = (2U * at) + 1U) {
+        if (((child + 1U) < h->count) && comes_before(&h->item[child + 1U], &h->item[child])) {
+            child++;
+        }
+        if (!comes_before(&h->item[child], &item)) {
+            break;
+        }
+        h->item[at] = h->item[child];
+        at = child;
+    }
+    h->item[at] = item;
+    return first;
+}
+
+typedef struct search {
+    tb_question_t *question;
+    tb_store_t store;
+    tb_cursor_t cursor;
+    tb_stubborn_t stubborn;
+    heap_t heap;
+    tb_count_t *marking;
+    uint32_t *fire;
+} search_t;
+
+/* Whether the question is answered by the marking at the cursor, which is entered. */
+static bool found(search_t *s, uint32_t number)
+{
+    tb_question_t *q = s->question;
+    if (q->kind == TB_REACH) {
+        const double distance = tb_distance(q->formula, &s->cursor, true);
+        if (tb_holds(q->formula, &s->cursor)) {
+            tb_say(q, TB_YES, "STUBBORN_SETS");
+            return true;
+        }
+        push(&s->heap, distance, number);
+        return false;
+    }
+    const int64_t sum = tb_sum(q->formula, s->cursor.marking);
+    if (sum > q->least) {
+        q->least = sum;
+        tb_say_bound(q, sum, false, "STUBBORN_SETS");
+    }
+    push(&s->heap, -(double)sum, number);
+    return false;
+}
+
+/* True: all was seen, and the answer is no (the largest value is the one seen). */
+static bool searched(search_t *s)
+{
+    tb_question_t *q = s->question;
+    uint32_t number = 0U;
+    (void)tb_store_add(&s->store, s->cursor.marking, &number);
+    if (found(s, number)) {
+        return false;
+    }
+    while (s->heap.count > 0U) {
+        tb_store_get(&s->store, pop(&s->heap), s->marking);
+        tb_go_to(&s->cursor, s->marking);
+        const bool is_reach = q->kind == TB_REACH;
+        const uint32_t count =
+            tb_stubborn(&s->stubborn, &s->cursor, is_reach ? q->formula : NULL, is_reach ? NULL : q->formula, s->fire);
+        for (uint32_t i = 0U; i < count; i++) {
+            if (tb_is_over() || !tb_fire(&s->cursor, s->fire[i])) {
+                return false;
+            }
+            const tb_added_t added = tb_store_add(&s->store, s->cursor.marking, &number);
+            if ((added == TB_FULL) || ((added == TB_ADDED) && found(s, number))) {
+                return false;
+            }
+            tb_unfire(&s->cursor, s->fire[i]);
+        }
+    }
+    return true;
+}
+
+static void answer(const tb_net_t *net, tb_question_t *q)
+{
+    search_t s;
+    s.question = q;
+    tb_store_init(&s.store, net, NULL);
+    tb_cursor_init(&s.cursor, net);
+    tb_stubborn_init(&s.stubborn, net);
+    s.heap.room = (uint32_t)FIRST_WAITING;
+    s.heap.count = 0U;
+    s.heap.item = tb_new(s.heap.room, sizeof *s.heap.item);
+    s.marking = tb_new(net->places, sizeof *s.marking);
+    s.fire = tb_new(net->transitions, sizeof *s.fire);
+    if (searched(&s)) {
+        if (q->kind == TB_REACH) {
+            tb_say(q, TB_NO, "STUBBORN_SETS");
+        } else {
+            tb_say_bound(q, q->least, true, "STUBBORN_SETS");
+        }
+    }
+    tb_free(s.fire, net->transitions, sizeof *s.fire);
+    tb_free(s.marking, net->places, sizeof *s.marking);
+    tb_free(s.heap.item, s.heap.room, sizeof *s.heap.item);
+    tb_stubborn_free(&s.stubborn);
+    tb_cursor_free(&s.cursor);
+    tb_store_free(&s.store);
+}
+
+void tb_reach(tb_job_t *job, double seconds)
+{
+    uint32_t open = 0U;
+    for (uint32_t i = 0U; i < job->questions; i++) {
+        open += ((job->question[i].kind == TB_REACH) || (job->question[i].kind == TB_BOUND)) ? 1U : 0U;
+    }
+    for (uint32_t i = 0U; i < job->questions; i++) {
+        tb_question_t *q = &job->question[i];
+        if ((q->kind == TB_REACH) || (q->kind == TB_BOUND)) {
+            const double left = seconds - tb_elapsed();
+            tb_limit_time(tb_elapsed() + (left / (double)open)); /* what one leaves over the others get */
+            open--;
+            answer(&job->net, q);
+        }
+    }
+}

@@ -1,0 +1,349 @@
+/* SPDX-License-Identifier: MIT
+ * tables_read.c - a net and its questions, from text: numbers and words separated by white space.
+ *
+ *     places transitions
+ *     initial marking: one number for each place
+ *     for each transition: how many places it takes from, (place weight)..., how many it puts to, (place weight)...
+ *     questions
+ *     for each question: its number, and
+ *         reach FORMULA | bound SUM | ctl FORMULA | ltl AUTOMATON
+ *
+ *     FORMULA    true | false | dead | not F | and N F.. | or N F.. | sum N (place factor).. limit | enabled N
+ * transition.. EX F | AX F | EF F | AF F | EG F | AG F | EU F F | AU F F AUTOMATON  atoms FORMULA.. states, for each
+ * state: whether it accepts (0 or 1), how many moves, (target TRUE FALSE).., where TRUE and FALSE are numbers with the
+ * bits of the atoms that must be so
+ *
+ * The text comes from pn2code itself, so that an error in it is an error of the program; it is found all the same.
+ */
+#include "tables.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LONGEST_WORD = 64, DEEPEST = 10000 };
+
+typedef struct reader {
+    FILE *file;
+    char word[LONGEST_WORD];
+    tb_net_t *net;
+    uint32_t depth;
+} reader_t;
+
+static const char *next_word(reader_t *r)
+{
+    if (fscanf(r->file, "%63s", r->word) != 1) {
+        tb_fail(TB_EXIT_WRONG, "the tables end too early");
+    }
+    return r->word;
+}
+
+static int64_t number(reader_t *r, int64_t least, int64_t most)
+{
+    char *end = NULL;
+    const char *word = next_word(r);
+    const long long value = strtoll(word, &end, 10);
+    if ((*end != '\0') || (value < least) || (value > most)) {
+        tb_fail(TB_EXIT_WRONG, "`%s` is not a number from %lld to %lld", word, (long long)least, (long long)most);
+    }
+    return (int64_t)value;
+}
+
+static uint32_t index_below(reader_t *r, uint32_t count)
+{
+    return (uint32_t)number(r, 0, (int64_t)count - 1);
+}
+
+/* --- the net --------------------------------------------------------------------------------------------------------------------- */
+
+typedef struct growing {
+    tb_arc_t *arc;
+    uint32_t count;
+    uint32_t room;
+} growing_t;
+
+static void append(growing_t *g, uint32_t node, tb_count_t weight)
+{
+    if (g->count == g->room) {
+        const uint32_t room = (g->room > 0U) ? (2U * g->room) : 1024U;
+        g->arc = tb_grown(g->arc, g->room, room, sizeof *g->arc);
+        g->room = room;
+    }
+    g->arc[g->count].node = node;
+    g->arc[g->count].weight = weight;
+    g->count++;
+}
+
+static void read_arcs(reader_t *r, growing_t *g)
+{
+    const uint32_t count = (uint32_t)number(r, 0, (int64_t)r->net->places);
+    for (uint32_t i = 0U; i < count; i++) {
+        const uint32_t place = index_below(r, r->net->places);
+        append(g, place, (tb_count_t)number(r, 1, (int64_t)TB_MOST_TOKENS));
+    }
+}
+
+/* Arcs by their other end. */
+static void turn(const uint32_t *first, const uint32_t *node, size_t stride, uint32_t from, uint32_t to,
+                 uint32_t *turned)
+{
+    for (uint32_t i = 0U; i < first[from]; i++) {
+        const uint32_t target = *(const uint32_t *)(const void *)((const char *)node + ((size_t)i * stride));
+        turned[target + 1U]++;
+    }
+    for (uint32_t n = 0U; n < to; n++) {
+        turned[n + 1U] += turned[n];
+    }
+}
+
+static void make_takers(tb_net_t *net)
+{
+    const uint32_t count = net->takes.first[net->transitions];
+    net->takers.first = tb_new((size_t)net->places + 1U, sizeof(uint32_t));
+    net->takers.arc = tb_new(count, sizeof(tb_arc_t));
+    uint32_t *next = tb_new((size_t)net->places + 1U, sizeof(uint32_t));
+    turn(net->takes.first, &net->takes.arc->node, sizeof(tb_arc_t), net->transitions, net->places, net->takers.first);
+    (void)memcpy(next, net->takers.first, ((size_t)net->places + 1U) * sizeof *next);
+    for (uint32_t t = 0U; t < net->transitions; t++) {
+        for (uint32_t i = net->takes.first[t]; i < net->takes.first[t + 1U]; i++) {
+            const tb_arc_t arc = net->takes.arc[i];
+            const tb_arc_t back = { t, arc.weight };
+            net->takers.arc[next[arc.node]] = back;
+            next[arc.node]++;
+        }
+    }
+    tb_free(next, (size_t)net->places + 1U, sizeof *next);
+}
+
+static void make_changers(tb_net_t *net)
+{
+    const uint32_t count = net->changes.first[net->transitions];
+    net->changers.first = tb_new((size_t)net->places + 1U, sizeof(uint32_t));
+    net->changers.change = tb_new(count, sizeof(tb_change_t));
+    uint32_t *next = tb_new((size_t)net->places + 1U, sizeof(uint32_t));
+    turn(net->changes.first, &net->changes.change->node, sizeof(tb_change_t), net->transitions, net->places,
+         net->changers.first);
+    (void)memcpy(next, net->changers.first, ((size_t)net->places + 1U) * sizeof *next);
+    for (uint32_t t = 0U; t < net->transitions; t++) {
+        for (uint32_t i = net->changes.first[t]; i < net->changes.first[t + 1U]; i++) {
+            const tb_change_t change = net->changes.change[i];
+            const tb_change_t back = { t, change.by };
+            net->changers.change[next[change.node]] = back;
+            next[change.node]++;
+        }
+    }
+    tb_free(next, (size_t)net->places + 1U, sizeof *next);
+}
+
+/* What is put minus what is taken. */
+static void make_changes(tb_net_t *net)
+{
+    int64_t *by = tb_new(net->places, sizeof *by);
+    const uint32_t most = net->takes.first[net->transitions] + net->puts.first[net->transitions];
+    net->changes.first = tb_new((size_t)net->transitions + 1U, sizeof(uint32_t));
+    net->changes.change = tb_new(most, sizeof(tb_change_t));
+    uint32_t made = 0U;
+    for (uint32_t t = 0U; t < net->transitions; t++) {
+        const tb_arcs_t *sides[2] = { &net->takes, &net->puts };
+        for (uint32_t side = 0U; side < 2U; side++) {
+            for (uint32_t i = sides[side]->first[t]; i < sides[side]->first[t + 1U]; i++) {
+                const int64_t weight = (int64_t)sides[side]->arc[i].weight;
+                by[sides[side]->arc[i].node] += (side == 0U) ? -weight : weight;
+            }
+        }
+        for (uint32_t side = 0U; side < 2U; side++) {
+            for (uint32_t i = sides[side]->first[t]; i < sides[side]->first[t + 1U]; i++) {
+                const uint32_t p = sides[side]->arc[i].node;
+                if (by[p] != 0) {
+                    net->changes.change[made].node = p;
+                    net->changes.change[made].by = by[p];
+                    made++;
+                    by[p] = 0;
+                }
+            }
+        }
+        net->changes.first[t + 1U] = made;
+    }
+    tb_free(by, net->places, sizeof *by);
+}
+
+static void read_net(reader_t *r)
+{
+    tb_net_t *net = r->net;
+    net->places = (uint32_t)number(r, 0, 50000000);
+    net->transitions = (uint32_t)number(r, 0, 50000000);
+    net->initial = tb_new(net->places, sizeof *net->initial);
+    for (uint32_t p = 0U; p < net->places; p++) {
+        net->initial[p] = (tb_count_t)number(r, 0, (int64_t)TB_MOST_TOKENS);
+    }
+    growing_t takes = { NULL, 0U, 0U };
+    growing_t puts = { NULL, 0U, 0U };
+    append(&takes, 0U, 0U); /* so that there is an array even without arcs */
+    append(&puts, 0U, 0U);
+    takes.count = 0U;
+    puts.count = 0U;
+    net->takes.first = tb_new((size_t)net->transitions + 1U, sizeof(uint32_t));
+    net->puts.first = tb_new((size_t)net->transitions + 1U, sizeof(uint32_t));
+    for (uint32_t t = 0U; t < net->transitions; t++) {
+        read_arcs(r, &takes);
+        read_arcs(r, &puts);
+        net->takes.first[t + 1U] = takes.count;
+        net->puts.first[t + 1U] = puts.count;
+    }
+    net->takes.arc = takes.arc;
+    net->puts.arc = puts.arc;
+    make_takers(net);
+    make_changes(net);
+    make_changers(net);
+}
+
+/* --- the questions --------------------------------------------------------------------------------------------------------------- */
+
+static const struct {
+    const char *word;
+    tb_op_t op;
+    uint32_t parts; /* UINT32_MAX: their number is written */
+} operators[] = {
+    { "not", TB_NOT, 1U }, { "and", TB_AND, UINT32_MAX }, { "or", TB_OR, UINT32_MAX }, { "EX", TB_EX, 1U },
+    { "AX", TB_AX, 1U },   { "EF", TB_EF, 1U },           { "AF", TB_AF, 1U },         { "EG", TB_EG, 1U },
+    { "AG", TB_AG, 1U },   { "EU", TB_EU, 2U },           { "AU", TB_AU, 2U },
+};
+
+static tb_formula_t *formula(reader_t *r, uint32_t *numbers);
+
+static void read_sum(reader_t *r, tb_formula_t *f)
+{
+    f->op = TB_SUM;
+    f->count = (uint32_t)number(r, 0, (int64_t)r->net->places);
+    f->term = tb_new(f->count, sizeof *f->term);
+    for (uint32_t i = 0U; i < f->count; i++) {
+        f->term[i].place = index_below(r, r->net->places);
+        f->term[i].factor = number(r, -1000000000, 1000000000);
+    }
+    f->limit = number(r, INT64_MIN / 4, INT64_MAX / 4);
+}
+
+static void read_enabled(reader_t *r, tb_formula_t *f)
+{
+    f->op = TB_ENABLED;
+    f->count = (uint32_t)number(r, 0, (int64_t)r->net->transitions);
+    f->transition = tb_new(f->count, sizeof *f->transition);
+    for (uint32_t i = 0U; i < f->count; i++) {
+        f->transition[i] = index_below(r, r->net->transitions);
+    }
+}
+
+static void read_parts(reader_t *r, tb_formula_t *f, uint32_t parts, uint32_t *numbers)
+{
+    f->count = (parts == UINT32_MAX) ? (uint32_t)number(r, 0, 100000000) : parts;
+    f->part = tb_new(f->count, sizeof(tb_formula_t *));
+    f->is_temporal = f->op >= TB_EX;
+    for (uint32_t i = 0U; i < f->count; i++) {
+        f->part[i] = formula(r, numbers);
+        f->is_temporal = f->is_temporal || f->part[i]->is_temporal;
+    }
+}
+
+static tb_formula_t *formula(reader_t *r, uint32_t *numbers)
+{
+    tb_formula_t *f = tb_new(1U, sizeof *f);
+    const char *word = next_word(r);
+    r->depth++;
+    if (r->depth > (uint32_t)DEEPEST) {
+        tb_fail(TB_EXIT_WRONG, "a formula is nested too deeply");
+    }
+    if (strcmp(word, "true") == 0) {
+        f->op = TB_TRUE;
+    } else if (strcmp(word, "false") == 0) {
+        f->op = TB_FALSE;
+    } else if (strcmp(word, "dead") == 0) {
+        f->op = TB_DEAD;
+    } else if (strcmp(word, "sum") == 0) {
+        read_sum(r, f);
+    } else if (strcmp(word, "enabled") == 0) {
+        read_enabled(r, f);
+    } else {
+        size_t i = 0U;
+        while ((i < (sizeof operators / sizeof operators[0])) && (strcmp(word, operators[i].word) != 0)) {
+            i++;
+        }
+        if (i == (sizeof operators / sizeof operators[0])) {
+            tb_fail(TB_EXIT_WRONG, "`%s` begins no formula", word);
+        }
+        f->op = operators[i].op;
+        read_parts(r, f, operators[i].parts, numbers);
+    }
+    r->depth--;
+    f->number = *numbers;
+    (*numbers)++;
+    return f;
+}
+
+static void read_automaton(reader_t *r, tb_question_t *q)
+{
+    tb_automaton_t *a = &q->automaton;
+    a->atoms = (uint32_t)number(r, 0, TB_MOST_ATOMS);
+    a->atom = tb_new(a->atoms, sizeof *a->atom);
+    for (uint32_t i = 0U; i < a->atoms; i++) {
+        a->atom[i] = formula(r, &q->formulas);
+    }
+    a->states = (uint32_t)number(r, 1, 1000000);
+    a->is_accepting = tb_new(a->states, sizeof *a->is_accepting);
+    a->first = tb_new((size_t)a->states + 1U, sizeof *a->first);
+    uint32_t room = 0U;
+    for (uint32_t s = 0U; s < a->states; s++) {
+        a->is_accepting[s] = number(r, 0, 1) != 0;
+        const uint32_t moves = (uint32_t)number(r, 0, 1000000);
+        const uint32_t before = a->first[s];
+        if ((before + moves) > room) {
+            const uint32_t more = 2U * (before + moves);
+            a->move = tb_grown(a->move, room, more, sizeof *a->move);
+            room = more;
+        }
+        for (uint32_t i = 0U; i < moves; i++) {
+            a->move[before + i].target = index_below(r, a->states);
+            a->move[before + i].is_true = (uint64_t)number(r, 0, INT64_MAX);
+            a->move[before + i].is_false = (uint64_t)number(r, 0, INT64_MAX);
+        }
+        a->first[s + 1U] = before + moves;
+    }
+}
+
+static void read_question(reader_t *r, tb_question_t *q)
+{
+    q->number = (uint32_t)number(r, 0, INT32_MAX);
+    const char *word = next_word(r);
+    if (strcmp(word, "ltl") == 0) {
+        q->kind = TB_LTL;
+        read_automaton(r, q);
+        return;
+    }
+    q->kind = TB_CTL;
+    if (strcmp(word, "reach") == 0) {
+        q->kind = TB_REACH;
+    } else if (strcmp(word, "bound") == 0) {
+        q->kind = TB_BOUND;
+    } else if (strcmp(word, "ctl") != 0) {
+        tb_fail(TB_EXIT_WRONG, "`%s` is no kind of question", word);
+    }
+    q->formula = formula(r, &q->formulas);
+    if (((q->kind == TB_BOUND) && (q->formula->op != TB_SUM)) || ((q->kind == TB_REACH) && q->formula->is_temporal)) {
+        tb_fail(TB_EXIT_WRONG, "question %u is not of its kind", q->number);
+    }
+    q->least = INT64_MIN;
+}
+
+void tb_read(tb_job_t *job, const char *path)
+{
+    reader_t r = { fopen(path, "r"), { 0 }, &job->net, 0U };
+    if (r.file == NULL) {
+        tb_fail(TB_EXIT_WRONG, "cannot read `%s`", path);
+    }
+    read_net(&r);
+    job->questions = (uint32_t)number(&r, 0, 10000000);
+    job->question = tb_new(job->questions, sizeof *job->question);
+    for (uint32_t i = 0U; i < job->questions; i++) {
+        read_question(&r, &job->question[i]);
+    }
+    (void)fclose(r.file);
+}

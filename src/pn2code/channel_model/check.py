@@ -1,0 +1,335 @@
+"""The checks of a cell's medium: which net is explored for which question, and what the answer means.
+
+for answer in medium(partition, storage, Limits(), d): ...
+"""
+
+from __future__ import annotations
+
+import tempfile
+import time
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from pn2code.base.frozen import frozen
+from pn2code.cell.partition import Partition
+from pn2code.channel_model.compose import compose
+from pn2code.channel_model.faults import SAYS, Fault
+from pn2code.channel_model.places import Crashes, MediumNet, modelled
+from pn2code.channel_model.rules import Rules
+from pn2code.channel_model.run_text import RunText
+from pn2code.channel_model.skeleton import Skeleton, Topology, topology
+from pn2code.diagnostics import Diagnostics
+from pn2code.lowering.nets.packing import choose
+from pn2code.verify.answers import basis
+from pn2code.verify.answers.properties import Verdict
+from pn2code.verify.answers.reasons import clause
+from pn2code.verify.controller import messages
+from pn2code.verify.controller.running import chunks
+from pn2code.verify.exploring.explore import ExploreOptions, explore
+from pn2code.verify.exploring.limits import Limits, Reduction
+from pn2code.verify.exploring.programs import Sizes
+from pn2code.verify.exploring.result import Exploration
+
+MOST_STATES = 2_000_000
+"""Of one exploration, if the user sets no limit."""
+MOST_TRACES = 16
+QUICK_STATES = 2_000
+"""Of a cell: beyond that it pays to have the compiler work longer."""
+WHOLE = "the cell with its medium"
+CRASHES = Crashes(supervisor=1, robots=1)
+"""Of each side, in the exchange."""
+
+
+@frozen
+class Evidence:
+    """A run that shows a fault, or a deadlock (None): its lines in words, and how many steps it has in the net."""
+
+    fault: Fault | None
+    steps: int
+    lines: tuple[str, ...]
+
+
+@frozen
+class Answer:
+    """The answer to one question.
+
+    Args:
+        check: "medium of the cell", "exchange with robot1".
+        says: the question in words.
+        answer: yes (it holds), no, inconclusive.
+        why: why it is inconclusive; "" else.
+        nodes, arcs, seconds: of the exploration; `places`, `transitions`: of its net.
+        assumes: what the answer rests on.
+    """
+
+    check: str
+    says: str
+    answer: Verdict
+    why: str
+    nodes: int
+    arcs: int
+    places: int
+    transitions: int
+    seconds: float
+    assumes: str
+    evidence: tuple[Evidence, ...]
+
+    @property
+    def rests_on(self) -> str | None:
+        """What has to be seen for this answer: a word of `basis`; None: there is no answer."""
+        return {"yes": basis.ARCS, "no": basis.RUN}.get(self.answer)
+
+    def row(self) -> dict[str, Any]:
+        """For programs."""
+        return {
+            "check": self.check,
+            "says": self.says,
+            "answer": self.answer,
+            "why": self.why or None,
+            "nodes": self.nodes,
+            "arcs": self.arcs,
+            "places": self.places,
+            "transitions": self.transitions,
+            "seconds": round(self.seconds, 3),
+            "assumes": self.assumes,
+            "rests_on": self.rests_on,
+            "evidence": [
+                {
+                    "fault": None if e.fault is None else e.fault.name.lower(),
+                    "says": "a deadlock" if e.fault is None else SAYS[e.fault],
+                    "steps": e.steps,
+                    "run": list(e.lines),
+                }
+                for e in self.evidence
+            ],
+        }
+
+
+@frozen
+class Run:
+    """How to explore: limits, who gets errors, what else is wished."""
+
+    limits: Limits
+    d: Diagnostics
+    wishes: ExploreOptions = ExploreOptions(quick=True)
+
+
+def medium(
+    partition: Partition,
+    storage: Mapping[str, str],
+    limits: Limits,
+    d: Diagnostics,
+    *,
+    rules: Rules | None = None,
+    crashes: Crashes = CRASHES,
+    cell_states: int | None = 0,
+    wishes: ExploreOptions | None = None,
+) -> Iterator[Answer]:
+    """All checks of a cell; none if it has no channels.
+
+    Args:
+        partition: the cell.
+        storage: as for `Game`.
+        limits: of each exploration.
+        d: gets the errors.
+        rules: of the protocol; None: as it is implemented.
+        crashes: in the exchanges.
+        cell_states: of the cell's own net; None: too many to explore it with its medium.
+        wishes: who is told of the progress, and who may interrupt; None: nobody.
+    """
+    rules = rules or Rules()
+    run = Run(limits, d, replace(wishes or ExploreOptions(), quick=True))
+    own = modelled(partition)
+    if not own:
+        return
+    left_out = [c.file for c in partition.channels if c not in own]
+    if cell_states is not None:
+        fitting = replace(run.wishes, quick=cell_states <= QUICK_STATES)
+        yield whole(partition, storage, replace(run, wishes=fitting), rules, left_out)
+    else:
+        yield too_large()
+    seen: dict[Topology, str] = {}
+    for owner in partition.owners[1:]:
+        kind = topology(partition, owner.index)
+        if kind == Topology(0, 0, 0, 0) or kind in seen:
+            continue
+        seen[kind] = owner.name
+        yield exchange(partition, owner.index, run, rules, crashes)
+
+
+def whole(
+    partition: Partition,
+    storage: Mapping[str, str],
+    run: Run,
+    rules: Rules,
+    left_out: Sequence[str] = (),
+) -> Answer:
+    """The cell's own net with its medium; no side crashes."""
+    net = compose(partition, rules, Crashes(lives=False))
+    assumes = "no side crashes"
+    if net.net.timed:
+        assumes += (
+            "; messages take no model time, and time does not advance while something can happen"
+        )
+    if left_out:
+        assumes += f"; messages of {', '.join(left_out)}, between two robots, arrive at once"
+    return _explored(
+        WHOLE,
+        "no message is lost, taken twice, torn, refused or overwritten, and the cell can come to its end from every "
+        "state",
+        net,
+        storage,
+        run,
+        assumes,
+        judged=bool(partition.final_places),
+        choices=_choices(partition),
+        carried=partition,
+    )
+
+
+def _choices(partition: Partition) -> str:
+    """Lines for the explorer: of what is enabled, each program does what comes first in the documented order."""
+    lines: list[str] = []
+    for owner in range(len(partition.owners)):
+        own = (i for i, o in enumerate(partition.transition_owner) if o == owner)
+        lines += chunks(f"{'choose' if owner else 'first'} {owner + 1}", own)
+    return "".join(f"{line}\n" for line in lines)
+
+
+def too_large() -> Answer:
+    """Of a cell that was not explored to the end by itself."""
+    why = "the state space of the cell itself was not explored completely"
+    return Answer(WHOLE, "", "inconclusive", why, 0, 0, 0, 0, 0.0, "no side crashes", ())
+
+
+def exchange(
+    partition: Partition,
+    owner: int,
+    run: Run,
+    rules: Rules,
+    crashes: Crashes = CRASHES,
+) -> Answer:
+    """The exchange between the supervisor and a side, with crashes of both."""
+    skeleton = Skeleton(partition, owner)
+    net = compose(skeleton.partition, rules, crashes, skeleton.extra)
+    name = partition.owners[owner].name
+    rounds = f"{skeleton.rounds} exchange{'s' * (skeleton.rounds != 1)}"
+    assumes = (
+        f"commands and answers as far as {name}'s files allow them, {rounds} a session, "
+        f"at most {crashes.supervisor} crash{'es' * (crashes.supervisor != 1)} of the supervisor and "
+        f"{crashes.robots} of {name}, {crashes.all_sessions} session{'s' * (crashes.all_sessions != 1)}"
+    )
+    return _explored(
+        f"the exchange with {name}",
+        "whichever side crashes and is started again, at whatever time: no message is lost without a crash, none is "
+        "taken twice or in another session, no flag is taken without its own data, and both sides end or go on in the "
+        "new session",
+        net,
+        {},
+        run,
+        assumes,
+        judged=True,
+    )
+
+
+def _explored(
+    check: str,
+    says: str,
+    net: MediumNet,
+    storage: Mapping[str, str],
+    run: Run,
+    assumes: str,
+    *,
+    judged: bool,
+    choices: str = "",
+    carried: Partition | None = None,
+) -> Answer:
+    """`carried`: the cell whose messages have to have a form that the codecs can write and read."""
+    began = time.perf_counter()
+    mine = replace(
+        run.limits,
+        max_states=run.limits.max_states or MOST_STATES,
+        graph=True,
+        traces=MOST_TRACES,
+        approximation=None,
+        reductions=tuple(r for r in run.limits.reductions if r is Reduction.TIME),
+    )
+    sizes = Sizes(choose(net.net, [[] for _ in net.net.places], {}))
+    with tempfile.TemporaryDirectory(prefix="pn2code-") as folder:
+        wishes = replace(
+            run.wishes,
+            traces=Path(folder),
+            sizes=sizes,
+            questions=choices + (_question(net) if judged else ""),
+            evidence=Path(folder),
+        )
+        found = explore(net.net, storage, mine, run.d, wishes)
+        runs = () if found is None else tuple(_evidence(net, storage, found, judged))
+    answer, why = _verdict(net, found, runs, judged)
+    if carried is not None and found is not None and answer == "yes":
+        sent = messages.examine(carried, found, run.d)  # the writer's place has kept its index
+        if sent.answer == "no":
+            answer, why = "no", sent.says
+        elif sent.answer == "unknown":
+            answer, why = "inconclusive", "the values of its messages are not known"
+    return Answer(
+        check=check,
+        says=says,
+        answer=answer,
+        why=why,
+        nodes=found.nodes if found else 0,
+        arcs=found.arcs if found else 0,
+        places=len(net.net.places),
+        transitions=len(net.net.transitions),
+        seconds=time.perf_counter() - began,
+        assumes=assumes,
+        evidence=runs,
+    )
+
+
+def _question(net: MediumNet) -> str:
+    """Whether an end, or a verdict, can be reached from everywhere: AG EF."""
+    lines = ["dead", *(f"enabled {t}" for t in net.ends)]
+    last = 0
+    for i in range(1, len(net.ends) + 1):
+        lines.append(f"or {last} {i}")
+        last = len(lines) - 1
+    lines += [f"ef {last}", f"ag {last + 1}", f"? initially {last + 2}"]
+    return "\n".join(lines) + "\n"
+
+
+def _evidence(
+    net: MediumNet, storage: Mapping[str, str], found: Exploration, judged: bool
+) -> Iterator[Evidence]:
+    """The shortest run to each fault, and one to a deadlock, or to where no end can be reached from."""
+    teller = RunText(net, storage)
+    seen: set[Fault | None] = set() if judged else {None}
+    for trace in sorted(found.traces, key=lambda t: t.steps):
+        lines, fault = teller.told(trace.file)
+        if fault not in seen:
+            seen.add(fault)
+            yield Evidence(fault, trace.steps, lines)
+    for answer in (
+        found.answers
+    ):  # nothing is asked of a cell without final places: it is made to go on for ever
+        if answer["answer"] == "no" and None not in seen and answer["trace"]:
+            lines, _ = teller.told(Path(answer["trace"]))
+            yield Evidence(
+                None, answer["steps"], (*lines[:-1], "and from here no end can be reached")
+            )
+
+
+def _verdict(
+    net: MediumNet, found: Exploration | None, runs: tuple[Evidence, ...], judged: bool
+) -> tuple[Verdict, str]:
+    if found is None or found.error is not None:
+        return "inconclusive", "it could not be explored"
+    if runs or found.fired[net.ending]:
+        return "no", ""
+    if not found.complete:
+        return "inconclusive", f"the exploration is not complete: {clause(found.why)}"
+    if judged and (found.dead_count or any(a["answer"] != "yes" for a in found.answers)):
+        return "no", ""
+    return "yes", ""

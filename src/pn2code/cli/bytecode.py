@@ -1,0 +1,70 @@
+"""Compiled modules of pn2code, kept where Python itself may not keep them.
+
+Python keeps compiled modules beside their sources. Where it must not (`PYTHONDONTWRITEBYTECODE`) or cannot (sources
+of somebody else), each start of a command would compile a hundred modules again, which is half of the time of
+checking a typical net. Then they are kept in the user's own cache folder instead, by Python's own rules: those of a
+source that has changed are compiled anew.
+
+This concerns pn2code's modules only; what Python does with others stays as it is set.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Sequence
+from importlib.machinery import ModuleSpec, PathFinder, SourceFileLoader
+from importlib.util import cache_from_source
+from pathlib import Path
+from types import CodeType, ModuleType
+
+from pn2code.base.private_folder import private_folder
+
+_PACKAGE = Path(__file__).parents[1]
+
+
+def keep() -> None:
+    """Keep what is compiled from now on, if Python does not."""
+    if any(isinstance(finder, _Finder) for finder in sys.meta_path):
+        return
+    if sys.dont_write_bytecode or not os.access(_PACKAGE, os.W_OK):
+        folder = private_folder()
+        if folder is not None:
+            sys.meta_path.insert(0, _Finder(str(folder / "modules")))
+
+
+class _Finder:
+    """Finds pn2code's modules as Python does, but has them compiled into a folder."""
+
+    def __init__(self, folder: str) -> None:
+        self._folder = folder
+
+    def find_spec(
+        self, name: str, path: Sequence[str] | None = None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        if not name.startswith("pn2code."):
+            return None
+        spec = PathFinder.find_spec(name, path, target)
+        if spec is not None and type(spec.loader) is SourceFileLoader:
+            spec.loader = _Loader(name, spec.loader.path, self._folder)
+        return spec
+
+
+class _Loader(SourceFileLoader):
+    """Loads a module from its source or what was compiled from it."""
+
+    def __init__(self, name: str, path: str, folder: str) -> None:
+        super().__init__(name, path)
+        self._folder = folder
+
+    def get_code(self, fullname: str) -> CodeType | None:
+        set_before = sys.pycache_prefix, sys.dont_write_bytecode
+        sys.pycache_prefix, sys.dont_write_bytecode = self._folder, False
+        try:
+            try:
+                return super().get_code(fullname)
+            except (EOFError, ValueError, TypeError):  # the file is damaged
+                Path(cache_from_source(self.path)).unlink()
+                return super().get_code(fullname)
+        finally:
+            sys.pycache_prefix, sys.dont_write_bytecode = set_before

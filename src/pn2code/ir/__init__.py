@@ -1,0 +1,1 @@
+"""`NetIR`: a net as small imperative programs over C-like types; its nodes, its types, its dump, and passes over it."""

@@ -1,0 +1,98 @@
+"""Which function calls which: what is used, in what order functions are declared, and which of them are recursive."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import cache
+from operator import attrgetter
+from typing import Any
+
+from pn2code.ir import nodes as ir
+
+
+def called(item: object) -> list[str]:
+    """The keys of the functions that statements, or whatever else of the IR, call, in order of first use."""
+    found: dict[str, None] = {}
+    for node in ir_nodes(item):
+        if isinstance(node, ir.FunCall):
+            found.setdefault(node.function)
+    return list(found)
+
+
+def ir_nodes(item: object) -> Iterator[object]:
+    """All IR nodes in a statement, expression or tuple of them."""
+    waiting: list[Any] = [item]
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, tuple):
+            waiting += node[::-1]
+        elif (parts := _parts(node.__class__)) is not None:
+            yield node
+            waiting += parts(node)
+
+
+@cache
+def _parts(kind: type) -> Callable[[Any], Sequence[Any]] | None:
+    """What gives the fields of a node, from the last to the first; None for what is no node."""
+    fields = tuple(reversed(getattr(kind, "__dataclass_fields__", {})))
+    match fields:
+        case ():
+            return None
+        case (field,):
+            return lambda node: (getattr(node, field),)
+        case _:
+            return attrgetter(*fields)
+
+
+def order_functions(made: dict[str, ir.Function]) -> tuple[ir.Function, ...]:
+    """Callees first; functions that call themselves are marked."""
+    graph = {key: called(f.body) for key, f in made.items()}
+    order: list[str] = []
+    components: dict[str, int] = {}
+    index: dict[str, int] = {}
+    low: dict[str, int] = {}
+    stack: list[str] = []
+    recursive: set[str] = set()
+
+    def visit(key: str) -> None:
+        index[key] = low[key] = len(index)
+        stack.append(key)
+        for callee in graph[key]:
+            if callee not in index:
+                visit(callee)
+                low[key] = min(low[key], low[callee])
+            elif callee not in components:
+                low[key] = min(low[key], index[callee])
+        if low[key] == index[key]:
+            members = []
+            while True:
+                member = stack.pop()
+                components[member] = index[key]
+                members.append(member)
+                if member == key:
+                    break
+            order.extend(reversed(members))
+            if len(members) > 1 or key in graph[key]:
+                recursive.update(members)
+
+    for key in sorted(made):
+        if key not in index:
+            visit(key)
+    result = []
+    for key in order:
+        f = made[key]
+        is_recursive = key in recursive
+        result.append(
+            ir.Function(
+                f.key,
+                f.hint,
+                f.parameters,
+                f.result,
+                f.body,
+                f.loops and not is_recursive,
+                is_recursive,
+                f.source,
+                f.origin,
+            )  # fmt: skip
+        )
+    return tuple(result)

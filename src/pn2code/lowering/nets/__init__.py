@@ -1,0 +1,1 @@
+"""Places, arcs, transitions and predicates of a net as IR."""

@@ -1,0 +1,525 @@
+"""One transition as two programs: enumerate its enabled bindings, fire one of them.
+
+Enumeration follows the binding plan of the front end; each guard and each demand on a place is tested as soon
+as the variables it needs are bound. A place with a single summand of coefficient 1 needs no test beyond the
+loop that found the token; all others are tested together (`Wanted`).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from pn2code.ir import nodes as ir
+from pn2code.ir.nodes import Ir, Stmt
+from pn2code.lowering.codes import UNSUPPORTED_COLSET, UnsupportedError
+from pn2code.lowering.expressions import colset_functions
+from pn2code.lowering.expressions.body import Body
+from pn2code.lowering.expressions.builtins import same
+from pn2code.lowering.expressions.clock import accepted, clock, in_clock, plus
+from pn2code.lowering.expressions.functions import Program
+from pn2code.lowering.expressions.matching import conjunction
+from pn2code.lowering.expressions.types import Types
+from pn2code.lowering.expressions.values import Binding, Env, free_variables
+from pn2code.lowering.nets import arc_lists
+from pn2code.lowering.nets.inscriptions import Putter
+from pn2code.ml.core import terms as core
+from pn2code.ml.core.colsets import Colset, Kind
+from pn2code.ml.core.terms import Symbol
+from pn2code.ml.core.types import list_of
+from pn2code.net.enumerable import SMALL, size
+from pn2code.net.flat import (
+    ArcKind,
+    BindAll,
+    BindEquation,
+    BindRandom,
+    BindTerm,
+    FlatArc,
+    FlatNet,
+    FlatTransition,
+    Term,
+)
+
+_TAKING = (ArcKind.INPUT, ArcKind.BOTH)
+_PUTTING = (ArcKind.OUTPUT, ArcKind.BOTH)
+
+
+def lower_transition(
+    program: Program, net: FlatNet, t: FlatTransition, owner: int
+) -> ir.Transition:
+    """Lower one transition instance."""
+    outputs = set(t.code.outputs) if t.code else set()
+    variables = tuple(
+        ir.Variable(s.name, program.types.lower(s.type), _table(program, s), s in outputs)
+        for s in t.variables
+    )
+    return ir.Transition(
+        index=t.index,
+        name=t.name,
+        id=t.id,
+        origin=t.origin,
+        owner=owner,
+        priority=t.priority,
+        variables=variables,
+        enumerate=_Enumeration(program, net, t, variables).run(),
+        fire=_firing(program, net, t, variables),
+        guard_text=", ".join(g.span.text for g in t.guards),
+        thresholds=_Thresholds(program, net, t, variables).run(),
+        places=tuple({a.place: _name_on_page(net, a) for a in reversed(t.arcs)}.items()),
+    )
+
+
+def _table(program: Program, symbol: Symbol) -> str:
+    if symbol.colset is not None:
+        return program.types.colset(symbol.colset)
+    return program.types.plain(program.types.lower(symbol.type))
+
+
+def _limit(
+    program: Program, body: Body, delay: core.Exp | None, env: Env, timed: bool
+) -> Ir | None:
+    """The latest stamp that a term of an input arc accepts."""
+    if not timed:
+        return None
+    if delay is None:
+        return ir.Now(clock(program.real_time))
+    return accepted(program.real_time, body.ir(delay, env))
+
+
+def take_terms(
+    program: Program,
+    net: FlatNet,
+    body: Body,
+    arc: FlatArc,
+    env: Env,
+    terms: list[Term] | None = None,
+) -> None:
+    """Emit what an arc takes (all its terms, or some)."""
+    assert arc.inscription is not None
+    timed = net.places[arc.place].colset.timed
+    note = arc_note(net, arc)
+    for term in arc.inscription.terms if terms is None else terms:
+        limit = _limit(program, body, term.delay, env, timed)
+        if term.whole:
+            multiset = arc_lists.multiset(body, term.value, env)
+            table = program.types.plain(multiset.type)
+            body.emit(ir.TakeAll(arc.place, multiset, table, limit, note))
+        else:
+            count = body.ir(term.coefficient, env)
+            value = body.addressable(body.ir(term.value, env), "token")
+            body.emit(ir.Take(arc.place, count, value, limit, note))
+        note = ""
+
+
+def arc_note(net: FlatNet, arc: FlatArc) -> str:
+    """`Buffer: 1`n (ID1414)`."""
+    place = _name_on_page(net, arc)
+    text = arc.inscription.value.span.source.text if arc.inscription is not None else arc.kind.value
+    return f"{place}: {text.strip()} ({arc.id})"
+
+
+def _name_on_page(net: FlatNet, arc: FlatArc) -> str:
+    return arc.place_name or net.places[arc.place].name.rsplit(".", 1)[-1]
+
+
+@dataclass(slots=True)
+class _Demand:
+    """A term that is tested with others of its place."""
+
+    arc: FlatArc
+    term: Term
+
+
+class _Enumeration:
+    def __init__(
+        self, program: Program, net: FlatNet, t: FlatTransition, variables: tuple[ir.Variable, ...]
+    ) -> None:
+        self._program = program
+        self._net = net
+        self._t = t
+        self._variables = variables
+        self._index = {s.uid: i for i, s in enumerate(t.variables)}
+        self._bound: set[int] = set()
+        self._body = Body(program)
+        self._tested: set[int] = {s.guard for s in t.plan if isinstance(s, BindEquation)}
+        self._demands: list[_Demand] = []
+        self._found: set[tuple[int, int]] = set()
+        self._done = False
+        self._computed: list[tuple[FlatArc, Term]] = []
+
+    def run(self) -> tuple[Stmt, ...]:
+        self._plan_demands()
+        for arc in self._t.arcs:
+            if arc.kind is ArcKind.INHIBITOR:
+                self._body.emit(ir.UnlessEmpty(arc.place, arc_note(self._net, arc)))
+        self._ready(-1)
+        self._step(0)
+        return tuple(self._body.statements)
+
+    @property
+    def _env(self) -> Env:
+        env: dict[int, Binding] = {}
+        for uid in self._bound:
+            index = self._index[uid]
+            variable = self._variables[index]
+            env[uid] = ir.Bound(index, variable.type, variable.name)
+        return env
+
+    def _terms_of_place(self, place: int) -> int:
+        return sum(
+            len(a.inscription.terms)
+            for a in self._t.arcs
+            if a.kind in _TAKING and a.place == place and a.inscription is not None
+        )
+
+    def _plan_demands(self) -> None:
+        """Which terms need a test of their own: all but single ones found by a loop, with a constant coefficient."""
+        bound = {(s.arc, s.term) for s in self._t.plan if isinstance(s, BindTerm)}
+        for i, arc in enumerate(self._t.arcs):
+            if arc.kind not in _TAKING or arc.inscription is None:
+                continue
+            for j, term in enumerate(arc.inscription.terms):
+                is_single = self._terms_of_place(arc.place) == 1 and (i, j) in bound
+                if is_single and _constant(term.coefficient) is not None:
+                    self._found.add((i, j))
+                else:
+                    self._demands.append(_Demand(arc, term))
+
+    def _found_all(self) -> None:
+        """With all variables bound."""
+        self._body.emit(ir.Yield())
+
+    # --- steps of the plan ---------------------------------------------------------------------
+
+    def _step(self, position: int) -> None:
+        if position == len(self._t.plan):
+            self._found_all()
+            return
+        step = self._t.plan[position]
+        match step:
+            case BindTerm():
+                self._bind_term(step, position)
+            case BindEquation():
+                value = self._body.atomic(self._body.ir(step.value, self._env), "value")
+                if self._program.may_raise_bind(step.value):
+                    self._body.emit(ir.UnlessBind())
+                self._match(step.pattern, value, guard_note(self._t, step.guard))
+                self._ready(position)
+                self._step(position + 1)
+            case BindAll(symbol=symbol) | BindRandom(symbol=symbol):
+                index = self._index[symbol.uid]
+                note = f"{symbol.name} over all of {symbol.colset.name if symbol.colset else symbol.type}"
+                self._bind_all(symbol, index, note, position)
+
+    def _bind_all(self, symbol: Symbol, index: int, note: str, position: int) -> None:
+        """Loop over a small colour set; a subset is filtered from its base, or made into a list first."""
+        table = self._variables[index].table
+        types = self._program.types
+        with self._body.block() as statements:
+            self._bound.add(symbol.uid)
+            self._restrict(symbol)
+            self._ready(position)
+            self._step(position + 1)
+        if types.is_small(table):
+            self._body.emit(ir.ForValues(index, table, tuple(statements), note))
+            return
+        if symbol.colset is None or not colset_functions.is_countable(symbol.colset):
+            raise UnsupportedError(
+                UNSUPPORTED_COLSET,
+                f"the values of `{symbol.name}` cannot be counted",
+                self._t.origin,
+            )
+        self._body.emit(ir.Note(note))
+        values_type = types.lower(list_of(symbol.type))
+        values = colset_functions.all_values(self._body, symbol.colset, self._t.origin)
+        cell = self._body.local("cell", values_type)
+        head = ir.Bind(index, ir.Head(ir.Use(cell), types.lower(symbol.type)))
+        self._body.emit(ir.ForList(cell, values, (head, *statements)))
+
+    def _bind_term(self, step: BindTerm, position: int) -> None:
+        arc = self._t.arcs[step.arc]
+        assert arc.inscription is not None
+        term = arc.inscription.terms[step.term]
+        place = self._net.places[arc.place]
+        token = self._program.types.lower(place.colset.type)
+        index = self._body.local("i", ir.INT)
+        with self._body.block() as statements:
+            assert term.pattern is not None
+            self._match(term.pattern, ir.TokenValue(arc.place, index, token), "", place.colset)
+            if (step.arc, step.term) in self._found:
+                self._available(arc, term, index)
+            self._ready(position)
+            self._step(position + 1)
+        note = arc_note(self._net, arc)
+        self._body.emit(ir.ForTokens(arc.place, index, tuple(statements), note))
+
+    def _available(self, arc: FlatArc, term: Term, index: ir.Local) -> None:
+        """The token that was found is enough: of the count and, timed, of the age that is needed."""
+        timed = self._net.places[arc.place].colset.timed
+        count = _constant(term.coefficient)
+        assert count is not None
+        if count <= 1 and not timed:
+            return
+        count = max(count, 1)  # ``0`x`` takes nothing, but wants a token that is available
+        if timed and count > 1:
+            with self._body.block() as takes:
+                take_terms(self._program, self._net, self._body, arc, self._env, [term])
+            self._body.emit(ir.Wanted(tuple(takes)))
+            return
+        limit = _limit(self._program, self._body, term.delay, self._env, timed)
+        self._body.emit(ir.UnlessAvailable(arc.place, index, limit, count))
+
+    def _match(self, pattern: core.Pat, value: Ir, note: str, colset: Colset | None = None) -> None:
+        """Match a value, of the colour set that is given; the variables that are bound already must be equal."""
+        match = self._body.match(pattern, value)
+        conditions = list(match.conditions)
+        first: dict[int, Ir] = {}
+        fresh: list[tuple[Symbol, Ir]] = []
+        for symbol, part in match.bindings:
+            code = self._body.code(part)
+            if symbol.uid in self._bound:
+                conditions.append(same(self._body, code, self._env[symbol.uid]))  # type: ignore[arg-type]
+            elif symbol.uid in first:
+                conditions.append(same(self._body, code, first[symbol.uid]))
+            else:
+                first[symbol.uid] = code
+                fresh.append((symbol, code))
+        for named, part in match.equals:
+            conditions.append(
+                same(self._body, self._body.code(part), self._body.ir(named, self._env))
+            )
+        condition = conjunction(conditions)
+        if condition is not None:
+            self._body.emit(ir.Unless(condition, note))
+        for symbol, code in fresh:
+            self._body.emit(ir.Bind(self._index[symbol.uid], code))
+            self._bound.add(symbol.uid)
+        known = _colsets(self._program.types, pattern, colset)
+        for symbol, _ in fresh:
+            if known.get(symbol.uid) != self._variables[self._index[symbol.uid]].table:
+                self._restrict(symbol)
+
+    def _restrict(self, symbol: Symbol) -> None:
+        """A variable of a restricted colour set takes only its colours."""
+        index = self._index[symbol.uid]
+        table = self._variables[index].table
+        if self._program.types.is_restricted(table):
+            self._body.emit(ir.UnlessLegal(index, table))
+
+    # --- tests ---------------------------------------------------------------------------------
+
+    def _ready(self, position: int) -> None:
+        """Test what can be tested with the variables bound by the steps up to `position`.
+
+        Guards come first, then what the arcs want. Inscriptions that may raise an exception or draw a random number are
+        not looked at before all variables are bound, so that they are looked at as often as in the token game.
+        """
+        is_last = position + 1 == len(self._t.plan)
+        for i, guard in enumerate(self._t.guards):
+            if i not in self._tested and self._can(guard):
+                self._tested.add(i)
+                condition = self._body.ir(guard, self._env)
+                if self._program.may_raise_bind(guard):
+                    condition = self._body.spill(condition, "guard")
+                    self._body.emit(ir.UnlessBind())
+                self._body.emit(ir.Unless(condition, guard_note(self._t, i)))
+        if any(self._draws(d.term) for d in self._demands):
+            if is_last:
+                self._want(self._demands)
+                self._demands = []
+            return
+        for place in dict.fromkeys(d.arc.place for d in self._demands):
+            mine = [d for d in self._demands if d.arc.place == place]
+            if not all(self._can_term(d.term) for d in mine):
+                continue
+            if not is_last and not all(is_total(x) for d in mine for x in parts(d.term)):
+                continue
+            self._demands = [d for d in self._demands if d.arc.place != place]
+            if len(mine) != 1 or not self._holds(mine[0]):
+                self._want(mine)
+
+    def _want(self, demands: list[_Demand]) -> None:
+        with self._body.block() as takes:
+            for d in demands:
+                take_terms(self._program, self._net, self._body, d.arc, self._env, [d.term])
+        self._body.emit(ir.Wanted(tuple(takes)))
+
+    def _draws(self, term: Term) -> bool:
+        return any(self._program.is_impure(x) for x in parts(term))
+
+    def _holds(self, demand: _Demand) -> bool:
+        """Test for a single value with a constant coefficient; False if the demand is not of this kind."""
+        term, arc = demand.term, demand.arc
+        count = _constant(term.coefficient)
+        if term.whole or count is None:
+            return False
+        if count > 0:
+            timed = self._net.places[arc.place].colset.timed
+            limit = _limit(self._program, self._body, term.delay, self._env, timed)
+            value = self._body.addressable(self._body.ir(term.value, self._env), "token")
+            note = arc_note(self._net, arc)
+            self._body.emit(ir.UnlessHeld(arc.place, value, count, limit, note))
+        return True
+
+    def _can(self, e: core.Exp) -> bool:
+        free = {uid for uid in free_variables(e) if uid in self._index}
+        return free <= self._bound
+
+    def _can_term(self, term: Term) -> bool:
+        return all(self._can(x) for x in parts(term))
+
+
+class _Thresholds(_Enumeration):
+    """When tokens become available to input arcs with delays that are not constant, as the token game finds it: a
+    search in which all tokens are available gives the values that the delays can have."""
+
+    def run(self) -> tuple[Stmt, ...]:
+        computed = [
+            (arc, term)
+            for arc in self._t.arcs
+            if arc.kind in _TAKING and arc.inscription is not None
+            for term in arc.inscription.terms
+            if self._net.places[arc.place].colset.timed
+            and term.delay is not None
+            and self._program.constant(term.delay) is None
+        ]
+        free = [self._uses_variables(term) for _, term in computed]
+        for (arc, term), uses in zip(computed, free, strict=True):
+            if not uses:
+                self._threshold(arc, term)
+        self._computed = [x for x, uses in zip(computed, free, strict=True) if uses]
+        if self._computed:
+            self._ready(-1)
+            self._step(0)
+        return tuple(self._body.statements)
+
+    def _uses_variables(self, term: Term) -> bool:
+        assert term.delay is not None
+        return any(uid in self._index for uid in free_variables(term.delay))
+
+    def _found_all(self) -> None:
+        for arc, term in self._computed:
+            self._threshold(arc, term)
+
+    def _threshold(self, arc: FlatArc, term: Term) -> None:
+        assert term.delay is not None
+        delay = in_clock(self._program.real_time, self._body.ir(term.delay, self._env))
+        delay = self._body.atomic(delay, "delay")
+        self._body.emit(ir.Threshold(arc.place, delay, arc_note(self._net, arc)))
+
+
+def parts(term: Term) -> list[core.Exp]:
+    """The expressions of a term of an input arc."""
+    return [term.coefficient, term.value] + ([term.delay] if term.delay is not None else [])
+
+
+_TOTAL = frozenset(
+    {"=", "<>", "Ms.`", "Ms.++", "Bool.not", "String.^"}
+    | {f"{s}.{op}" for s in ("Int", "IntInf", "Real", "String") for op in ("<", "<=", ">", ">=")}
+    | {f"{s}.{op}" for s in ("Int", "IntInf", "Real") for op in ("+", "-", "*", "~")}
+)
+"""Built-in functions that do nothing but give a value; an Overflow is taken where it comes."""
+
+
+def is_total(e: core.Exp) -> bool:
+    """Whether an expression has a value without doing anything: neither exceptions nor random numbers."""
+    match e:
+        case core.Lit() | core.Var() | core.Con():
+            return True
+        case core.RecordExp(fields=fields):
+            return all(is_total(x) for _, x in fields)
+        case core.ListExp(items=items):
+            return all(map(is_total, items))
+        case core.Apply(function=core.Con(), argument=argument):
+            return is_total(argument)
+        case core.Apply(function=core.Builtin(name=name), argument=argument) if name in _TOTAL:
+            return is_total(argument)
+        case core.Apply(function=core.Builtin(name="Colset.all", colset=colset)):
+            return colset is not None and size(colset, SMALL) is not None
+        case core.Select(record=record):
+            return is_total(record)
+        case core.If(condition=c, then=t, otherwise=o):
+            return is_total(c) and is_total(t) and is_total(o)
+    return False
+
+
+def _colsets(types: Types, pattern: core.Pat, colset: Colset | None) -> dict[int, str]:
+    """The colour sets, by key, that the variables of a pattern are known to have values of."""
+    if colset is None:
+        return {}
+    match pattern:
+        case core.PVar(symbol=symbol):
+            return {symbol.uid: types.colset(colset)}
+        case core.PAs(symbol=symbol, pattern=inner):
+            return {symbol.uid: types.colset(colset), **_colsets(types, inner, colset)}
+        case core.PRecord(fields=fields):
+            own = colset.resolved
+            while own.kind is Kind.SUBSET and own.components[0] is not None:
+                own = own.components[0].resolved
+            if own.kind not in (Kind.PRODUCT, Kind.RECORD):
+                return {}
+            labels = own.labels or tuple(str(i) for i in range(1, len(own.components) + 1))
+            parts = dict(zip(labels, own.components, strict=True))
+            return {u: n for x, p in fields for u, n in _colsets(types, p, parts.get(x)).items()}
+    return {}
+
+
+def _constant(e: core.Exp) -> int | None:
+    return e.value if isinstance(e, core.Lit) and isinstance(e.value, int) else None
+
+
+def guard_note(t: FlatTransition, guard: int) -> str:
+    """`guard [n > 0]`."""
+    return f"guard [{' '.join(t.guards[guard].span.text.split())}]"
+
+
+# --- firing ------------------------------------------------------------------------------------
+
+
+def _firing(
+    program: Program, net: FlatNet, t: FlatTransition, variables: tuple[ir.Variable, ...]
+) -> tuple[Stmt, ...]:
+    """Code segment, takes, delay, puts, resets: the order in which CPN Tools works things out."""
+    body = Body(program)
+    env: dict[int, Binding] = {
+        s.uid: ir.Bound(i, variables[i].type, s.name) for i, s in enumerate(t.variables)
+    }
+    if t.code is not None:
+        _code_segment(body, t, env)
+    for arc in t.arcs:
+        if arc.kind in _TAKING:
+            take_terms(program, net, body, arc, env)
+    delay: Ir | None = None
+    is_timed = any(net.places[a.place].colset.timed for a in t.arcs if a.kind in _PUTTING)
+    if t.delay is not None and is_timed:
+        body.emit(ir.Note(f"delay @+{t.delay.span.text}"))
+        delay = body.atomic(in_clock(program.real_time, body.ir(t.delay, env)), "delay")
+    for arc in t.arcs:
+        if arc.kind in _PUTTING:
+            assert arc.inscription is not None
+            timed = net.places[arc.place].colset.timed
+            stamp: Ir | None = None
+            if timed:
+                now = ir.Now(clock(program.real_time))
+                stamp = now if delay is None else plus(now, delay)
+            note = arc_note(net, arc)
+            form = arc.inscription.form
+            Putter(body, arc.place, env, stamp, delay, note).put(arc.inscription.value, form)
+    for arc in t.arcs:
+        if arc.kind is ArcKind.RESET:
+            body.emit(ir.Reset(arc.place, arc_note(net, arc)))
+    return tuple(body.statements)
+
+
+def _code_segment(body: Body, t: FlatTransition, env: dict[int, Binding]) -> None:
+    code = t.code
+    assert code is not None
+    index = {s.uid: i for i, s in enumerate(t.variables)}
+    text = " ".join(code.action.span.text.split())
+    body.emit(ir.Note(f"code segment: action {text}"))
+    if not code.outputs:
+        body.effect(code.action, env)
+        return
+    value = body.exp(code.action, env)
+    parts = [value] if len(code.outputs) == 1 else body.components(value, len(code.outputs))
+    for symbol, part in zip(code.outputs, parts, strict=True):
+        body.emit(ir.Bind(index[symbol.uid], body.code(part)))

@@ -1,0 +1,1 @@
+"""The typed core language: terms, types, colour sets, constants, and its dump."""

@@ -1,0 +1,1 @@
+"""CPN ML text to a syntax tree: tokens, grammar, fixity."""

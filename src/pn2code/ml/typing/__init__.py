@@ -1,0 +1,1 @@
+"""Syntax tree to typed core: scopes, inference, declarations, inscriptions."""

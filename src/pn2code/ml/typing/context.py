@@ -1,0 +1,518 @@
+"""What all parts of the elaborator share: diagnostics, unifier, scope, and how types are shown to people."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+
+from pn2code.diagnostics import Diagnostics, Note, Span
+from pn2code.diagnostics.suggestions import nearest
+from pn2code.ml import codes
+from pn2code.ml.core import terms as core
+from pn2code.ml.core.colsets import Colset
+from pn2code.ml.core.types import INT, Type
+from pn2code.ml.library.builtins import DATATYPES, FIRST_EXCEPTION_TAG, LITERAL_TYPES, scheme
+from pn2code.ml.parsing.advice import BY_CODE, CLOSE
+from pn2code.ml.typing import type_advice
+from pn2code.ml.typing.environment import Binding, ConEntry, Scope, library_scope
+from pn2code.ml.typing.inference import (
+    ERROR,
+    IAbstract,
+    ICon,
+    IError,
+    IFun,
+    IRec,
+    Meta,
+    Quant,
+    Ty,
+    Unifier,
+    UnifyError,
+    from_type,
+    parts,
+    prune,
+    to_type,
+)
+
+MAX_DEPTH = 250
+"""Nesting of operators and calls that is followed; the later stages recurse over what is built from it."""
+
+
+class TooDeepError(Exception):
+    """Reported already; unwinds to the border."""
+
+
+@dataclass(frozen=True, slots=True)
+class Draft:
+    """An expression whose type may still be partly unknown; `build` gives the core expression once it is known."""
+
+    type: Ty
+    build: Callable[[], core.Exp]
+
+
+PatternBuild = Callable[[], core.Pat]
+
+
+def no_expression() -> core.Exp:
+    """The `build` of something that was reported; never called."""
+    raise AssertionError("an expression with an error was translated")
+
+
+BROKEN = Draft(ERROR, no_expression)
+
+
+@dataclass(slots=True)
+class Context:
+    """State of the elaboration of one net.
+
+    Args:
+        d: where errors go.
+        real_time: whether the clock is real.
+        unifier: types in the making.
+        scope: present scope.
+        top: scope of the top-level declarations.
+        errors: number of errors reported here (`d` keeps equal ones once).
+        depth: nesting of the expression being looked at.
+        unknown: names reported as not declared in this text; each is reported once.
+        net_variables: names of the net's variables, for advice where they are not in scope.
+        tainted: set when something is used whose declaration had an error.
+        weak: types of values that are not generalised; what is unknown in them at the end of the declaration stays so.
+        open_records: selectors and open patterns whose record type must be known in the end.
+        tyvars: explicit type variables in force, innermost last.
+        generic_base: number of type variables quantified around the declaration being translated.
+        datatypes: all datatypes by name.
+        colsets: by name; None for those with errors.
+        equality: whether a datatype (of equality arguments) has equality.
+        int_bits: width of `int`.
+        unread_files: files of declarations that are not there or could not be read.
+        announced: gives all names that the net declares anywhere.
+        warned: element, part and function of each warning about a function that cannot run here.
+    """
+
+    d: Diagnostics
+    real_time: bool
+    unifier: Unifier = field(init=False)
+    scope: Scope = field(init=False)
+    top: Scope = field(init=False)
+    tainted: bool = False
+    errors: int = 0
+    depth: int = 0
+    unknown: set[str] = field(default_factory=set)
+    net_variables: set[str] = field(default_factory=set)
+    open_records: list[tuple[Meta, Span]] = field(default_factory=list)
+    weak: list[Ty] = field(default_factory=list)
+    tyvars: list[dict[str, Meta]] = field(default_factory=list)
+    generic_base: int = 0
+    datatypes: dict[str, core.DatatypeDec] = field(default_factory=dict)
+    colsets: dict[str, Colset | None] = field(default_factory=dict)
+    equality: dict[str, bool] = field(default_factory=dict)
+    int_bits: int = 31
+    unread_files: list[str] = field(default_factory=list)
+    announced: Callable[[], frozenset[str]] = frozenset
+    warned: set[tuple[str, str, str]] = field(default_factory=set)
+    next_uid: int = 0
+    next_exception: int = FIRST_EXCEPTION_TAG
+    _names: dict[Type, str | None] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        """Starts with the library."""
+        self.unifier = Unifier(lambda name: self.equality.get(name, True))
+        self.top = Scope(library_scope())
+        self.scope = self.top
+        self.datatypes = dict(DATATYPES)
+
+    def enter(self, span: Span) -> None:
+        """One level deeper; `depth` goes back by the caller.
+
+        Raises:
+            TooDeepError: the limit is passed, which was reported.
+        """
+        self.depth += 1
+        if self.depth > MAX_DEPTH:
+            self.error(
+                codes.TOO_DEEP,
+                f"this is nested more than {MAX_DEPTH} levels deep",
+                Span(span.source, span.start, min(span.end, span.start + 40)),
+                hint="give parts of it a name with `val` or `let`",
+            )
+            raise TooDeepError
+
+    def warn_unsupported(self, name: str, reason: str, span: Span) -> None:
+        """Says once per element that a function exists in CPN Tools but cannot run here."""
+        self.warn_once(
+            codes.UNSUPPORTED_BUILTIN,
+            name,
+            f"`{name}` is not available here: {reason}",
+            span,
+            "the net is accepted, but a run stops where this is applied",
+        )
+
+    def warn_once(self, code: str, name: str, message: str, span: Span, hint: str) -> None:
+        """Says something of a name once per element."""
+        origin = span.source.origin
+        key = (origin.element_id or str(origin), origin.part, name)
+        if key not in self.warned:
+            self.warned.add(key)
+            self.d.warning(code, message, span, hint=hint)
+
+    # --- scopes and symbols
+
+    @contextmanager
+    def block(self) -> Iterator[Scope]:
+        """A scope inside the present one."""
+        outer = self.scope
+        self.scope = Scope(outer)
+        try:
+            yield self.scope
+        finally:
+            self.scope = outer
+
+    @property
+    def at_top(self) -> bool:
+        """Whether a declaration here is global."""
+        return self.unifier.level == 0
+
+    def fresh_symbol(self, name: str, t: Type, colset: Colset | None = None) -> core.Symbol:
+        """A new symbol without generics."""
+        self.next_uid += 1
+        return core.Symbol(self.next_uid, name, t, colset=colset)
+
+    def symbol_of(self, binding: Binding) -> core.Symbol:
+        """The symbol of a binding whose type is known by now."""
+        if binding.symbol is None:
+            self.next_uid += 1
+            binding.symbol = core.Symbol(
+                self.next_uid,
+                binding.name,
+                to_type(binding.type),
+                generics=len(binding.quants),
+                colset=binding.colset,
+                is_global=binding.is_global,
+                first_generic=binding.quants[0].index if binding.quants else 0,
+            )
+        return binding.symbol
+
+    @contextmanager
+    def generics(self, quants: list[Quant]) -> Iterator[None]:
+        """Numbers the quantified variables of a declaration while it is translated."""
+        base = self.generic_base
+        for i, quant in enumerate(quants):
+            quant.index = base + i
+        self.generic_base = base + len(quants)
+        try:
+            yield
+        finally:
+            self.generic_base = base
+
+    def library_type(self, text: str) -> tuple[Type, int]:
+        """A type of the built-in table."""
+        return scheme(text, self.real_time)
+
+    def constructor_type(self, entry: ConEntry) -> Ty:
+        """A constructor's type, at fresh unknowns."""
+        if entry.scheme is not None:
+            body, quants = entry.scheme
+            return self.unifier.instantiate(body, list(quants))[0]
+        return self.unifier.instantiate_type(entry.type, entry.generics)[0]
+
+    def unique_type_name(self, name: str) -> str:
+        """The name, stamped if a datatype or built-in type has it already."""
+        candidate, n = name, 1
+        while candidate in self.datatypes or (n == 1 and candidate in library_scope().types):
+            n += 1
+            candidate = f"{name}#{n}"
+        return candidate
+
+    def add_datatype(self, declaration: core.DatatypeDec) -> None:
+        """Makes a datatype known, and whether it has equality: it has if all constructor arguments have."""
+        self.datatypes[declaration.name] = declaration
+        self.equality[declaration.name] = True
+        free: list[Ty] = [Quant(True) for _ in range(declaration.generics)]
+        for _, argument in declaration.constructors:
+            if argument is not None:
+                try:
+                    self.unifier.require_equality(from_type(argument, free))
+                except UnifyError:
+                    self.equality[declaration.name] = False
+
+    def settle(self) -> None:
+        """At the end of a declaration or inscription: overloaded types take the default, records must be known."""
+        before = self.errors
+        for row, span in self.open_records:
+            if isinstance(prune(row), Meta) and not before:
+                self.error(
+                    codes.UNRESOLVED_RECORD,
+                    f"the record type of `{span.text}` is not known here",
+                    span,
+                    hint="give the argument a type: `fun f (r : PART) = ..`",
+                )
+        self.open_records.clear()
+        for meta in self.unifier.pending:
+            if meta.ref is None and meta.among:
+                meta.ref = ICon(meta.among[0])
+        self.unifier.pending.clear()
+
+    # --- reporting
+
+    def error(
+        self,
+        code: str,
+        message: str,
+        at: Span,
+        *,
+        label: str = "",
+        notes: Iterable[Note | str] = (),
+        hint: str = "",
+    ) -> None:
+        """Reports an error."""
+        self.errors += 1
+        hint = hint or BY_CODE.get(code, "")
+        self.d.error(code, message, at, label=label, notes=notes, hint=hint)
+
+    def announced_hint(self, name: str, own: str = "") -> str:
+        """For a name that is declared nowhere above."""
+        if name == own:
+            return "a colour set cannot contain itself; recursive values need a `datatype`"
+        if name in self.announced():
+            return "it is declared further down: move its declaration up"
+        return BY_CODE[codes.UNKNOWN_COLOUR_SET]
+
+    def check_literal(self, value: object, t: Type, span: Span) -> None:
+        """Refuses an `int` literal beyond the width of `int`, as CPN Tools does."""
+        limit = 1 << (self.int_bits - 1)
+        if t == INT and isinstance(value, int) and not -limit <= value < limit:
+            self.error(
+                codes.LITERAL_TOO_LARGE,
+                f"`{span.text}` is too large for `int`, which ends at {limit - 1}",
+                span,
+                hint="use IntInf (`IntInf.fromString`, colour set `intinf`), or the option `--int-bits 64`"
+                if self.int_bits < 64
+                else "use IntInf (colour set `intinf`)",
+            )
+
+    def unify(self, found: Ty, expected: Ty, span: Span, what: str) -> bool:
+        """Makes the types equal or says that `what`, at `span`, has the wrong type."""
+        try:
+            self.unifier.unify(found, expected)
+        except UnifyError as problem:
+            self.mismatch(found, expected, span, what, problem)
+            return False
+        return True
+
+    def mismatch(self, found: Ty, expected: Ty, span: Span, what: str, problem: UnifyError) -> None:
+        """Says in what way two types differ."""
+        show = Shower(self)
+        shown = show(found)
+        reason = problem.reason
+        if reason == "among" and prune(expected) is not problem.right:
+            reason = "mismatch"  # the overloaded one is a literal in what was found
+        match reason:
+            case "circular":
+                self.error(
+                    codes.CIRCULAR_TYPE,
+                    f"{what} would need a type that contains itself: `{shown}` and `{show(expected)}`",
+                    span,
+                )
+            case "equality":
+                self.error(
+                    codes.NOT_EQUALITY,
+                    f"{what} is `{shown}`, which has no equality",
+                    span,
+                    hint="functions cannot be compared; compare their results",
+                )
+            case "field":
+                record = show(problem.left)
+                known = (
+                    [n for n, _ in problem.left.fields] if isinstance(problem.left, IRec) else []
+                )
+                self.error(
+                    codes.UNKNOWN_FIELD,
+                    f"`{record}` has no field `{problem.detail}`",
+                    span,
+                    hint=suggestion(problem.detail, known)
+                    or f"it has {', '.join(f'`#{n}`' for n in known)}",
+                )
+            case "among":
+                names = problem.right.among if isinstance(problem.right, Meta) else ()
+                names = tuple(n for n in names if n != "word")  # hardly what anyone meant
+                literal = names == tuple(t.name for t in LITERAL_TYPES)
+                if literal:
+                    names = names[:1]
+                self.error(
+                    codes.TYPE_MISMATCH if literal else codes.OVERLOAD,
+                    f"{what} is `{show(problem.left)}`, but {type_advice.among(names)} is expected",
+                    span,
+                    label=f"this is `{show(problem.left)}`",
+                    hint=type_advice.wrong_operand(what, problem.left, span.text)
+                    or conversion(problem.left, names),
+                )
+            case _:
+                notes = label_notes(found, expected)
+                left, right = prune(problem.left), prune(problem.right)
+                if not notes and {id(left), id(right)} != {id(prune(found)), id(prune(expected))}:
+                    notes.append(f"`{show(left)}` and `{show(right)}` differ inside")
+                if "`" in span.text and type_advice.is_list(found):
+                    shown = shown.removesuffix(" list") + " ms"
+                self.error(
+                    codes.TYPE_MISMATCH,
+                    f"{what} is `{shown}`, but {self._wanted(what, found, expected, show)} is expected",
+                    span,
+                    label=f"this is `{shown}`",
+                    notes=notes,
+                    hint=type_advice.wrong_operand(what, found, span.text)
+                    or conversion(found, (_name(expected),))
+                    or self.constructor_hint(found, expected, span.text)
+                    or type_advice.wrong_value(found, expected, span.text, what),
+                )
+
+    def constructor_hint(self, found: Ty, expected: Ty, text: str) -> str:
+        """For the argument of a constructor without the constructor."""
+        wanted = prune(expected)
+        datatype = self.datatypes.get(wanted.name) if isinstance(wanted, ICon) else None
+        if datatype is None or datatype.generics:
+            return ""
+        for constructor, argument in datatype.constructors:
+            if argument is not None and self.unifier.attempt(found, from_type(argument, [])):
+                inner = text if text.startswith("(") or text.isidentifier() else f"({text})"
+                return f"put the constructor before it: `{constructor.name} {inner}`"
+        return ""
+
+    def _wanted(self, what: str, found: Ty, expected: Ty, show: Shower) -> str:
+        """The expected type in words where it is a multi-set, a reference or a function of any type."""
+        operator = type_advice.operand(what)
+        of_multisets = operator in type_advice.MULTISET_OPERATORS
+        if of_multisets and type_advice.is_list(expected) and not type_advice.is_list(found):
+            return "a multi-set"
+        if of_multisets and "timed" in show(found):
+            return "an untimed multi-set"
+        t = prune(expected)
+        if isinstance(t, ICon) and t.name == "ref" and operator in ("", ":="):
+            return "a reference"
+        if isinstance(t, IFun):
+            return f"a function `{show(expected)}`"
+        return f"`{show(expected)}`"
+
+    def show(self, t: Ty) -> str:
+        """A type in the user's words."""
+        return Shower(self)(t)
+
+    def name_type(self, colset: Colset) -> None:
+        """Lets a product or record type be shown by its colour set's name, as long as only one has it."""
+        self._names[colset.type] = None if colset.type in self._names else colset.name
+
+    def type_name(self, t: Type) -> str | None:
+        """The colour set that alone has this type."""
+        return self._names.get(t)
+
+
+def suggestion(name: str, *known: Iterable[str]) -> str:
+    """`did you mean ..?`, or nothing; names of an earlier group are preferred."""
+    close = nearest(name, *known, cutoff=CLOSE)
+    return f"did you mean `{close}`?" if close else ""
+
+
+def _name(t: Ty) -> str:
+    t = prune(t)
+    return t.name if isinstance(t, ICon) else ""
+
+
+def label_notes(found: Ty, expected: Ty) -> list[str]:
+    """Components or fields that are missing or too many."""
+    f, e = prune(found), prune(expected)
+    if not isinstance(f, IRec) or not isinstance(e, IRec):
+        return []
+    here, wanted = [n for n, _ in f.fields], [n for n, _ in e.fields]
+    if here == wanted:
+        return []
+    if all(n.isdigit() for n in (*here, *wanted)):
+        return [f"{len(wanted)} components are expected, here are {len(here)}"]
+    if any(n.isdigit() for n in (*here, *wanted)):
+        return []
+    notes = [f"field `{n}` is missing" for n in wanted if n not in here]
+    return notes + [f"field `{n}` does not belong here" for n in here if n not in wanted]
+
+
+def quoted(name: str) -> str:
+    """A name in back-ticks, unless it has one itself."""
+    if name == "`":
+        return "the backquote"
+    return f'"{name}"' if "`" in name else f"`{name}`"
+
+
+def conversion(found: Ty, wanted: Iterable[str]) -> str:
+    """How to convert between the number types."""
+    t = prune(found)
+    name = t.name if isinstance(t, ICon) else ""
+    if isinstance(t, Meta) and t.among:
+        name = t.among[0]
+    pairs = {
+        ("int", "real"): "convert with `real`, or write the number with a decimal point: `5.0`",
+        ("real", "int"): "convert with `floor`, `round` or `trunc`",
+        ("int", "string"): "convert with `Int.toString`",
+        ("real", "string"): "convert with `Real.toString`",
+        ("IntInf.int", "int"): "convert with `IntInf.toInt`",
+        ("int", "IntInf.int"): "convert with `IntInf.fromInt`",
+        (
+            "real",
+            "IntInf.int",
+        ): "convert with `floor`, `round` or `trunc`, and then with `IntInf.fromInt`",
+        ("IntInf.int", "string"): "convert with `IntInf.toString`",
+        ("string", "int"): "convert with `Option.valOf (Int.fromString ..)`",
+        ("char", "string"): "convert with `str`",
+        ("bool", "string"): "convert with `Bool.toString`",
+    }
+    return next((pairs[name, w] for w in wanted if (name, w) in pairs), "")
+
+
+class Shower:
+    """Types as text; unknown ones get letters, the same in one message."""
+
+    def __init__(self, ctx: Context) -> None:
+        self._ctx = ctx
+        self._letters: dict[int, str] = {}
+
+    def __call__(self, t: Ty) -> str:
+        """The text."""
+        t = prune(t)
+        if isinstance(t, IError):
+            return "?"
+        if isinstance(t, Meta) and t.among:
+            return t.among[0]
+        if isinstance(t, Meta) and t.fields is not None:
+            return "{" + ", ".join(f"{n}: {self(f)}" for n, f in t.fields.items()) + ", ...}"
+        if isinstance(t, Meta | Quant):
+            letter = self._letters.setdefault(id(t), chr(ord("a") + len(self._letters) % 26))
+            return ("''" if t.equality else "'") + letter
+        if isinstance(t, IFun):
+            argument = self(t.argument)
+            if isinstance(prune(t.argument), IFun):
+                argument = f"({argument})"
+            return f"{argument} -> {self(t.result)}"
+        if isinstance(t, IAbstract):
+            t = ICon(t.name, t.args)
+        if isinstance(t, ICon):
+            return self._con(t)
+        if _is_closed(t) and (name := self._ctx.type_name(to_type(t))):
+            return name
+        if not t.fields:
+            return "unit"
+        if len(t.fields) > 1 and all(n == str(i) for i, (n, _) in enumerate(t.fields, 1)):
+            return " * ".join(self._inner(f) for _, f in t.fields)
+        return "{" + ", ".join(f"{n}: {self(f)}" for n, f in t.fields) + "}"
+
+    def _con(self, t: ICon) -> str:
+        name = t.name.split("#")[0]
+        if not t.args:
+            return name
+        if len(t.args) == 1:
+            return f"{self._inner(t.args[0])} {name}"
+        return f"({', '.join(map(self, t.args))}) {name}"
+
+    def _inner(self, t: Ty) -> str:
+        text = self(t)
+        return f"({text})" if " * " in text or "->" in text else text
+
+
+def _is_closed(t: Ty) -> bool:
+    t = prune(t)
+    return not isinstance(t, Meta | Quant | IError) and all(map(_is_closed, parts(t)))

@@ -1,0 +1,550 @@
+"""Types during inference: `types.Type` with holes, unification, generalisation.
+
+A `Meta` is an unknown type. It may carry a restriction: only equality types, only one of some base types (an
+overloaded operator or literal), or any record with at least some fields. `Quant` is a type variable that a
+scheme quantifies. `ERROR` is the type of what was reported already; it unifies with everything.
+
+Example: for `fn x => x + 1` the operator has type `m * m -> m` with `m` restricted to numbers; the literal
+unifies with m; nothing else is known of m at the end of the declaration, so it becomes int.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import lru_cache
+
+from pn2code.base.frozen import frozen
+from pn2code.ml.core.types import UNIT, TCon, TFun, TRecord, TVar, Type, label_key
+from pn2code.ml.library.builtins import NO_EQUALITY
+
+
+@frozen
+class ICon:
+    """As `TCon`."""
+
+    name: str
+    args: tuple[Ty, ...] = ()
+
+
+@frozen
+class IRec:
+    """As `TRecord`; fields sorted."""
+
+    fields: tuple[tuple[str, Ty], ...] = ()
+
+
+@frozen
+class IFun:
+    """As `TFun`."""
+
+    argument: Ty
+    result: Ty
+
+
+@frozen
+class IAbstract:
+    """A type whose implementation a signature hides (`S :> SIG`); later stages see the implementation.
+
+    Args:
+        name: unique in the program.
+        args: its arguments.
+        hidden: the implementation, at these arguments.
+        equality: whether the signature says `eqtype`.
+    """
+
+    name: str
+    args: tuple[Ty, ...]
+    hidden: Ty
+    equality: bool
+
+
+@frozen
+class IError:
+    """The type of what was reported already."""
+
+
+@dataclass(slots=True, eq=False)
+class Quant:
+    """A quantified variable; `index` is given when the declaration is translated."""
+
+    equality: bool = False
+    index: int = -1
+
+
+@dataclass(slots=True, eq=False)
+class Meta:
+    """An unknown type.
+
+    Args:
+        level: depth of the `let` that it belongs to; deeper ones may be generalised.
+        equality: only an equality type may stand for it.
+        among: only one of these may stand for it (the first when nothing decides).
+        fields: only a record with these fields may stand for it (and others, unless solved).
+        ref: what stands for it, once known.
+    """
+
+    level: int
+    equality: bool = False
+    among: tuple[str, ...] = ()
+    fields: dict[str, Ty] | None = None
+    ref: Ty | None = None
+
+
+Ty = ICon | IRec | IFun | IAbstract | IError | Quant | Meta
+
+ERROR = IError()
+I_UNIT = IRec()
+I_INT = ICon("int")
+I_REAL = ICon("real")
+I_BOOL = ICon("bool")
+I_STRING = ICon("string")
+I_CHAR = ICon("char")
+I_EXN = ICon("exn")
+I_WORD = ICon("word")
+
+
+def i_list(t: Ty) -> ICon:
+    """`t list`."""
+    return ICon("list", (t,))
+
+
+def i_tuple(*items: Ty) -> IRec:
+    """The product."""
+    return IRec(tuple((str(i), t) for i, t in enumerate(items, 1)))
+
+
+def i_record(fields: Mapping[str, Ty]) -> IRec:
+    """A record from fields in any order."""
+    return IRec(tuple(sorted(fields.items(), key=lambda f: label_key(f[0]))))
+
+
+def prune(t: Ty) -> Ty:
+    """The type behind solved metas."""
+    while isinstance(t, Meta) and t.ref is not None:
+        t = t.ref
+    return t
+
+
+class UnifyError(Exception):
+    """Two types differ.
+
+    Args:
+        reason: "mismatch", "circular", "equality" (`left` has no equality), "among" (`left` is not one of the
+            types of an overloaded operator), "field" (`detail`: a record without this field).
+    """
+
+    def __init__(self, reason: str, left: Ty, right: Ty, detail: str = "") -> None:
+        super().__init__(reason)
+        self.reason = reason
+        self.left = left
+        self.right = right
+        self.detail = detail
+
+
+MAX_TYPE_NODES = 100_000
+"""Parts of one type that are looked at in one step: exponential types end here."""
+MAX_WORK = 5_000_000
+"""Parts of types that are looked at for one text."""
+
+
+class TypeTooLargeError(Exception):
+    """A type passes the limits; reported at the border of the text."""
+
+
+class Unifier:
+    """Unification with a trail, so that an attempt can be taken back.
+
+    Attributes:
+        see_through: whether abstract types count as their implementations, while a structure is matched.
+        work: parts of types looked at since the text began.
+    """
+
+    def __init__(self, equality_of: Callable[[str], bool]) -> None:
+        self._equality_of = equality_of
+        self._trail: list[tuple[Meta, int, bool, tuple[str, ...], dict[str, Ty] | None, Ty | None]]
+        self._trail = []
+        self.level = 0
+        self.pending: list[Meta] = []
+        """metas with `among` or `fields`, to be looked at when the declaration ends"""
+        self.see_through = False
+        self.work = 0
+        self._limit = MAX_TYPE_NODES
+
+    def start(self) -> None:
+        """A new text begins."""
+        self.work = 0
+        self._limit = MAX_TYPE_NODES
+        self._trail.clear()
+        self.pending.clear()
+
+    def _step(self) -> None:
+        """One part of a type is looked at.
+
+        Raises:
+            TypeTooLargeError: that is too many.
+        """
+        self.work += 1
+        if self.work > self._limit:
+            raise TypeTooLargeError
+
+    def _begin(self) -> None:
+        """A step over one type begins."""
+        self._limit = min(self.work + MAX_TYPE_NODES, MAX_WORK)
+
+    def fresh(self, *, equality: bool = False, among: Iterable[str] = ()) -> Meta:
+        """A new unknown."""
+        meta = Meta(self.level, equality, tuple(among))
+        if meta.among:
+            self.pending.append(meta)
+        return meta
+
+    def fresh_record(self, fields: Mapping[str, Ty]) -> Meta:
+        """A record with at least these fields."""
+        meta = Meta(self.level, fields=dict(fields))
+        self.pending.append(meta)
+        return meta
+
+    def mark(self) -> int:
+        """A point to which `rollback` can return."""
+        return len(self._trail)
+
+    def rollback(self, mark: int) -> None:
+        """Forgets what was learned since the mark."""
+        while len(self._trail) > mark:
+            meta, level, equality, among, fields, ref = self._trail.pop()
+            meta.level, meta.equality, meta.among = level, equality, among
+            meta.fields, meta.ref = fields, ref
+
+    def _save(self, m: Meta) -> None:
+        self._trail.append((m, m.level, m.equality, m.among, m.fields, m.ref))
+
+    def attempt(self, left: Ty, right: Ty) -> bool:
+        """Unifies if possible; else nothing changes."""
+        mark = self.mark()
+        try:
+            self.unify(left, right)
+        except UnifyError:
+            self.rollback(mark)
+            return False
+        return True
+
+    def unify(self, left: Ty, right: Ty) -> None:
+        """Makes two types equal.
+
+        Raises:
+            UnifyError: they cannot be; some metas may have been solved.
+        """
+        self._begin()
+        self._unify(left, right)
+
+    def _unify(self, left: Ty, right: Ty) -> None:
+        a, b = prune(left), prune(right)
+        if a is b:
+            return
+        self._step()
+        if isinstance(a, Meta):
+            if not isinstance(b, IError):
+                self._bind(a, b)
+        elif isinstance(b, Meta):
+            if not isinstance(a, IError):
+                self._bind(b, a)
+        elif isinstance(a, ICon) and isinstance(b, ICon):
+            if a.name != b.name or len(a.args) != len(b.args):
+                raise UnifyError("mismatch", a, b)
+            for x, y in zip(a.args, b.args, strict=True):
+                self._unify(x, y)
+        elif isinstance(a, IFun) and isinstance(b, IFun):
+            self._unify(a.argument, b.argument)
+            self._unify(a.result, b.result)
+        elif isinstance(a, IRec) and isinstance(b, IRec):
+            if [n for n, _ in a.fields] != [n for n, _ in b.fields]:
+                raise UnifyError("mismatch", a, b)
+            for (_, x), (_, y) in zip(a.fields, b.fields, strict=True):
+                self._unify(x, y)
+        elif isinstance(a, IError) or isinstance(b, IError):
+            return
+        elif isinstance(a, IAbstract) and isinstance(b, IAbstract) and a.name == b.name:
+            for x, y in zip(a.args, b.args, strict=True):
+                self._unify(x, y)
+        elif self.see_through and (isinstance(a, IAbstract) or isinstance(b, IAbstract)):
+            self._unify(
+                a.hidden if isinstance(a, IAbstract) else a,
+                b.hidden if isinstance(b, IAbstract) else b,
+            )
+        else:
+            raise UnifyError("mismatch", a, b)
+
+    def _bind(self, meta: Meta, t: Ty) -> None:
+        if isinstance(t, Meta):
+            self._merge(meta, t)
+            return
+        if self.see_through and isinstance(t, IAbstract) and (meta.among or meta.fields):
+            self._unify(meta, t.hidden)
+            return
+        self._occurs(meta, t)
+        if meta.among and not (isinstance(t, ICon) and t.name in meta.among):
+            raise UnifyError("among", t, meta)
+        if meta.fields is not None:
+            if not isinstance(t, IRec):
+                raise UnifyError("mismatch", t, meta)
+            have = dict(t.fields)
+            for name, field in meta.fields.items():
+                if name not in have:
+                    raise UnifyError("field", t, meta, name)
+                self._unify(field, have[name])
+        if meta.equality:
+            self.require_equality(t)
+        self._save(meta)
+        meta.ref = t
+
+    def _merge(self, a: Meta, b: Meta) -> None:
+        """`a` becomes `b`, which takes over the restrictions."""
+        if (a.among and b.fields is not None) or (b.among and a.fields is not None):
+            raise UnifyError("mismatch", a, b)
+        self._save(a)
+        self._save(b)
+        b.level = min(a.level, b.level)
+        b.equality = a.equality or b.equality
+        if a.among and b.among:
+            common = tuple(n for n in a.among if n in b.among)
+            if not common:
+                raise UnifyError("mismatch", a, b)
+            b.among = common
+        elif a.among:
+            b.among = a.among
+            self.pending.append(b)
+        if a.fields is not None:
+            mine, theirs = a.fields, b.fields
+            if theirs is None:
+                self.pending.append(b)
+                b.fields = dict(mine)
+            else:
+                b.fields = {**mine, **theirs}
+                for name in mine.keys() & theirs.keys():
+                    self._unify(mine[name], theirs[name])
+        a.ref = b
+
+    def _occurs(self, meta: Meta, t: Ty) -> None:
+        """Refuses a type that contains the meta; lowers the levels of the metas inside."""
+        t = prune(t)
+        if isinstance(t, ICon) and not t.args:
+            return
+        self._step()
+        if t is meta:
+            raise UnifyError("circular", meta, t)
+        if isinstance(t, Meta):
+            if t.level > meta.level:
+                self._save(t)
+                t.level = meta.level
+            for field in (t.fields or {}).values():
+                self._occurs(meta, field)
+        else:
+            for part in parts(t):
+                self._occurs(meta, part)
+
+    def require_equality(self, t: Ty) -> None:
+        """Restricts a type to equality types.
+
+        Raises:
+            UnifyError: "equality", it has none.
+        """
+        t = prune(t)
+        if isinstance(t, Meta):
+            if not t.equality:
+                self._save(t)
+                t.equality = True
+                for field in (t.fields or {}).values():
+                    self.require_equality(field)
+        elif isinstance(t, Quant):
+            t.equality = (
+                True  # generalised within the same declaration: the scheme asks for equality
+            )
+        elif isinstance(t, IFun):
+            raise UnifyError("equality", t, t)
+        elif isinstance(t, IAbstract):
+            if not t.equality:
+                raise UnifyError("equality", t, t)
+            for arg in t.args:
+                self.require_equality(arg)
+        elif isinstance(t, IRec):
+            for _, field in t.fields:
+                self.require_equality(field)
+        elif isinstance(t, ICon):
+            if t.name == "ref":
+                return
+            if t.name in NO_EQUALITY or not self._equality_of(t.name):
+                raise UnifyError("equality", t, t)
+            for arg in t.args:
+                self.require_equality(arg)
+
+    # --- schemes
+
+    def generalise(self, types: Iterable[Ty]) -> list[Quant]:
+        """Quantifies the unknowns that belong to levels deeper than the present one."""
+        roots = list(types)
+        self._begin()
+        for t in roots:
+            self._pin(t)
+        quants: list[Quant] = []
+        for t in roots:
+            self._quantify(t, quants)
+        return quants
+
+    def _pin(self, t: Ty) -> None:
+        """Overloaded and open-record unknowns are decided by the surroundings, not generalised."""
+        self._step()
+        t = prune(t)
+        if isinstance(t, Meta):
+            if t.level > self.level and (t.among or t.fields is not None):
+                self._lower(t)
+        else:
+            for part in parts(t):
+                self._pin(part)
+
+    def lower(self, t: Ty) -> None:
+        """Makes all unknowns of a type belong to the present level: they are not generalised."""
+        self._begin()
+        self._lower(t)
+
+    def _lower(self, t: Ty) -> None:
+        self._step()
+        t = prune(t)
+        if isinstance(t, Meta):
+            if t.level > self.level:
+                t.level = self.level
+                for field in (t.fields or {}).values():
+                    self._lower(field)
+        else:
+            for part in parts(t):
+                self._lower(part)
+
+    def close(self, t: Ty) -> None:
+        """Settles what nothing has decided and nothing may decide later."""
+        self._step()
+        t = prune(t)
+        if isinstance(t, Meta):
+            t.ref = ICon(t.among[0]) if t.among else I_UNIT
+        else:
+            for part in parts(t):
+                self.close(part)
+
+    def _quantify(self, t: Ty, quants: list[Quant]) -> None:
+        self._step()
+        t = prune(t)
+        if isinstance(t, Meta):
+            if t.level > self.level:
+                quant = Quant(t.equality)
+                quants.append(quant)
+                t.ref = quant
+        else:
+            for part in parts(t):
+                self._quantify(part, quants)
+
+    def instantiate(self, t: Ty, quants: list[Quant]) -> tuple[Ty, list[Ty]]:
+        """A copy with fresh unknowns for the quantified variables, and these."""
+        if not quants:
+            return t, []
+        fresh: dict[int, Ty] = {id(q): self.fresh(equality=q.equality) for q in quants}
+        return self.substitute(t, fresh), [fresh[id(q)] for q in quants]
+
+    def substitute(self, t: Ty, by: Mapping[int, Ty]) -> Ty:
+        """Replaces quantified variables, given by identity."""
+        self._begin()
+        return self._substitute(t, by)
+
+    def _substitute(self, t: Ty, by: Mapping[int, Ty]) -> Ty:
+        self._step()
+        t = prune(t)
+        if isinstance(t, Quant):
+            return by.get(id(t), t)
+        if isinstance(t, ICon):
+            return ICon(t.name, tuple(self._substitute(a, by) for a in t.args)) if t.args else t
+        if isinstance(t, IRec):
+            return IRec(tuple((n, self._substitute(f, by)) for n, f in t.fields))
+        if isinstance(t, IFun):
+            return IFun(self._substitute(t.argument, by), self._substitute(t.result, by))
+        if isinstance(t, IAbstract):
+            args = tuple(self._substitute(a, by) for a in t.args)
+            return IAbstract(t.name, args, self._substitute(t.hidden, by), t.equality)
+        return t
+
+    def instantiate_type(self, t: Type, generics: int) -> tuple[Ty, list[Ty]]:
+        """The same for a finished type with `TVar`s."""
+        equality = [False] * generics
+        _mark_equality(t, equality)
+        fresh: list[Ty] = [self.fresh(equality=e) for e in equality]
+        return from_type(t, fresh), fresh
+
+
+def parts(t: Ty) -> tuple[Ty, ...]:
+    """The direct components."""
+    if isinstance(t, ICon):
+        return t.args
+    if isinstance(t, IRec):
+        return tuple(f for _, f in t.fields)
+    if isinstance(t, IFun):
+        return (t.argument, t.result)
+    if isinstance(t, IAbstract):
+        return (*t.args, t.hidden)
+    return ()
+
+
+@lru_cache(maxsize=10_000)
+def _i_atom(name: str) -> ICon:
+    """A type constructor without arguments: most types of a net are one."""
+    return ICon(name)
+
+
+@lru_cache(maxsize=10_000)
+def _atom(name: str) -> TCon:
+    return TCon(name)
+
+
+def from_type(t: Type, variables: list[Ty]) -> Ty:
+    """A finished type as one of inference, `variables` for its `TVar`s."""
+    if isinstance(t, TVar):
+        return variables[t.index]
+    if isinstance(t, TCon):
+        if not t.args:
+            return _i_atom(t.name)
+        return ICon(t.name, tuple(from_type(a, variables) for a in t.args))
+    if isinstance(t, TRecord):
+        return IRec(tuple((n, from_type(f, variables)) for n, f in t.fields))
+    return IFun(from_type(t.argument, variables), from_type(t.result, variables))
+
+
+def to_type(t: Ty) -> Type:
+    """The finished type. What is still unknown is used nowhere and becomes unit; overloaded ones take the
+    first choice.
+    """
+    t = prune(t)
+    if isinstance(t, Meta):
+        return TCon(t.among[0]) if t.among else UNIT
+    if isinstance(t, Quant):
+        return TVar(t.index, t.equality)
+    if isinstance(t, ICon):
+        if not t.args:
+            return _atom(t.name)
+        return TCon(t.name, tuple(to_type(a) for a in t.args))
+    if isinstance(t, IRec):
+        return TRecord(tuple((n, to_type(f)) for n, f in t.fields))
+    if isinstance(t, IFun):
+        return TFun(to_type(t.argument), to_type(t.result))
+    if isinstance(t, IAbstract):
+        return to_type(t.hidden)
+    raise AssertionError("the error type left the checker")
+
+
+def _mark_equality(t: Type, equality: list[bool]) -> None:
+    if isinstance(t, TVar):
+        equality[t.index] = equality[t.index] or t.equality
+    elif isinstance(t, TCon):
+        for a in t.args:
+            _mark_equality(a, equality)
+    elif isinstance(t, TRecord):
+        for _, f in t.fields:
+            _mark_equality(f, equality)
+    else:
+        _mark_equality(t.argument, equality)
+        _mark_equality(t.result, equality)

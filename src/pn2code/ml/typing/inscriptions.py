@@ -1,0 +1,638 @@
+"""Inscriptions of a net: arc expressions, initial markings, guards, delays, priorities, code segments."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from typing import TypeVar
+
+from pn2code.diagnostics import Diagnostics, Note, SourceText
+from pn2code.ml import codes
+from pn2code.ml.core import terms as core
+from pn2code.ml.core.colsets import definition
+from pn2code.ml.core.computing import Computed
+from pn2code.ml.core.terms import Symbol
+from pn2code.ml.core.types import BOOL, INTINF, REAL, TCon, TFun, Type, list_of, timed_of, tuple_of
+from pn2code.ml.library.builtins import BUILTINS, FALSE, TRUE
+from pn2code.ml.parsing import syntax as s
+from pn2code.ml.parsing.fixity import Fixities, resolve_expression, resolve_pattern
+from pn2code.ml.parsing.lexer import tokenize
+from pn2code.ml.parsing.parser import (
+    is_action_of_comments,
+    misplaced_comment,
+    parse_code,
+    parse_expression,
+    parse_expressions,
+)
+from pn2code.ml.typing import type_advice
+from pn2code.ml.typing.context import Context, Draft, conversion, label_notes
+from pn2code.ml.typing.environment import Binding, BrokenEntry, BuiltinEntry, Scope
+from pn2code.ml.typing.expressions import Expressions
+from pn2code.ml.typing.inference import (
+    I_BOOL,
+    I_INT,
+    I_UNIT,
+    ICon,
+    IRec,
+    Ty,
+    from_type,
+    i_list,
+    prune,
+    to_type,
+)
+from pn2code.ml.typing.patterns import Bindings, Patterns
+
+T = TypeVar("T")
+
+_DELAYS = {"Time.@+": "Time.token@+", "Time.@++": "Time.token@++"}
+"""How a delay is added to a multi-set, and to one token."""
+
+
+@dataclass(frozen=True, slots=True)
+class TypedCode:
+    """A code segment: the variables it reads, those it binds, and the action giving a value (tuple) for the latter."""
+
+    inputs: tuple[Symbol, ...]
+    outputs: tuple[Symbol, ...]
+    action: core.Exp
+
+
+class Inscriptions:
+    """Types inscriptions; their texts may use the net variables of `variables`."""
+
+    def __init__(
+        self,
+        ctx: Context,
+        expressions: Expressions,
+        patterns: Patterns,
+        variables: Scope,
+        computed: Callable[[core.Exp], Computed],
+    ) -> None:
+        self._ctx = ctx
+        self._expressions = expressions
+        self._patterns = patterns
+        self._variables = variables
+        self._computed = computed
+
+    @contextmanager
+    def _scope(self, scope: Scope) -> Iterator[None]:
+        """One inscription: what is declared in it is local."""
+        self._ctx.scope = Scope(scope)
+        self._ctx.tainted = False
+        self._ctx.unifier.level = 1
+        self._ctx.tyvars.append({})
+        try:
+            yield
+        finally:
+            self._ctx.scope = self._ctx.top
+            self._ctx.unifier.level = 0
+            self._ctx.tyvars.clear()
+
+    def _finish(self, before: int, build: Callable[[], T]) -> T | None:
+        """What `build` gives, unless something was reported since `before` or uses something broken."""
+        if self._ctx.errors == before:
+            self._ctx.settle()
+        self._ctx.open_records.clear()
+        if self._ctx.errors > before or self._ctx.tainted:
+            return None
+        return build()
+
+    # --- arc expressions and initial markings
+
+    def expression(
+        self,
+        text: SourceText,
+        exp: s.Exp,
+        types: Sequence[Type],
+        expected_name: str,
+        declared: Mapping[str, Symbol],
+    ) -> tuple[int, core.Exp] | None:
+        """The first type that fits."""
+        what = text.origin.part or "expression"
+        # Only arcs know the variables of the net.
+        scope = Scope(self._ctx.top if what == "initial marking" else self._variables)
+        for name, symbol in declared.items():
+            scope.values[name] = Binding(
+                name, from_type(symbol.type, []), symbol=symbol, colset=symbol.colset
+            )
+        with self._scope(scope), self._one_mistake():
+            before = self._ctx.errors
+            found = self._first(exp, types)
+            if isinstance(found, tuple):
+                return self._finish(before, lambda: (found[0], found[1].build()))
+            if self._ctx.errors == before and not self._ctx.tainted:
+                self._explain(exp, found, types, what, expected_name)
+            return None
+
+    def layered(
+        self, name: s.Exp, written: s.Pat, t: Type
+    ) -> tuple[core.Exp, core.Pat, core.Exp] | None:
+        """`x as pattern` on an input arc: the token, the pattern for it, and whether the token matches."""
+        with self._scope(self._variables), self._one_mistake():
+            before = self._ctx.errors
+            wanted = from_type(t, [])
+            draft = self._expressions.check(name, wanted, "inscription")
+            bindings = Bindings()
+            pattern = self._patterns.check_on_arc(written, wanted, bindings)
+            variables: dict[str, Symbol] = {}
+            constants: dict[Symbol, core.Var] = {}
+            for own in bindings.values():
+                known = self._variables.value(own.name)
+                if isinstance(known, BrokenEntry):
+                    self._ctx.tainted = True
+                elif not isinstance(known, Binding) or known.symbol is None:
+                    self._ctx.error(
+                        codes.UNBOUND,
+                        f"`{own.name}` is not a variable of the net",
+                        written.span,
+                        hint=f"declare it: `var {own.name} : C;` for a variable of colour set C",
+                    )
+                elif self._ctx.unify(own.type, known.type, written.span, f"`{own.name}`"):
+                    variables[own.name] = known.symbol
+                    if own.name not in self._variables.values:
+                        constants[known.symbol] = core.Var(
+                            known.symbol, known.symbol.type, written.span
+                        )
+
+            def build() -> tuple[core.Exp, core.Pat, core.Exp] | None:
+                whole = draft.build()
+                if not isinstance(whole, core.Var) or whole.symbol.colset is None:
+                    self._ctx.error(
+                        codes.SYNTAX_ERROR,
+                        "a variable of the net is needed before `as`",
+                        name.span,
+                    )
+                    return None
+                own = pattern()  # with symbols of its own: they are compared with the variables
+                test = _matches(whole, own, variables)
+                for binding in bindings.values():
+                    binding.symbol = variables[binding.name]
+                inner = _comparing(pattern(), constants)
+                bound = core.PAs(whole.symbol, inner, t, written.span)
+                return whole, bound, test
+
+            return self._finish(before, build)
+
+    @contextmanager
+    def _one_mistake(self) -> Iterator[None]:
+        """Of several errors in a short text says all unknown names, or else the first one only.
+
+        The others are mostly consequences: `n ++ m` has two operands that are no multi-sets.
+        """
+        outer, self._ctx.d = self._ctx.d, Diagnostics()
+        try:
+            yield
+        finally:
+            found, self._ctx.d = self._ctx.d, outer
+            errors = found.errors
+            unknown = [e for e in errors if e.code == codes.UNBOUND]
+            errors.sort(key=lambda e: (e.origin.line, e.origin.column))
+            kept = unknown or errors[:1]
+            outer.items += [x for x in found.items if x not in errors or x in kept]
+
+    def plain(self, exp: s.Exp, types: Sequence[Type], what: str) -> tuple[int, core.Exp] | None:
+        """An expression without net variables."""
+        with self._scope(self._ctx.top):
+            before = self._ctx.errors
+            if len(types) == 1:
+                draft = self._expressions.check(exp, from_type(types[0], []), what)
+                return self._finish(before, lambda: (0, draft.build()))
+            found = self._first(exp, types)
+            if isinstance(found, tuple):
+                return self._finish(before, lambda: (found[0], found[1].build()))
+            if self._ctx.errors == before and not self._ctx.tainted:
+                self._expressions.check(exp, from_type(types[0], []), what)
+            return None
+
+    def _first(self, exp: s.Exp, types: Sequence[Type]) -> tuple[int, Draft] | Draft:
+        """Index and draft for the first type that fits; only the draft if none does."""
+        delayed = self._delayed(exp)
+        if delayed is not None:
+            return self._first_delayed(*delayed, types)
+        draft = self._expressions.infer(exp)
+        for i, t in enumerate(types):
+            if self._ctx.unifier.attempt(draft.type, from_type(t, [])):
+                return i, draft
+        return draft
+
+    def _delayed(self, exp: s.Exp) -> tuple[s.InfixExp, str] | None:
+        """`e @+ d` at the top."""
+        if isinstance(exp, s.InfixExp):
+            entry = self._ctx.scope.value(exp.operator.name)
+            if isinstance(entry, BuiltinEntry) and entry.name in _DELAYS:
+                return exp, entry.name
+        return None
+
+    def _first_delayed(
+        self, exp: s.InfixExp, operator: str, types: Sequence[Type]
+    ) -> tuple[int, Draft] | Draft:
+        """The left side of `e @+ d` may be a token or a multi-set: the place's colour set decides."""
+        left = self._expressions.infer(exp.left)
+        time = REAL if self._ctx.real_time else INTINF
+        delay_type: Type = time if operator.endswith("++") else TCon("int")
+        delay = self._expressions.check(exp.right, from_type(delay_type, []), "delay")
+        for i, t in enumerate(types):
+            if not isinstance(t, TCon):
+                continue
+            inner = t.args[0] if t.args else None
+            if t.name == "timed" and inner is not None:
+                wanted, name, base = inner, _DELAYS[operator], inner
+            elif t.name == "list" and isinstance(inner, TCon) and inner.name == "timed":
+                wanted, name, base = list_of(inner.args[0]), operator, inner.args[0]
+            else:
+                continue
+            if self._ctx.unifier.attempt(left.type, from_type(wanted, [])):
+                full = TFun(tuple_of(wanted, delay_type), t)
+
+                def build(
+                    name: str = name,
+                    full: TFun = full,
+                    base: Type = base,
+                ) -> core.Exp:
+                    function = core.Builtin(name, full, exp.operator.span, (base,))
+                    pair = core.RecordExp(
+                        (("1", left.build()), ("2", delay.build())), full.argument, exp.span
+                    )
+                    return core.Apply(function, pair, full.result, exp.span)
+
+                return i, Draft(from_type(t, []), build)
+        assert BUILTINS[operator]
+        element = prune(left.type)
+        if isinstance(element, ICon) and element.name == "list":
+            return Draft(i_list(ICon("timed", element.args)), left.build)
+        return Draft(ICon("timed", (left.type,)), left.build)
+
+    def _explain(
+        self,
+        exp: s.Exp,
+        draft: Draft,
+        types: Sequence[Type],
+        what: str,
+        expected_name: str,
+    ) -> None:
+        """One diagnostic: where and how the expression differs from what the place holds."""
+        found = prune(draft.type)
+        base = types[0]
+        wanted = next(
+            (
+                t
+                for t in types
+                if isinstance(found, ICon)
+                and isinstance(t, TCon)
+                and t.name == found.name == "list"
+                and _is_timed_list(to_type(found)) == _is_timed_list(t)
+            ),
+            base,
+        )
+        holds = f"the colour set is `{expected_name}`"
+        colset = self._ctx.colsets.get(expected_name)
+        structure = definition(colset) if colset is not None else ""
+        if structure:
+            holds += f", which is `{structure}`"
+        timed = any(_is_timed_list(t) for t in types)
+        delayed = self._delayed(exp)
+        if not timed and (delayed is not None or _is_timed(found)):
+            self._ctx.error(
+                codes.NOT_TIMED,
+                f"{what} has a time stamp, but the colour set `{expected_name}` is not timed",
+                delayed[0].operator.span if delayed else exp.span,
+                label="delay" if delayed else f"this is `{self._ctx.show(found)}`",
+                hint=f"declare it so, `colset {expected_name} = .. timed;`, or leave the time out",
+            )
+            return
+        quiet, self._ctx.d = self._ctx.d, Diagnostics()
+        try:
+            self._expressions.check(exp, from_type(wanted, []), what)
+            details = self._ctx.d.errors
+        finally:
+            self._ctx.d = quiet
+            self._ctx.open_records.clear()
+        if details and details[0].span is not None and details[0].span != exp.span:
+            first = details[0]
+            notes = (*first.notes, Note(holds))
+            self._ctx.d.items.append(replace(first, notes=notes))
+            self._ctx.errors += 1
+            return
+        forms = f"a token or multi-set of `{expected_name}`"
+        wanted_type = from_type(base, [])
+        wanted_name = base.name if isinstance(base, TCon) else ""
+        hint = (
+            conversion(found, (wanted_name,))
+            or self._ctx.constructor_hint(found, wanted_type, exp.span.text)
+            or type_advice.wrong_value(found, wanted_type, exp.span.text)
+        )
+        if not hint and not type_advice.is_list(found):
+            hint = f"write one token of `{expected_name}`, or a multi-set such as 1`v"
+        variable = self._ctx.scope.value(exp.name) if isinstance(exp, s.NameExp) else None
+        if isinstance(variable, Binding) and variable.colset is not None:
+            own = variable.colset.name
+            other = f", or {hint}" if hint.startswith(("convert", "put")) else ""
+            hint = f"`{variable.name}` is a variable of colour set `{own}`: use one of `{expected_name}`{other}"
+        shown = self._ctx.show(found)
+        if "`" in exp.span.text and type_advice.is_list(found):
+            shown = shown.removesuffix(" list") + " ms"
+        self._ctx.error(
+            codes.TYPE_MISMATCH,
+            f"{what} is `{shown}`, but {forms} is expected",
+            exp.span,
+            label=f"this is `{shown}`",
+            notes=(holds, *self._differences(found, from_type(base, []))),
+            hint=hint,
+        )
+
+    def _differences(self, found: Ty, expected: Ty) -> list[str]:
+        """Components of two records of the same form that differ."""
+        if not isinstance(found, IRec) or not isinstance(expected, IRec):
+            return []
+        if [n for n, _ in found.fields] != [n for n, _ in expected.fields]:
+            return label_notes(found, expected)
+        out = []
+        for (n, f), (_, g) in zip(found.fields, expected.fields, strict=True):
+            if not self._ctx.unifier.attempt(f, g):
+                word = "component" if n.isdigit() else "field"
+                out.append(f"{word} {n} is `{self._ctx.show(f)}`, not `{self._ctx.show(g)}`")
+        return out
+
+    # --- guards
+
+    def guard(self, text: SourceText, fixities: Fixities) -> tuple[core.Exp, ...] | None:
+        """The conjuncts."""
+        tokens = tokenize(text, self._ctx.d)
+        if tokens is None:
+            return None
+        if not tokens:
+            return ()
+        parsed = parse_expressions(text, self._ctx.d)
+        if parsed is None:
+            return None
+        resolved = [resolve_expression(e, fixities, self._ctx.d) for e in parsed]
+        if len(resolved) == 1 and isinstance(resolved[0], s.ListExp):
+            resolved = list(resolved[0].items)
+        with self._scope(self._variables):
+            before = self._ctx.errors
+            drafts = []
+            for e in resolved:
+                if e is not None:
+                    with self._one_mistake():
+                        drafts.append(self._conjunct(e))
+            if len(drafts) != len(resolved):
+                return None
+            return self._finish(before, lambda: tuple(x.build() for x in drafts))
+
+    def _conjunct(self, e: s.Exp) -> Draft:
+        draft = self._expressions.infer(e)
+        if self._ctx.unifier.attempt(draft.type, I_BOOL):
+            return draft
+        shown = self._ctx.show(draft.type)
+        if self._ctx.unifier.attempt(draft.type, i_list(I_BOOL)):
+            return Draft(I_BOOL, lambda: _all_true(draft.build()))
+        self._ctx.error(
+            codes.GUARD_TYPE,
+            f"guard is `{shown}`, but a condition (`bool`) is expected",
+            e.span,
+            label=f"this is `{shown}`",
+            hint=type_advice.wrong_operand("condition of `if`", draft.type, e.span.text)
+            or type_advice.wrong_value(draft.type, I_BOOL, e.span.text),
+        )
+        return draft
+
+    def condition(self, exp: s.Exp, declared: Mapping[str, Symbol]) -> core.Exp | None:
+        """Of type bool, without the variables of the net."""
+        scope = Scope(self._ctx.top)
+        for name, symbol in declared.items():
+            scope.values[name] = Binding(name, from_type(symbol.type, []), symbol=symbol)
+        with self._scope(scope), self._one_mistake():
+            before = self._ctx.errors
+            draft = self._expressions.check(exp, I_BOOL, "condition")
+            return self._finish(before, draft.build)
+
+    # --- delays and priorities
+
+    def delay(self, text: SourceText, fixities: Fixities) -> core.Exp | None:
+        """The expression after `@+` or `@++`."""
+        tokens = tokenize(text, self._ctx.d)
+        if tokens is None:
+            return None
+        if not tokens or tokens[0].text not in ("@+", "@++"):
+            merged = bool(tokens) and tokens[0].text.startswith("@+")
+            span = text.span(tokens[0].start, tokens[0].end) if tokens else text.span()
+            self._ctx.error(
+                codes.DELAY,
+                "time inscription does not begin with `@+`",
+                span,
+                hint="adjacent symbols are read as one name: put a blank after `@+`"
+                if merged
+                else "write `@+ delay`, e.g. `@+ 5`",
+            )
+            return None
+        time = REAL if self._ctx.real_time else INTINF
+        wanted: Type = time if tokens[0].text == "@++" else TCon("int")
+        parsed = parse_expression(text, self._ctx.d, skip=1)
+        exp = None if parsed is None else resolve_expression(parsed, fixities, self._ctx.d)
+        if exp is None:
+            return None
+        with self._scope(self._variables), self._one_mistake():
+            before = self._ctx.errors
+            draft = self._expressions.check(exp, from_type(wanted, []), "delay")
+            return self._finish(before, draft.build)
+
+    def priority(self, text: SourceText, fixities: Fixities) -> int | None:
+        """The value."""
+        parsed = parse_expression(text, self._ctx.d)
+        exp = None if parsed is None else resolve_expression(parsed, fixities, self._ctx.d)
+        if exp is None:
+            return None
+        with self._scope(self._ctx.top), self._one_mistake():
+            before = self._ctx.errors
+            draft = self._expressions.check(exp, I_INT, "priority")
+            built = self._finish(before, draft.build)
+        if built is None:
+            return None
+        computed = self._computed(built)
+        value = computed.value
+        if not isinstance(value, int):
+            self._ctx.error(
+                codes.PRIORITY,
+                f"priority {computed.why}",
+                exp.span,
+                hint="use a number, or a `val` such as `P_HIGH`; smaller numbers go first",
+            )
+            return None
+        if value < 0:
+            self._ctx.d.warning(
+                codes.PRIORITY_BELOW_ZERO,
+                f"the priority is {value}: pn2code accepts it, but CPN Tools cannot start such a net",
+                exp.span,
+                hint="use numbers from 0 upwards; smaller numbers go first",
+            )
+        return value
+
+    # --- code segments
+
+    def code_segment(self, text: SourceText, fixities: Fixities) -> TypedCode | None:
+        """Inputs, outputs and action."""
+        parsed = parse_code(text, self._ctx.d)
+        if parsed is None:
+            return None
+        before = self._ctx.errors
+        inputs = self._code_variables(parsed.inputs, "input", fixities)
+        outputs = self._code_variables(parsed.outputs, "output", fixities)
+        if inputs is None or outputs is None:
+            return None
+        written = parsed.action
+        if written is None and not outputs and is_action_of_comments(text):
+            written = s.RecordExp((), text.span())
+        if written is None:
+            self._ctx.error(
+                codes.CODE_SEGMENT,
+                "code segment has no `action`, which CPN Tools wants",
+                text.span(),
+                hint="write `action ..;` after it, with a value for each output variable, or `action ();`",
+            )
+            return None
+        comment = misplaced_comment(text)
+        if comment is not None:
+            self._ctx.error(
+                codes.CODE_SEGMENT,
+                "CPN Tools does not read a comment before `action`, or after the last `;`",
+                text.span(*comment),
+                hint="put it behind the word `action`, or remove the `;` before it",
+            )
+            return None
+        exp: s.Exp | None = resolve_expression(written, fixities, self._ctx.d)
+        if exp is None:
+            return None
+        scope = Scope(self._ctx.top)
+        for symbol in inputs:
+            scope.values[symbol.name] = Binding(
+                symbol.name, from_type(symbol.type, []), symbol=symbol, colset=symbol.colset
+            )
+        with self._scope(scope):
+            wanted = from_type(tuple_of(*(x.type for x in outputs)), []) if outputs else I_UNIT
+            action = self._expressions.check(exp, wanted, "action")
+            return self._finish(before, lambda: TypedCode(inputs, outputs, action.build()))
+
+    def _code_variables(
+        self, pattern: s.Pat | None, word: str, fixities: Fixities
+    ) -> tuple[Symbol, ...] | None:
+        if pattern is None:
+            return ()
+        resolved = resolve_pattern(pattern, fixities, self._ctx.d)
+        if resolved is None:
+            return None
+        parts = [p for _, p in resolved.fields] if isinstance(resolved, s.RecordPat) else [resolved]
+        out: list[Symbol] = []
+        for part in parts:
+            if not isinstance(part, s.NamePat):
+                self._ctx.error(
+                    codes.CODE_SEGMENT,
+                    f"`{word}` lists something that is not a variable",
+                    part.span,
+                    hint=f"only variables are allowed there: `{word} (x, y)`",
+                )
+                return None
+            entry = self._variables.values.get(part.name)
+            if isinstance(entry, BrokenEntry):
+                self._ctx.tainted = True
+                return None
+            if not isinstance(entry, Binding) or entry.symbol is None:
+                self._ctx.error(
+                    codes.UNBOUND,
+                    f"`{part.name}` is not a variable of the net",
+                    part.span,
+                    hint=f"`{word}` lists variables declared with `var`",
+                )
+                return None
+            if entry.symbol in out:
+                self._ctx.error(
+                    codes.DUPLICATE_NAME,
+                    f"`{part.name}` is listed twice",
+                    part.span,
+                    hint="remove one of them",
+                )
+                return None
+            out.append(entry.symbol)
+        return tuple(out)
+
+
+def _all_true(conditions: core.Exp) -> core.Exp:
+    """Whether all of a list of conditions hold: a guard that computes a list."""
+    span = conditions.span
+    test = TFun(BOOL, BOOL)
+    over = TFun(conditions.type, BOOL)
+    function = core.Builtin("List.all", TFun(test, over), span, (BOOL,))
+    rules = tuple(
+        core.Rule(core.PCon(c, None, BOOL, span), core.Con(c, BOOL, span), span)
+        for c in (TRUE, FALSE)
+    )
+    same = core.Lambda(rules, test, span)
+    return core.Apply(core.Apply(function, same, over, span), conditions, BOOL, span)
+
+
+def _matches(whole: core.Var, pattern: core.Pat, variables: Mapping[str, Symbol]) -> core.Exp:
+    """Whether a token matches a pattern whose variables have the values of net variables."""
+    span = pattern.span
+    test: core.Exp = core.Con(TRUE, BOOL, span)
+    false = core.Con(FALSE, BOOL, span)
+    for own in _symbols(pattern):
+        pair = core.RecordExp(
+            (
+                ("1", core.Var(own, own.type, span)),
+                ("2", core.Var(variables[own.name], own.type, span)),
+            ),
+            tuple_of(own.type, own.type),
+            span,
+        )
+        equals = core.Builtin("=", TFun(pair.type, BOOL), span, (own.type,))
+        test = core.If(core.Apply(equals, pair, BOOL, span), test, false, BOOL, span)
+    rules = [core.Rule(pattern, test, span), core.Rule(core.PWild(whole.type, span), false, span)]
+    return core.Case(whole, tuple(rules), BOOL, span)
+
+
+def _comparing(pattern: core.Pat, constants: Mapping[Symbol, core.Var]) -> core.Pat:
+    """The pattern, which compares with declared values instead of binding their names."""
+    match pattern:
+        case core.PVar(symbol, t, span) if symbol in constants:
+            return core.PEqual(constants[symbol], t, span)
+        case core.PAs(pattern=inner):
+            return replace(pattern, pattern=_comparing(inner, constants))
+        case core.PRecord(fields):
+            return replace(pattern, fields=tuple((k, _comparing(p, constants)) for k, p in fields))
+        case core.PCon(argument=inner) if inner is not None:
+            return replace(pattern, argument=_comparing(inner, constants))
+        case _:
+            return pattern
+
+
+def _symbols(pattern: core.Pat) -> list[Symbol]:
+    match pattern:
+        case core.PVar(symbol):
+            return [symbol]
+        case core.PAs(symbol, inner):
+            return [symbol, *_symbols(inner)]
+        case core.PRecord(fields):
+            return [x for _, p in fields for x in _symbols(p)]
+        case core.PCon(argument=inner) if inner is not None:
+            return _symbols(inner)
+        case _:
+            return []
+
+
+def _is_timed_list(t: Type) -> bool:
+    return (
+        isinstance(t, TCon)
+        and t.name == "list"
+        and isinstance(t.args[0], TCon)
+        and t.args[0].name == "timed"
+    )
+
+
+def _is_timed(t: Ty) -> bool:
+    t = prune(t)
+    if isinstance(t, ICon) and t.name == "list":
+        t = prune(t.args[0])
+    return isinstance(t, ICon) and t.name == "timed"
+
+
+__all__ = ["Inscriptions", "TypedCode", "timed_of"]

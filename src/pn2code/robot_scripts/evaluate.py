@@ -1,0 +1,301 @@
+"""ML expressions evaluated symbolically: functions of the net are inlined, patterns matched, commands performed.
+
+fun lift p = {x = #x p, ..., z = #z p + 100.0, ...}
+lift p   ->  pose(p.x, p.y, p.z + 100 mm, p.rx, p.ry, p.rz)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+from pn2code.diagnostics import Span
+from pn2code.ml.core import terms as core
+from pn2code.ml.core.types import BOOL, TRecord, Type
+from pn2code.robot_scripts.values import (
+    FALSE,
+    TRUE,
+    Closure,
+    Env,
+    Leaf,
+    Primitive,
+    Rec,
+    Scalar,
+    UnsupportedError,
+    Value,
+    builtin,
+    choose,
+    conjunction,
+    equal,
+    is_enumeration,
+    pose,
+    select,
+    shape_of_type,
+)
+from pn2code.tdl import tree as t
+from pn2code.tdl import types as tdl
+
+MAX_DEPTH = 60
+"""Most calls inlined into each other: beyond it a function is taken to be recursive."""
+
+_BOOL = tdl.Type.BOOL
+
+
+@dataclass(slots=True)
+class Evaluator:
+    """Evaluates core expressions symbolically.
+
+    Args:
+        program: declarations of the net.
+        primitives: names of functions that are robot commands.
+        constant: offers a global scalar as a named constant of the script: (name, value, where) -> expression.
+        perform: carries out a primitive; None where commands are not allowed.
+        branch: runs two alternatives that may contain commands: (condition, then, otherwise) -> value.
+    """
+
+    program: core.Program
+    primitives: frozenset[str]
+    constant: Callable[[str, Scalar, Span], t.Expression]
+    perform: Callable[[str, Value, Span], Value] | None = None
+    branch: (
+        Callable[[t.Expression, Callable[[], Value], Callable[[], Value], Span], Value] | None
+    ) = None
+    _globals: dict[int, Value] = field(default_factory=dict)
+    _declarations: dict[int, tuple[core.Dec, core.Symbol]] = field(default_factory=dict)
+    _depth: int = 0
+
+    def __post_init__(self) -> None:
+        for dec in self.program.declarations:
+            match dec:
+                case core.ValBind(core.PVar(symbol)):
+                    self._declarations[symbol.uid] = (dec, symbol)
+                case core.RecBind(bindings):
+                    for symbol, _ in bindings:
+                        self._declarations[symbol.uid] = (dec, symbol)
+                case _:
+                    pass
+
+    def evaluate(self, e: core.Exp, env: Env) -> Value:
+        """The value of an expression; UnsupportedError where scripts have nothing for it."""
+        self._depth += 1
+        try:
+            if self._depth > 20 * MAX_DEPTH:
+                raise UnsupportedError("this is nested too deeply for a robot script", e.span)
+            return self._evaluate(e, env)
+        finally:
+            self._depth -= 1
+
+    def _evaluate(self, e: core.Exp, env: Env) -> Value:
+        match e:
+            case core.Lit(value, type_):
+                shape = shape_of_type(type_, self.program)
+                if not isinstance(shape, Leaf):
+                    raise UnsupportedError(
+                        f"values of type `{type_}` cannot be used in a robot script", e.span
+                    )
+                return Scalar(t.Value(value), shape.type)
+            case core.Var(symbol):
+                return self._variable(symbol, env, e.span)
+            case core.Con(constructor, type_):
+                if type_ == BOOL:
+                    return Scalar(t.Value(constructor.name == "true"), _BOOL)
+                if is_enumeration(type_, self.program):
+                    return Scalar(t.Value(constructor.name), tdl.Type.STRING)
+            case core.RecordExp(fields, type_):
+                values = {label: self.evaluate(x, env) for label, x in fields}
+                return self._record(values, type_, e.span)
+            case core.Select(label, record):
+                return select(self.evaluate(record, env), label, e.span)
+            case core.If(condition, then, otherwise):
+                return self._if(condition, then, otherwise, env, e.span)
+            case core.Let(declarations, body):
+                inner = dict(env)
+                for dec in declarations:
+                    self._declare(dec, inner)
+                return self.evaluate(body, inner)
+            case core.Sequence(items):
+                for x in items[:-1]:
+                    self.evaluate(x, env)
+                return self.evaluate(items[-1], env)
+            case core.Lambda(rules):
+                return Closure(rules, env)
+            case core.Case(scrutinee, rules):
+                return self._rules(rules, self.evaluate(scrutinee, env), env, e.span)
+            case core.Apply(core.Builtin(name), argument):
+                return builtin(name, self.evaluate(argument, env), e.span)
+            case core.Apply(function, argument):
+                return self._apply(
+                    self.evaluate(function, env), self.evaluate(argument, env), e.span
+                )
+            case _:
+                pass
+        what = {
+            "ListExp": "a list", "Raise": "an exception", "Handle": "an exception handler",
+            "While": "a `while` loop", "Con": "a value with a constructor", "Builtin": "this function",
+        }.get(type(e).__name__, "this expression")  # fmt: skip
+        raise UnsupportedError(f"{what} cannot be used in a robot script", e.span)
+
+    def _variable(self, symbol: core.Symbol, env: Env, span: Span) -> Value:
+        if symbol.uid in env:
+            return env[symbol.uid]
+        # Of functions of one name the last one is the primitive, as whoever wrote the entry sees it.
+        if symbol.name in self.primitives and self.program.globals.get(symbol.name) == symbol:
+            return Primitive(symbol.name)
+        if symbol.uid in self._globals:
+            return self._globals[symbol.uid]
+        found = self._declarations.get(symbol.uid)
+        if found is None:
+            raise UnsupportedError(f"`{symbol.name}` has no value in a robot script", span)
+        match found[0]:
+            case core.ValBind(_, value):
+                result = self.evaluate(value, {})
+                if isinstance(result, Scalar):
+                    named = self.constant(symbol.name, result, found[0].span)
+                    result = Scalar(named, result.type)
+            case core.RecBind(bindings):
+                rules = next(f.rules for s, f in bindings if s == symbol)
+                result = Closure(rules, {}, symbol.name)
+            case _:
+                raise UnsupportedError(f"`{symbol.name}` has no value in a robot script", span)
+        self._globals[symbol.uid] = result
+        return result
+
+    def _record(self, values: dict[str, Value], type_: Type, span: Span) -> Value:
+        if isinstance(shape_of_type(type_, self.program), Leaf):
+            return pose(values, span)
+        order = [label for label, _ in type_.fields] if isinstance(type_, TRecord) else list(values)
+        return Rec(tuple((label, values[label]) for label in order))
+
+    def _if(
+        self, condition: core.Exp, then: core.Exp, otherwise: core.Exp, env: Env, span: Span
+    ) -> Value:
+        test = self.evaluate(condition, env)
+        assert isinstance(test, Scalar)
+        if test.exp == TRUE:
+            return self.evaluate(then, env)
+        if test.exp == FALSE:
+            return self.evaluate(otherwise, env)
+        return self._alternatives(
+            test.exp, lambda: self.evaluate(then, env), lambda: self.evaluate(otherwise, env), span
+        )
+
+    def _alternatives(
+        self, test: t.Expression, a: Callable[[], Value], b: Callable[[], Value], span: Span
+    ) -> Value:
+        if self.branch is not None:
+            return self.branch(test, a, b, span)
+        return choose(test, a(), b(), span)
+
+    def _declare(self, dec: core.Dec, env: Env) -> None:
+        match dec:
+            case core.ValBind(pattern, value):
+                found = self.match(pattern, self.evaluate(value, env), env)
+                if conjunction(found) != TRUE:
+                    raise UnsupportedError(
+                        "this binding may fail, which a robot script cannot handle", dec.span
+                    )
+            case core.RecBind(bindings):
+                for symbol, function in bindings:
+                    env[symbol.uid] = Closure(function.rules, env, symbol.name)
+            case _:
+                pass
+
+    def _apply(self, function: Value, argument: Value, span: Span) -> Value:
+        match function:
+            case Primitive(name):
+                if self.perform is None:
+                    raise UnsupportedError(
+                        f"`{name}` is a robot command, which is possible in code segments only",
+                        span,
+                    )
+                return self.perform(name, argument, span)
+            case Closure(rules, env, name):
+                self._depth += 19
+                try:
+                    if self._depth > 20 * MAX_DEPTH:
+                        raise UnsupportedError(
+                            f"`{name or 'the function'}` is recursive, which robot scripts cannot do",
+                            span,
+                        )
+                    return self._rules(rules, argument, env, span)
+                finally:
+                    self._depth -= 19
+            case _:
+                raise UnsupportedError("this is not a function", span)
+
+    def _rules(
+        self,
+        rules: tuple[core.Rule, ...],
+        value: Value,
+        env: Env,
+        span: Span,
+        seen: frozenset[int] = frozenset(),
+    ) -> Value:
+        """The first rule whose pattern matches; the rules must cover everything.
+
+        `seen`: the constructors that the rules before have taken.
+        """
+        rule, *others = rules
+        inner = dict(env)
+        test = conjunction(self.match(rule.pattern, value, inner))
+        if isinstance(rule.pattern, core.PCon) and rule.pattern.argument is None:
+            seen |= {rule.pattern.constructor.tag}
+            if len(seen) == rule.pattern.constructor.siblings and test != FALSE:
+                test = TRUE
+        if test == TRUE:
+            return self.evaluate(rule.body, inner)
+        if not others:
+            raise UnsupportedError("no rule may match, which a robot script cannot handle", span)
+        if test == FALSE:
+            return self._rules(tuple(others), value, env, span, seen)
+        return self._alternatives(
+            test,
+            lambda: self.evaluate(rule.body, inner),
+            lambda: self._rules(tuple(others), value, env, span, seen),
+            span,
+        )
+
+    def match(self, pattern: core.Pat, value: Value, env: Env) -> list[t.Expression]:
+        """Binds the pattern's variables in `env`; the conditions under which it matches.
+
+        A variable that is bound already is compared.
+        """
+        match pattern:
+            case core.PWild():
+                return []
+            case core.PVar(symbol):
+                if symbol.uid in env and symbol.colset is not None:
+                    return [equal(env[symbol.uid], value, pattern.span)]
+                env[symbol.uid] = value
+                return []
+            case core.PLit(literal, type_):
+                shape = shape_of_type(type_, self.program)
+                if not isinstance(shape, Leaf):
+                    raise UnsupportedError(
+                        f"values of type `{type_}` cannot be used in a robot script", pattern.span
+                    )
+                return [equal(value, Scalar(t.Value(literal), shape.type), pattern.span)]
+            case core.PEqual(named):
+                return [equal(self.evaluate(named, env), value, pattern.span)]
+            case core.PRecord(fields):
+                out = []
+                for label, inner in fields:
+                    out += self.match(inner, select(value, label, pattern.span), env)
+                return out
+            case core.PCon(constructor, None, type_):
+                if type_ == BOOL:
+                    known: t.Expression = t.Value(constructor.name == "true")
+                    return [equal(value, Scalar(known, _BOOL), pattern.span)]
+                if is_enumeration(type_, self.program):
+                    name = Scalar(t.Value(constructor.name), tdl.Type.STRING)
+                    return [equal(value, name, pattern.span)]
+                raise UnsupportedError(
+                    "this pattern cannot be used in a robot script", pattern.span
+                )
+            case core.PAs(symbol, inner):
+                env[symbol.uid] = value
+                return self.match(inner, value, env)
+            case _:
+                raise UnsupportedError(
+                    "this pattern cannot be used in a robot script", pattern.span
+                )

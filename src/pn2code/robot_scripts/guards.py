@@ -1,0 +1,157 @@
+"""What can be proved about conditions: that two exclude each other, that several cover everything.
+
+k = 1        and  k = 2        exclude each other
+n < 3        and  n >= 3       exclude each other and cover everything
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+from pn2code.robot_scripts.values import FALSE, TRUE
+from pn2code.tdl import tree as t
+from pn2code.tdl.pretty import expression
+
+Constant = int | float | str | bool
+
+
+@dataclass(frozen=True, slots=True)
+class Fact:
+    """`subject operator value`; the value is a constant, or the text of another expression."""
+
+    subject: str
+    operator: str
+    value: Constant | t.Expression
+
+
+_MIRROR = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "=": "=", "<>": "<>"}
+_OPPOSITE = {"<": ">=", ">=": "<", ">": "<=", "<=": ">", "=": "<>", "<>": "="}
+
+
+def conjuncts(e: t.Expression) -> list[t.Expression]:
+    """The parts of a conjunction."""
+    match e:
+        case t.Binary("and", left, right):
+            return [*conjuncts(left), *conjuncts(right)]
+        case t.Value(True):
+            return []
+        case _:
+            return [e]
+
+
+def fact(e: t.Expression, constants: Mapping[str, Constant]) -> Fact:
+    """What an expression of type bool says. `constants`: values of the script's named constants."""
+    match e:
+        case t.Unary("not", operand):
+            inner = fact(operand, constants)
+            return Fact(inner.subject, _OPPOSITE[inner.operator], inner.value)
+        case t.Binary(operator, left, right) if operator in _MIRROR:
+            a, b = _value(left, constants), _value(right, constants)
+            if a is not None and b is None:
+                return Fact(expression(right), _MIRROR[operator], a)
+            if b is not None:
+                return Fact(expression(left), operator, b)
+            x, y = expression(left), expression(right)
+            # One order for both `a < b` and `b > a`.
+            return Fact(x, operator, right) if x <= y else Fact(y, _MIRROR[operator], left)
+        case _:
+            return Fact(expression(e), "=", True)
+
+
+def _value(e: t.Expression, constants: Mapping[str, Constant]) -> Constant | None:
+    match e:
+        case t.Value(value):
+            return value
+        case t.Quantity(number, "mm" | "deg" | "s" | "mm/s"):
+            return number
+        case t.Unary("-", t.Value(int() | float() as number)):
+            return -number
+        case t.Name(name):
+            return constants.get(name)
+        case _:
+            return None
+
+
+def exclusive(a: t.Expression, b: t.Expression, constants: Mapping[str, Constant]) -> bool:
+    """Whether it is certain that not both hold."""
+    if FALSE in (a, b):
+        return True
+    first = [fact(e, constants) for e in conjuncts(a)]
+    second = [fact(e, constants) for e in conjuncts(b)]
+    return any(_contradict(x, y) for x in first for y in second)
+
+
+def _contradict(x: Fact, y: Fact) -> bool:
+    if x.subject != y.subject:
+        return False
+    if isinstance(x.value, Constant) and isinstance(y.value, Constant):
+        return _no_common_value(x, y)
+    if x.value != y.value:
+        return False
+    return (
+        y.operator
+        in {
+            "=": ("<>", "<", ">"),
+            "<>": ("=",),
+            "<": ("=", ">", ">="),
+            "<=": (">",),
+            ">": ("=", "<", "<="),
+            ">=": ("<",),
+        }[x.operator]
+    )
+
+
+def _no_common_value(x: Fact, y: Fact) -> bool:
+    a, b = x.value, y.value
+    if isinstance(a, bool) or isinstance(b, bool) or isinstance(a, str) or isinstance(b, str):
+        if x.operator == y.operator == "=":
+            return a != b
+        if {x.operator, y.operator} == {"=", "<>"}:
+            return a == b
+        return isinstance(a, bool) and x.operator == y.operator == "<>" and a != b
+    assert isinstance(a, int | float) and isinstance(b, int | float)
+    if x.operator == "=":
+        return not _holds(a, y.operator, b)
+    if y.operator == "=":
+        return not _holds(b, x.operator, a)
+    if "<>" in (x.operator, y.operator):
+        return False
+    if x.operator[0] == y.operator[0]:
+        return False  # both from above or both from below
+    upper, lower = (x, y) if x.operator[0] == "<" else (y, x)
+    top, bottom = upper.value, lower.value
+    assert isinstance(top, int | float) and isinstance(bottom, int | float)
+    if top != bottom:
+        return top < bottom
+    return not (upper.operator == "<=" and lower.operator == ">=")
+
+
+def _holds(a: float, operator: str, b: float) -> bool:
+    return {
+        "=": a == b, "<>": a != b, "<": a < b, "<=": a <= b, ">": a > b, ">=": a >= b,
+    }[operator]  # fmt: skip
+
+
+def covering(conditions: Iterable[t.Expression], constants: Mapping[str, Constant]) -> bool:
+    """Whether it is certain that one of the conditions holds.
+
+    Only complements count (`n < 3` and `n >= 3`). That a colour set has no other value is not used: what comes
+    from a file is worth a last `else` that stops.
+    """
+    alone = []
+    for c in conditions:
+        if c == TRUE:
+            return True
+        parts = conjuncts(c)
+        if len(parts) == 1:
+            alone.append(fact(parts[0], constants))
+    for i, x in enumerate(alone):
+        opposite = Fact(x.subject, _OPPOSITE[x.operator], x.value)
+        for y in alone[i + 1 :]:
+            if y == opposite or (
+                isinstance(x.value, bool) and isinstance(y.value, bool) and x.subject == y.subject
+                and (x.operator == y.operator) == (x.value != y.value)
+            ):  # fmt: skip
+                return True
+    return False

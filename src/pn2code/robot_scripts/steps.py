@@ -1,0 +1,512 @@
+"""One transition of a robot as script statements: wait, read, act, mark, consume, publish, remember.
+
+    wait until filled(dadosrobo1)
+    read dadosrobo1 into p
+    move $joint p
+    mark Top.Robot1.MoveJoint with k = k, p = p
+    clear dadosrobo1
+
+The transition occurs at the end of its action, at one instant: its mark, the emptying of the files it
+takes from and the messages it puts follow each other without time passing. The mark comes first, so that
+in a merged trace the cause stands before its effects.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+
+from pn2code.cell.config import Primitive
+from pn2code.cell.partition import OwnerKind
+from pn2code.diagnostics import Span
+from pn2code.ml.core.colsets import Colset, Kind
+from pn2code.ml.core.terms import Symbol
+from pn2code.net.flat import BindAll, BindEquation, BindRandom
+from pn2code.robot_scripts import codes as codes
+from pn2code.robot_scripts.evaluate import Evaluator
+from pn2code.robot_scripts.ir import Chain, Comment, Element, Line, Node
+from pn2code.robot_scripts.machine import Machine, Outcome, Step
+from pn2code.robot_scripts.names import Names, identifier
+from pn2code.robot_scripts.values import (
+    FALSE,
+    TRUE,
+    Closure,
+    Env,
+    Fields,
+    Leaf,
+    Rec,
+    Scalar,
+    Shape,
+    UnsupportedError,
+    Value,
+    as_quantity,
+    choose,
+    conjunction,
+    equal,
+    flatten,
+    select,
+    shape_of_colset,
+)
+from pn2code.robot_scripts.values import Primitive as PrimitiveValue
+from pn2code.tdl import tree as t
+from pn2code.tdl import types as tdl
+from pn2code.tdl.evaluate import ScriptError, ScriptValue, evaluate
+from pn2code.tdl.paths import all_names, children
+
+
+@dataclass(frozen=True, slots=True)
+class Situation:
+    """A transition seen from its state: what its variables mean and when it is enabled.
+
+    Args:
+        channels: places of the channels it takes from, in order of its arcs.
+        local: conditions that the program's own data decide.
+        remote: conditions that need the messages.
+        sensed: net variables that nothing in the net decides, the sensor that does, and the script's variable.
+    """
+
+    step: Step
+    env: Env
+    channels: tuple[int, ...]
+    local: tuple[t.Expression, ...]
+    remote: tuple[t.Expression, ...]
+    sensed: tuple[tuple[Symbol, str, str], ...] = ()
+
+    @property
+    def own_condition(self) -> t.Expression:
+        """All conditions on the program's own data."""
+        return conjunction(list(self.local))
+
+    @property
+    def condition(self) -> t.Expression:
+        """All conditions."""
+        return conjunction([*self.local, *self.remote])
+
+
+@dataclass(frozen=True, slots=True)
+class _Constants:
+    """What names mean where only the script's constants are known."""
+
+    values: Mapping[str, ScriptValue]
+
+    def value(self, name: str) -> ScriptValue:
+        """The value of a constant; KeyError: it is none."""
+        return self.values[name]
+
+    def filled(self, name: str) -> bool:
+        """No file is known."""
+        raise KeyError(name)
+
+
+@dataclass(slots=True)
+class StepTranslator:
+    """Translates transitions.
+
+    Args:
+        place_names: the variables of a local place, in order of its leaves.
+        shapes: shapes of places.
+        file_names: names of the files of channel places.
+        sensors: net variable -> the sensor that decides it.
+    """
+
+    machine: Machine
+    names: Names
+    primitives: Mapping[str, Primitive]
+    pure: Evaluator
+    place_names: dict[int, list[str]]
+    shapes: dict[int, Shape]
+    file_names: dict[int, str]
+    sensors: Mapping[str, str] = field(default_factory=dict)
+    storage: Mapping[str, str] = field(default_factory=dict)
+    _nodes: list[Node] = field(default_factory=list)
+    _acts: bool = False
+    """whether the transition at hand carries out commands"""
+
+    # enabling
+
+    def situation(self, step: Step, values: Mapping[int, Value]) -> Situation:
+        """Bind the variables of a transition; `values`: the token of each place it takes from."""
+        transition = step.transition
+        env: Env = {}
+        found: list[t.Expression] = []
+        control = [x for x in step.takes if x[0] in self.machine.control]
+        variables = [x for x in step.takes if x[0] in self.machine.variables]
+        messages = [x for x in step.takes if x[0] in self.machine.channels]
+        if len({p for p, *_ in messages}) < len(messages):
+            raise UnsupportedError(
+                f"transition `{transition.short}` takes two messages from one file at a time",
+                _whole(step),
+                codes.UNSUPPORTED_PROGRAM,
+            )
+        ordered = [*control, *variables, *messages]
+        sensed: list[tuple[Symbol, str, str]] = []
+        avoid = {n for p, *_ in ordered for n in all_names(x.exp for x in _scalars(values[p]))}
+        for place, term, _, _ in ordered:
+            if term.pattern is not None:
+                found += self.pure.match(term.pattern, values[place], env)
+        for bind in transition.plan:
+            if isinstance(bind, BindEquation):
+                found += self.pure.match(bind.pattern, self.pure.evaluate(bind.value, env), env)
+            elif isinstance(bind, BindAll | BindRandom) and bind.symbol.uid not in env:
+                sensor, name, leaf = self._sensor(bind.symbol, step, avoid)
+                avoid.add(name)
+                sensed.append((bind.symbol, sensor, name))
+                env[bind.symbol.uid] = Scalar(t.Name(name), leaf.type)
+        for place, term, _, _ in ordered:
+            if term.pattern is None:
+                value = self.pure.evaluate(term.value, env)
+                found.append(equal(value, values[place], term.value.span))
+        for guard in transition.guards:
+            value = self.pure.evaluate(guard, env)
+            assert isinstance(value, Scalar)
+            found.append(value.exp)
+        received = {
+            name for p, *_ in messages for name in all_names(x.exp for x in _scalars(values[p]))
+        }
+        conditions = [c for c in dict.fromkeys(found) if c != TRUE]
+        for symbol, sensor, name in sensed:
+            if name in all_names(conditions):
+                raise UnsupportedError(
+                    f"whether `{transition.short}` is enabled depends on `{symbol.name}`, which sensor "
+                    f"`{sensor}` decides while it occurs: let one transition put `{symbol.name}` into a "
+                    "place, and decide in the next",
+                    _whole(step),
+                    codes.UNSUPPORTED_PROGRAM,
+                )
+        if FALSE in conditions:
+            conditions = [FALSE]
+        return Situation(
+            step,
+            env,
+            tuple(p for p, *_ in messages),
+            tuple(c for c in conditions if not all_names([c]) & received),
+            tuple(c for c in conditions if all_names([c]) & received),
+            tuple(sensed),
+        )
+
+    def _sensor(self, symbol: Symbol, step: Step, avoid: set[str]) -> tuple[str, str, Leaf]:
+        """The sensor that decides a free variable, the script's variable for it, and its type."""
+        sensor = self.sensors.get(symbol.name)
+        if sensor is None:
+            raise UnsupportedError(
+                f"nothing decides the value of `{symbol.name}`: a script cannot choose freely; if a sensor "
+                f"decides it, add `[sensors.{symbol.name}]` to cell.toml",
+                _whole(step),
+                codes.UNSUPPORTED_PROGRAM,
+            )
+        assert symbol.colset is not None
+        shape = shape_of_colset(symbol.colset, self.pure.program, self.storage)
+        if not isinstance(shape, Leaf) or shape.type is tdl.Type.POSE:
+            raise UnsupportedError(
+                f"sensor `{sensor}` decides `{symbol.name}` of colour set `{symbol.colset.name}`, but a "
+                "sensor gives one number, truth value or text",
+                _whole(step),
+                codes.UNSUPPORTED_COLSET,
+            )
+        transition = step.transition
+        element = Element(
+            transition.name,
+            "transition",
+            transition.origin,
+            f"transition {transition.short} ({transition.id})",
+        )
+        (name,) = self.names.shared([identifier(symbol.name)], shape, element, avoid)
+        return sensor, name, shape
+
+    # occurrence
+
+    def act(self, situation: Situation) -> tuple[list[Node], Env]:
+        """The commands of the code segment, and the environment with its outputs."""
+        code = situation.step.transition.code
+        asked: list[Node] = [
+            Line(t.Sense(sensor, t.Target(name))) for _, sensor, name in situation.sensed
+        ]
+        self._acts = False
+        if code is None:
+            return asked, situation.env
+        self._nodes = []
+        output = code.outputs[0].name if len(code.outputs) == 1 else "measured"
+        avoid = all_names(x.exp for v in situation.env.values() for x in _scalars(v))
+        evaluator = Evaluator(
+            self.pure.program,
+            self.pure.primitives,
+            self.names.constant,
+            perform=lambda name, argument, span: self._perform(
+                name, argument, span, output, avoid, situation
+            ),
+            branch=self._branch,
+        )
+        result = evaluator.evaluate(code.action, situation.env)
+        env = dict(situation.env)
+        if len(code.outputs) == 1:
+            env[code.outputs[0].uid] = result
+        else:
+            for i, symbol in enumerate(code.outputs, 1):
+                env[symbol.uid] = select(result, str(i), code.action.span)
+        # A sensor is asked as late as it can be: after what the robot does, unless that depends on it.
+        if any(s in code.inputs for s, _, _ in situation.sensed):
+            return [*asked, *self._nodes], env
+        return [*self._nodes, *asked], env
+
+    def _branch(
+        self, test: t.Expression, a: Callable[[], Value], b: Callable[[], Value], span: Span
+    ) -> Value:
+        """`if` in a code segment: a statement when commands depend on it, else an expression."""
+        before = self._nodes
+        then: list[Node] = []
+        otherwise: list[Node] = []
+        self._nodes = then
+        first = a()
+        self._nodes = otherwise
+        second = b()
+        self._nodes = before
+        if then or otherwise:
+            self._nodes.append(Chain(((test, tuple(then)),), tuple(otherwise) or None))
+        return choose(test, first, second, span)
+
+    def _perform(
+        self, name: str, argument: Value, span: Span, output: str, avoid: set[str], s: Situation
+    ) -> Value:
+        primitive = self.primitives[name]
+        self._acts = True
+        command = primitive.command
+        if self.machine.owner.kind is OwnerKind.DEVICE and command not in ("tool", "wait"):
+            raise UnsupportedError(
+                f"`{name}` is a `{command}`, but device `{self.machine.owner.name}` has no arm",
+                span,
+                codes.PRIMITIVE,
+            )
+        if command in ("move_joint", "move_linear", "measure"):
+            if not (isinstance(argument, Scalar) and argument.type is tdl.Type.POSE):
+                raise UnsupportedError(
+                    f"`{name}` takes a pose: a record of six reals x y z rx ry rz",
+                    span,
+                    codes.PRIMITIVE,
+                )
+            if command == "measure":
+                transition = s.step.transition
+                element = Element(
+                    transition.name,
+                    "transition",
+                    transition.origin,
+                    f"transition {transition.short} ({transition.id})",
+                )
+                (target,) = self.names.shared([output], Leaf(tdl.Type.POSE), element, avoid)
+                self._nodes.append(Line(t.Measure(argument.exp, t.Target(target))))
+                return Scalar(t.Name(target), tdl.Type.POSE)
+            motion = t.Motion.JOINT if command == "move_joint" else t.Motion.LINEAR
+            self._nodes.append(Line(t.Move(motion, argument.exp, primitive.frame)))
+        elif command == "move_home":
+            self._nodes.append(Line(t.Move(t.Motion.JOINT, None)))
+        elif command == "tool":
+            duration = t.Quantity(primitive.duration_s, "s")
+            self._nodes.append(Line(t.Tool(primitive.action, duration)))
+        else:
+            if argument == Rec(()):
+                duration_exp: t.Expression = t.Quantity(primitive.duration_s, "s")
+            elif isinstance(argument, Scalar) and argument.type in tdl.NUMBERS:
+                duration_exp = self._lasting(as_quantity(argument, tdl.Type.TIME).exp, span)
+            else:
+                raise UnsupportedError(f"`{name}` takes a number of seconds", span, codes.PRIMITIVE)
+            self._nodes.append(Line(t.WaitTime(duration_exp)))
+        return Rec(())
+
+    def _lasting(self, duration: t.Expression, span: Span) -> t.Expression:
+        """A duration that is not known to be negative."""
+        try:
+            known = evaluate(duration, _Constants(self.names.constant_values))
+        except (ScriptError, KeyError):
+            return duration
+        if isinstance(known, int | float) and known < 0:
+            raise UnsupportedError(
+                f"no robot can wait for {known:g} s", span, codes.UNSUPPORTED_TIME
+            )
+        return duration
+
+    def occur(self, situation: Situation, env: Env) -> list[Node]:
+        """The mark, and the emptying of files."""
+        transition = situation.step.transition
+        binding = tuple(
+            (v.name, self.datum(env[v.uid], v.colset, _whole(situation.step)))
+            for v in transition.variables
+        )
+        out: list[Node] = [Line(t.Mark(transition.name, binding))]
+        out += [Line(t.Clear(t.Target(self.file_names[p]))) for p in situation.channels]
+        return out
+
+    def datum(self, value: Value, colset: Colset | None, span: Span) -> t.Datum:
+        """A value as traces write it: records with their fields in declared order."""
+        c = colset.resolved if colset is not None else None
+        while c is not None and c.kind is Kind.SUBSET and c.components[0] is not None:
+            c = c.components[0].resolved
+        parts = dict(zip(c.labels, c.components, strict=True)) if c is not None and c.labels else {}
+        match value:
+            case Scalar(exp, tdl.Type.POSE):
+                if not parts or tuple(parts) == tuple(tdl.POSE_FIELDS):
+                    return exp
+                return t.RecordDatum(
+                    tuple((x, self.datum(select(value, x, span), None, span)) for x in parts)
+                )
+            case Scalar(exp):
+                return exp
+            case Rec(()):
+                return t.NullDatum()
+            case Rec(fields):
+                if parts:
+                    return t.RecordDatum(
+                        tuple((x, self.datum(value.get(x), parts[x], span)) for x in parts)
+                    )
+                components = (
+                    c.components
+                    if c is not None and c.kind is Kind.PRODUCT
+                    else (None,) * len(fields)
+                )
+                return t.TupleDatum(
+                    tuple(
+                        self.datum(v, part, span)
+                        for (_, v), part in zip(fields, components, strict=True)
+                    )
+                )
+            case Closure() | PrimitiveValue():
+                raise UnsupportedError("a function is no value of a net variable", span)
+
+    def put(self, situation: Situation, outcome: Outcome, env: Env) -> list[Node]:
+        """The messages written, data before flags, and the variables that remember the new tokens."""
+        writes: list[tuple[int, Node]] = []
+        assignments: list[tuple[str, t.Expression]] = []
+        order = {c: i for i, c in enumerate(self.machine.channels)}
+        for place, exp in outcome.puts:
+            if place in self.machine.sinks:
+                continue
+            shape = self.shapes[place]
+            value = self.pure.evaluate(exp, env) if shape != Fields(()) else Rec(())
+            leaves = flatten(value, shape, exp.span)
+            if place in self.machine.channels:
+                target = t.Target(self.file_names[place])
+                line = Line(t.Write(target, tuple(x.exp for x in leaves)))
+                writes.append((order[place], line))
+            else:
+                names = self.place_names[place]
+                assignments += zip(names, (x.exp for x in leaves), strict=True)
+        writes.sort(key=lambda w: w[0])
+        waits = self._wait(situation, outcome, env)
+        return [*(w for _, w in writes), *waits, *self._assign(assignments, situation)]
+
+    def _wait(self, situation: Situation, outcome: Outcome, env: Env) -> list[Node]:
+        """The delay of the control token. Model time is in seconds."""
+        place = self.machine.target(outcome)
+        transition = situation.step.transition
+        flat = self.machine.net.places[place]
+        if not flat.colset.timed:
+            if transition.delay is not None:
+                raise UnsupportedError(
+                    f"transition `{transition.short}` has a delay, but `{flat.short}`, where the program "
+                    "goes, has no time stamps",
+                    transition.delay.span,
+                    codes.UNSUPPORTED_TIME,
+                )
+            return []
+        own = [] if transition.delay is None else [transition.delay]
+        out: list[Node] = []
+        for delay in [*own, *(e for p, e in outcome.delays if p == place)]:
+            value = self.pure.evaluate(delay, env)
+            if not (isinstance(value, Scalar) and value.type in tdl.NUMBERS | {tdl.Type.TIME}):
+                raise UnsupportedError("this delay is not a number", delay.span)
+            if value.exp in (t.Value(0), t.Value(0.0)):
+                continue
+            wait = self._lasting(as_quantity(value, tdl.Type.TIME).exp, delay.span)
+            out.append(Line(t.WaitTime(wait)))
+        if out and self._acts:
+            raise UnsupportedError(
+                f"transition `{transition.short}` has both commands and a delay",
+                _whole(situation.step),
+                codes.UNSUPPORTED_TIME,
+            )
+        return out
+
+    def _assign(
+        self, assignments: list[tuple[str, t.Expression]], situation: Situation
+    ) -> list[Node]:
+        """Assignments at once, made one after the other: none may destroy what another needs."""
+        pending = [(n, e) for n, e in assignments if e != t.Name(n)]
+        out: list[Node] = []
+        while pending:
+            free = next(
+                (
+                    i
+                    for i, (name, _) in enumerate(pending)
+                    if not any(name in all_names([e]) for j, (_, e) in enumerate(pending) if j != i)
+                ),
+                None,
+            )
+            if free is None:  # a circle: keep one old value aside
+                name = pending[0][0]
+                kind = self.names.variables[name].type
+                transition = situation.step.transition
+                element = Element(
+                    transition.name,
+                    "transition",
+                    transition.origin,
+                    f"transition {transition.short} ({transition.id})",
+                )
+                (aside,) = self.names.shared(
+                    [f"{name}_before"], Leaf(kind.type, kind.single), element
+                )
+                out.append(Line(t.Assign(t.Target(aside), t.Name(name))))
+                pending = [
+                    (n, e if i == 0 else _replaced(e, name, aside))
+                    for i, (n, e) in enumerate(pending)
+                ]
+                free = 0
+            name, exp = pending.pop(free)
+            out.append(Line(t.Assign(t.Target(name), exp)))
+        return out
+
+
+def _replaced(e: t.Expression, old: str, new: str) -> t.Expression:
+    """The expression with one name for another."""
+    match e:
+        case t.Name(name):
+            return t.Name(new) if name == old else e
+        case t.Field(record, label):
+            return t.Field(_replaced(record, old, new), label)
+        case t.Unary(operator, operand):
+            return t.Unary(operator, _replaced(operand, old, new))
+        case t.Binary(operator, left, right):
+            return t.Binary(operator, _replaced(left, old, new), _replaced(right, old, new))
+        case t.CallExpression(function, arguments):
+            return t.CallExpression(function, tuple(_replaced(a, old, new) for a in arguments))
+        case t.Conditional():
+            a, b, c = (_replaced(x, old, new) for x in children(e))
+            return t.Conditional(a, b, c)
+        case _:
+            return e
+
+
+def _scalars(value: Value) -> Iterable[Scalar]:
+    match value:
+        case Scalar():
+            yield value
+        case Rec(fields):
+            for _, v in fields:
+                yield from _scalars(v)
+        case _:
+            return
+
+
+def _whole(step: Step) -> Span:
+    """A span for messages about the transition as a whole."""
+    for _, term, _, _ in step.takes:
+        return term.value.span
+    raise AssertionError("a step takes at least the control token")
+
+
+def header(step: Step, machine: Machine) -> Comment:
+    """The comment before a transition's statements: its name, id, and where control goes."""
+    places = machine.net.places
+    source = next(p for p, *_ in step.takes if p in machine.control)
+    targets = dict.fromkeys(places[machine.target(o)].short for o in step.outcomes)
+    transition = step.transition
+    return Comment(
+        f"{transition.short} ({transition.id}): {places[source].short} -> {' or '.join(targets)}"
+    )

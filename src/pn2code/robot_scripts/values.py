@@ -1,0 +1,470 @@
+"""Values of the net as a script has them: script expressions, and their arithmetic.
+
+    #x p + 100.0     with p in the script variable `p` of type pose
+    ->  Scalar(p.x + 100 mm, LENGTH)
+
+A real number of the net may be a length or an angle of the script (a
+field of a pose); where it meets another number the units are brought together.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from pn2code.diagnostics import Span
+from pn2code.ml.core import terms as core
+from pn2code.ml.core.colsets import Colset, Kind
+from pn2code.ml.core.types import BOOL, INT, REAL, STRING, TCon, TRecord, Type
+from pn2code.robot_scripts import codes as codes
+from pn2code.tdl import tree as t
+from pn2code.tdl import types as tdl
+
+POSE_LABELS = tuple(tdl.POSE_FIELDS)
+
+
+class UnsupportedError(Exception):
+    """An expression that scripts do not have; caught where the transition is translated."""
+
+    def __init__(self, message: str, span: Span, code: str = codes.UNSUPPORTED_EXPRESSION) -> None:
+        super().__init__(message)
+        self.message = message
+        self.span = span
+        self.code = code
+
+
+# --- shapes: what a type or colour set is made of ----------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Leaf:
+    """One script value."""
+
+    type: tdl.Type
+    single: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Fields:
+    """A record or product (labels 1, 2, ...) that is not a pose, in declared order; unit has no fields."""
+
+    fields: tuple[tuple[str, Shape], ...]
+
+
+Shape = Leaf | Fields
+
+
+def is_pose(labels: tuple[str, ...], types: tuple[Type, ...]) -> bool:
+    """Whether a record is a pose: six reals named x y z rx ry rz, in upper or lower case."""
+    return (
+        {x.lower() for x in labels} == set(POSE_LABELS)
+        and len(labels) == 6
+        and all(x == REAL for x in types)
+    )
+
+
+def shape_of_type(ml: Type, program: core.Program) -> Shape | None:
+    """The shape of an ML type; None where scripts have nothing for it."""
+    match ml:
+        case TCon():
+            simple = {
+                INT: tdl.Type.INT,
+                REAL: tdl.Type.REAL,
+                BOOL: tdl.Type.BOOL,
+                STRING: tdl.Type.STRING,
+            }
+            if ml in simple:
+                return Leaf(simple[ml])
+            return Leaf(tdl.Type.STRING) if is_enumeration(ml, program) else None
+        case TRecord(fields):
+            labels, types = tuple(x for x, _ in fields), tuple(x for _, x in fields)
+            if is_pose(labels, types):
+                return Leaf(tdl.Type.POSE)
+            inner = [(label, shape_of_type(x, program)) for label, x in fields]
+            return _fields(inner)
+        case _:
+            return None
+
+
+def _fields(inner: list[tuple[str, Shape | None]]) -> Fields | None:
+    known = tuple((label, x) for label, x in inner if x is not None)
+    return Fields(known) if len(known) == len(inner) else None
+
+
+def is_enumeration(ml: Type, program: core.Program) -> bool:
+    """Whether a type is a data type whose constructors have no arguments (and is not bool)."""
+    if not isinstance(ml, TCon) or ml.args or ml == BOOL:
+        return False
+    data = program.datatypes.get(ml.name)
+    return data is not None and all(argument is None for _, argument in data.constructors)
+
+
+def shape_of_colset(
+    colset: Colset, program: core.Program, storage: Mapping[str, str], *, in_order: bool = False
+) -> Shape | None:
+    """The shape of a colour set, in its declared order, with what is stored in single precision.
+
+    `in_order`: a pose must also have its fields in the order x y z rx ry rz (for files).
+    """
+    single = False
+    c = colset
+    while True:
+        single = single or storage.get(c.name) == "float32"
+        if c.kind not in (Kind.ALIAS, Kind.SUBSET):
+            break
+        base = c.components[0]
+        assert base is not None
+        c = base
+    if c.kind is Kind.REAL:
+        return Leaf(tdl.Type.REAL, single)
+    if c.kind in (Kind.RECORD, Kind.PRODUCT):
+        labels = c.labels or tuple(str(i) for i in range(1, len(c.components) + 1))
+        inner = [
+            (label, None if x is None else shape_of_colset(x, program, storage, in_order=in_order))
+            for label, x in zip(labels, c.components, strict=True)
+        ]
+        shapes = {x for _, x in inner}
+        types = tuple(x.type for x in c.components if x is not None)
+        ordered = tuple(x.lower() for x in labels) == POSE_LABELS or not in_order
+        if is_pose(labels, types) and len(shapes) == 1 and ordered:
+            (only,) = shapes
+            assert isinstance(only, Leaf)
+            return Leaf(tdl.Type.POSE, only.single)
+        return _fields(inner)
+    if c.kind in (Kind.UNIT, Kind.BOOL, Kind.INT, Kind.STRING, Kind.ENUM):
+        return shape_of_type(c.type, program)
+    return None
+
+
+# --- values ------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True, slots=True)
+class Scalar:
+    """A script expression with its script type (LENGTH and ANGLE for reals that come from a pose)."""
+
+    exp: t.Expression
+    type: tdl.Type
+
+
+@dataclass(frozen=True, slots=True)
+class Rec:
+    """A record or tuple that is not a pose; unit has no fields."""
+
+    fields: tuple[tuple[str, Value], ...]
+
+    def get(self, label: str) -> Value:
+        """A field."""
+        return next(v for name, v in self.fields if name == label)
+
+
+@dataclass(frozen=True, slots=True)
+class Closure:
+    """A function of the net with what its free variables mean."""
+
+    rules: tuple[core.Rule, ...]
+    env: Env
+    name: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Primitive:
+    """A function that is a robot command."""
+
+    name: str
+
+
+Value = Scalar | Rec | Closure | Primitive
+Env = dict[int, "Value"]
+"""Meaning of symbols by uid."""
+
+UNIT = Rec(())
+TRUE, FALSE = t.Value(True), t.Value(False)
+
+
+def leaves(value: Value) -> list[Scalar]:
+    """The scalars of a value, in order; a function has none."""
+    match value:
+        case Scalar():
+            return [value]
+        case Rec(fields):
+            return [leaf for _, v in fields for leaf in leaves(v)]
+        case _:
+            return []
+
+
+def make(shape: Shape, names: Iterator[str]) -> Value:
+    """A value held by script variables, one name for each leaf in order."""
+    if isinstance(shape, Leaf):
+        return Scalar(t.Name(next(names)), shape.type)
+    record = Rec(tuple((label, make(inner, names)) for label, inner in shape.fields))
+    if {label.lower() for label, _ in record.fields} == set(POSE_LABELS) and all(
+        isinstance(v, Scalar) and v.type is tdl.Type.REAL for _, v in record.fields
+    ):
+        return pose(dict(record.fields), t.GENERATED)
+    return record
+
+
+def flatten(value: Value, shape: Shape, span: Span) -> list[Scalar]:
+    """The scalars of a value as a shape stores them."""
+    if isinstance(shape, Fields):
+        return [
+            x
+            for label, inner in shape.fields
+            for x in flatten(select(value, label, span), inner, span)
+        ]
+    if not isinstance(value, Scalar):
+        raise UnsupportedError("this value cannot be stored in a robot script", span)
+    return [as_real(value) if shape.type is tdl.Type.REAL else value]
+
+
+def leaf_shapes(shape: Shape, label: str = "") -> list[tuple[str, Leaf]]:
+    """The leaves of a shape with their labels joined by `_`."""
+    if isinstance(shape, Leaf):
+        return [(label, shape)]
+    return [
+        x
+        for name, inner in shape.fields
+        for x in leaf_shapes(inner, f"{label}_{name}" if label else name)
+    ]
+
+
+# --- arithmetic of expressions -----------------------------------------------------------------
+
+
+def conjunction(conditions: list[t.Expression]) -> t.Expression:
+    """`a and b and c`, without what is known; `true` for none."""
+    out: t.Expression = TRUE
+    for c in conditions:
+        if c == FALSE or out == FALSE:
+            out = FALSE
+        elif out == TRUE:
+            out = c
+        elif c != TRUE:
+            out = t.Binary("and", out, c)
+    return out
+
+
+def disjunction(conditions: list[t.Expression]) -> t.Expression:
+    """`a or b or c`, without what is known; `false` for none."""
+    out: t.Expression = FALSE
+    for c in conditions:
+        if c == TRUE or out == TRUE:
+            out = TRUE
+        elif out == FALSE:
+            out = c
+        elif c != FALSE:
+            out = t.Binary("or", out, c)
+    return out
+
+
+def choose(condition: t.Expression, a: Value, b: Value, span: Span) -> Value:
+    """`if condition then a else b`, leaf by leaf."""
+    if condition == TRUE or a == b:
+        return a
+    if condition == FALSE:
+        return b
+    if isinstance(a, Scalar) and isinstance(b, Scalar):
+        a, b = common(a, b)
+        # The types first: in Python `1 == True`.
+        if a.type is tdl.Type.BOOL and b.exp == FALSE:
+            return Scalar(conjunction([condition, a.exp]), a.type)
+        if a.type is tdl.Type.BOOL and a.exp == TRUE:
+            return Scalar(disjunction([condition, b.exp]), a.type)
+        return Scalar(t.Conditional(condition, a.exp, b.exp), a.type)
+    if isinstance(a, Rec) and isinstance(b, Rec):
+        return Rec(
+            tuple((label, choose(condition, v, b.get(label), span)) for label, v in a.fields)
+        )
+    raise UnsupportedError("a function cannot be chosen by a condition", span)
+
+
+def _unit(type_: tdl.Type) -> t.Quantity:
+    return t.Quantity(1.0, tdl.BASE_UNIT[type_])
+
+
+def as_real(s: Scalar) -> Scalar:
+    """A length or angle as a plain number of mm or degrees."""
+    if s.type not in tdl.QUANTITIES:
+        return s
+    match s.exp:
+        case t.Quantity(number, _):
+            return Scalar(t.Value(number), tdl.Type.REAL)
+        case t.Binary("*", left, right) if right == _unit(s.type):
+            return Scalar(left, tdl.Type.REAL)
+        case _:
+            return Scalar(t.Binary("/", s.exp, _unit(s.type)), tdl.Type.REAL)
+
+
+def as_quantity(s: Scalar, wanted: tdl.Type) -> Scalar:
+    """A plain number as a length in mm, an angle in degrees, a time in s."""
+    if s.type is wanted:
+        return s
+    s = as_real(s)
+    match s.exp:
+        case t.Value(int() | float() as number):
+            return Scalar(t.Quantity(float(number), tdl.BASE_UNIT[wanted]), wanted)
+        case t.Unary("-", t.Value(int() | float() as number)):
+            return Scalar(t.Quantity(-float(number), tdl.BASE_UNIT[wanted]), wanted)
+        case t.Binary("/", left, right) if right == _unit(wanted):
+            return Scalar(left, wanted)
+        case _:
+            return Scalar(t.Binary("*", s.exp, _unit(wanted)), wanted)
+
+
+def common(a: Scalar, b: Scalar) -> tuple[Scalar, Scalar]:
+    """Two numbers with the same unit: that of the one that has a unit, none if both differ."""
+    if a.type is b.type:
+        return a, b
+    if a.type in tdl.QUANTITIES and b.type is tdl.Type.REAL:
+        return a, as_quantity(b, a.type)
+    if b.type in tdl.QUANTITIES and a.type is tdl.Type.REAL:
+        return as_quantity(a, b.type), b
+    return as_real(a), as_real(b)
+
+
+def pose(fields: Mapping[str, Value], span: Span) -> Scalar:
+    """A pose from its fields (labels in any case); `p` itself where all come from one pose `p`."""
+    by_label = {label.lower(): v for label, v in fields.items()}
+    parts = []
+    for label, type_ in tdl.POSE_FIELDS.items():
+        value = by_label[label]
+        if not isinstance(value, Scalar):
+            raise UnsupportedError("this is not a number", span)
+        parts.append(as_quantity(value, type_).exp)
+    first = parts[0]
+    if isinstance(first, t.Field) and all(
+        p == t.Field(first.record, label) for p, label in zip(parts, POSE_LABELS, strict=True)
+    ):
+        return Scalar(first.record, tdl.Type.POSE)
+    return Scalar(t.CallExpression("pose", tuple(parts)), tdl.Type.POSE)
+
+
+def select(value: Value, label: str, span: Span) -> Value:
+    """A field of a record, product or pose."""
+    match value:
+        case Rec():
+            return value.get(label)
+        case Scalar(exp, tdl.Type.POSE):
+            name = label.lower()
+            type_ = tdl.POSE_FIELDS[name]
+            if isinstance(exp, t.CallExpression) and exp.function == "pose":
+                return Scalar(exp.arguments[POSE_LABELS.index(name)], type_)
+            if isinstance(exp, t.Conditional):
+                a = select(Scalar(exp.then, tdl.Type.POSE), label, span)
+                b = select(Scalar(exp.otherwise, tdl.Type.POSE), label, span)
+                return choose(exp.condition, a, b, span)
+            return Scalar(t.Field(exp, name), type_)
+        case _:
+            raise UnsupportedError("this value has no fields", span)
+
+
+def equal(a: Value, b: Value, span: Span) -> t.Expression:
+    """`a = b`."""
+    if isinstance(a, Scalar) and isinstance(b, Scalar):
+        a, b = common(a, b)
+        if a.exp == b.exp:
+            return TRUE
+        if isinstance(a.exp, t.Value) and isinstance(b.exp, t.Value):
+            return TRUE if a.exp.value == b.exp.value else FALSE
+        if isinstance(a.exp, t.Value):
+            a, b = b, a  # `k = 1` reads better than `1 = k`
+        if a.type is tdl.Type.BOOL and isinstance(b.exp, t.Value):
+            return a.exp if b.exp.value else t.Unary("not", a.exp)
+        return t.Binary("=", a.exp, b.exp)
+    if isinstance(a, Rec) and isinstance(b, Rec):
+        return conjunction([equal(v, b.get(label), span) for label, v in a.fields])
+    raise UnsupportedError("functions cannot be compared", span)
+
+
+_INT, _REAL, _BOOL = tdl.Type.INT, tdl.Type.REAL, tdl.Type.BOOL
+_SIMPLE: dict[str, tuple[t.Operator, tdl.Type]] = {
+    "Int.+": ("+", _INT), "Int.-": ("-", _INT), "Int.*": ("*", _INT), "Int.div": ("div", _INT),
+    "Int.mod": ("mod", _INT), "String.^": ("&", tdl.Type.STRING),
+    **{
+        f"{s}.{op}": (op, _BOOL)
+        for s in ("Int", "String") for op in ("<", "<=", ">", ">=")
+    },
+}  # fmt: skip
+_FUNCTIONS: dict[str, tuple[str, tdl.Type]] = {
+    "Int.abs": ("abs", _INT), "Int.min": ("min", _INT), "Int.max": ("max", _INT),
+    "Real.fromInt": ("real", _REAL), "Real.floor": ("floor", _INT), "Real.ceil": ("ceil", _INT),
+    "Real.round": ("round", _INT), "Real.trunc": ("trunc", _INT), "Math.sqrt": ("sqrt", _REAL),
+}  # fmt: skip
+_COMPARISONS: dict[str, t.Operator] = {
+    "Real.<": "<", "Real.<=": "<=", "Real.>": ">", "Real.>=": ">=", "Real.==": "=", "Real.!=": "<>",
+}  # fmt: skip
+
+
+def builtin(name: str, argument: Value, span: Span) -> Value:
+    """The application of a built-in function of CPN ML."""
+    operands = [v for _, v in argument.fields] if isinstance(argument, Rec) else [argument]
+    if name in ("=", "<>"):
+        same = equal(operands[0], operands[1], span)
+        if name == "=":
+            return Scalar(same, _BOOL)
+        if isinstance(same, t.Binary) and same.operator == "=":
+            return Scalar(t.Binary("<>", same.left, same.right), _BOOL)
+        return Scalar(logical_not(same), _BOOL)
+    scalars = [x for x in operands if isinstance(x, Scalar)]
+    if len(scalars) != len(operands):
+        raise UnsupportedError(f"`{name}` cannot be used in a robot script", span)
+    if name in _SIMPLE:
+        operator, result = _SIMPLE[name]
+        return Scalar(t.Binary(operator, scalars[0].exp, scalars[1].exp), result)
+    if name in _FUNCTIONS:
+        function, result = _FUNCTIONS[name]
+        plain = tuple(as_real(s).exp for s in scalars)
+        return Scalar(t.CallExpression(function, plain), result)
+    if name == "Bool.not":
+        return Scalar(logical_not(scalars[0].exp), _BOOL)
+    if name in ("Int.~", "Real.~"):
+        return Scalar(_minus(scalars[0].exp), scalars[0].type)
+    return _real(name, scalars, span)
+
+
+def _real(name: str, s: list[Scalar], span: Span) -> Scalar:
+    """Real arithmetic: the units of pose fields are kept where they make sense."""
+    if name in _COMPARISONS or name in ("Real.+", "Real.-", "Real.min", "Real.max"):
+        a, b = common(s[0], s[1])
+        if name in _COMPARISONS:
+            return Scalar(t.Binary(_COMPARISONS[name], a.exp, b.exp), _BOOL)
+        if name in ("Real.min", "Real.max"):
+            return Scalar(t.CallExpression(name.split(".")[1], (a.exp, b.exp)), a.type)
+        return Scalar(t.Binary("+" if name == "Real.+" else "-", a.exp, b.exp), a.type)
+    if name == "Real.abs":
+        return Scalar(t.CallExpression("abs", (s[0].exp,)), s[0].type)
+    if name == "Real.*":
+        a, b = s
+        if a.type is not _REAL and b.type is not _REAL:
+            a, b = as_real(a), as_real(b)
+        return Scalar(t.Binary("*", a.exp, b.exp), b.type if a.type is _REAL else a.type)
+    if name == "Real./":
+        a, b = s
+        if b.type is not _REAL:
+            a, b = as_real(a), as_real(b)
+        return Scalar(t.Binary("/", a.exp, b.exp), a.type)
+    raise UnsupportedError(f"`{name}` cannot be used in a robot script", span)
+
+
+def _minus(e: t.Expression) -> t.Expression:
+    match e:
+        case t.Value(bool()):
+            return e
+        case t.Value(int() | float() as number):
+            return t.Value(-number)
+        case t.Quantity(number, unit):
+            return t.Quantity(-number, unit)
+        case _:
+            return t.Unary("-", e)
+
+
+def logical_not(e: t.Expression) -> t.Expression:
+    """`not e`, with what is known folded."""
+    match e:
+        case t.Value(bool() as value):
+            return t.Value(not value)
+        case t.Unary("not", operand):
+            return operand
+        case _:
+            return t.Unary("not", e)

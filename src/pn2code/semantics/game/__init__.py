@@ -1,0 +1,1 @@
+"""The token game: markings, what is enabled, what occurs."""

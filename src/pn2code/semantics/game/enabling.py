@@ -1,0 +1,493 @@
+"""Which binding elements are enabled: search for bindings, demands for tokens, the reasons why not.
+
+Order of the bindings of a transition: the steps of its plan are taken one after the other, each trying its tokens in
+the order of the place's colour set (`BindAll` and `BindRandom`: the values in order).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+from pn2code.diagnostics import Diagnostics, Note, Origin, Span
+from pn2code.ml.core.terms import Pat, Symbol
+from pn2code.net.flat import (
+    ArcKind,
+    BindAll,
+    BindEquation,
+    BindRandom,
+    BindTerm,
+    FlatArc,
+    FlatNet,
+    FlatTransition,
+    Term,
+)
+from pn2code.semantics.codes import RUNTIME_ERROR
+from pn2code.semantics.evaluation.evaluate import Evaluator, match, variables
+from pn2code.semantics.evaluation.random import bindings_of
+from pn2code.semantics.game.marking import (
+    Binding,
+    BindingElement,
+    Marking,
+    PlaceMarking,
+    place_text,
+    variable_text,
+)
+from pn2code.semantics.values.data import MlException, MlLimit, MlUnavailable, Timed, Value
+from pn2code.semantics.values.multiset import MultiSet, TimedMultiSet
+
+
+class GameError(Exception):
+    """The net did something wrong while it ran; it cannot go on.
+
+    Args:
+        message: lower case, without full stop, names in back-ticks.
+        origin: the net element.
+        span: the text in it, when that is known.
+    """
+
+    def __init__(self, message: str, origin: Origin, span: Span | None = None) -> None:
+        super().__init__(message)
+        self.message = message
+        self.origin = origin
+        self.span = span
+
+    def __str__(self) -> str:
+        """The message with its place."""
+        return f"{self.origin.location()}: {self.origin.describe()}: {self.message}"
+
+    def report(self, d: Diagnostics) -> None:
+        """As a diagnostic."""
+        notes = (
+            [Note(f"raised by `{_one_line(self.span.text)}`", self.span.origin)]
+            if self.span
+            else []
+        )
+        d.error(RUNTIME_ERROR, self.message, self.origin, notes=notes)
+
+
+class running:  # noqa: N801 - a context manager reads as a word
+    """What CPN ML raises while we do something becomes a GameError that names the element.
+
+    Args:
+        origin: the element.
+        doing: what, for the message.
+        part: which part of the element it is, if `origin` does not say it.
+    """
+
+    __slots__ = ("doing", "origin", "part")
+
+    def __init__(self, origin: Origin, doing: str, part: str = "") -> None:
+        self.origin = origin
+        self.doing = doing
+        self.part = part
+
+    def __enter__(self) -> None:
+        """Nothing: this is called for each evaluation."""
+
+    def __exit__(self, kind: object, raised: BaseException | None, trace: object) -> None:
+        """Raise the GameError."""
+        if raised is None:
+            return
+        origin = replace(self.origin, part=self.part) if self.part else self.origin
+        if isinstance(raised, MlException):
+            message = f"{self.doing} raised the exception `{raised}`"
+            raise GameError(message, origin, raised.span) from None
+        if isinstance(raised, MlUnavailable):
+            raise GameError(f"{self.doing} cannot go on: {raised}", origin) from None
+        if isinstance(raised, MlLimit | RecursionError):
+            raise GameError(f"{self.doing} was given up: {raised}", origin) from None
+        if isinstance(raised, MemoryError):
+            why = "it needs more memory than there is"
+            raise GameError(f"{self.doing} was given up: {why}", origin) from None
+
+
+@dataclass(frozen=True, slots=True)
+class Demand:
+    """Tokens that an input arc wants.
+
+    Args:
+        place: index of the place.
+        value: their colour.
+        count: how many.
+        early: by how much their stamps may lie after the model time (`@+` on an input arc).
+    """
+
+    place: int
+    value: Value
+    count: int
+    early: int | float
+
+
+Accept = Callable[[Symbol, Value], bool]
+"""Whether a variable may have a value: narrows a search."""
+
+Found = dict[int, Value]
+"""A binding while it is searched for: `uid` of the symbol -> value."""
+
+
+class Enabling:
+    """Enabling of the transitions of a net.
+
+    Attributes:
+        constants: the declared values that patterns of the net name, by symbol; each search begins with them.
+    """
+
+    def __init__(self, net: FlatNet, evaluator: Evaluator) -> None:
+        self.net = net
+        self.evaluator = evaluator
+        self.colours = evaluator.colours
+        self.constants: Found = {
+            s.uid: evaluator.globals[s.uid]
+            for t in net.transitions
+            for pattern in _patterns(t)
+            for s in variables(pattern)
+            if s.uid in evaluator.globals
+        }
+        self._guards: dict[int, list[list[int]]] = {}
+        self._in_order: dict[int, tuple[PlaceMarking, list[Value]]] = {}
+
+    # --- search for bindings ---------------------------------------------------------------------
+
+    def bindings(
+        self,
+        t: FlatTransition,
+        marking: Marking,
+        *,
+        ignore_stamps: bool = False,
+        accept: Accept | None = None,
+    ) -> Iterator[Binding]:
+        """The bindings with which the guard is true and each pattern has an available token, without repetition.
+
+        Whether the tokens suffice for all arcs together is not known yet.
+
+        Args:
+            t: the transition.
+            marking: tokens and time.
+            ignore_stamps: as if all tokens were available.
+            accept: only bindings all of whose values it accepts.
+
+        Raises:
+            GameError: an inscription raised an exception.
+        """
+        self.evaluator.now = marking.time
+        self.evaluator.random.start(self.evaluator.steps, bindings_of(t.index))
+        seen: set[BindingElement] = set()
+        for found in self._search(t, marking, 0, self.constants, ignore_stamps, accept):
+            binding = {s: found[s.uid] for s in t.variables if s.uid in found}
+            element = BindingElement.make(t, binding)
+            if element not in seen:
+                seen.add(element)
+                yield binding
+
+    def _search(
+        self,
+        t: FlatTransition,
+        marking: Marking,
+        position: int,
+        found: Found,
+        free: bool,
+        accept: Accept | None,
+    ) -> Iterator[Found]:
+        """Takes the steps of the plan from `position` on."""
+        if not self._guards_hold(t, position, found):
+            return
+        if position == len(t.plan):
+            yield found
+            return
+        match t.plan[position]:
+            case BindTerm(arc, term):
+                choices = self._match_tokens(t.arcs[arc], term, marking, found, free)
+            case BindEquation(guard, pattern, value):
+                choices = self._match_equation(t, guard, pattern, value, found)
+            case BindAll(symbol) | BindRandom(symbol):
+                choices = self._match_all(t, symbol, found)
+        for choice in choices:
+            new = [s for s in t.variables if s.uid in choice and s.uid not in found]
+            if accept is not None and not all(accept(s, choice[s.uid]) for s in new):
+                continue
+            if self._are_legal(new, choice):
+                yield from self._search(t, marking, position + 1, choice, free, accept)
+
+    def _match_tokens(
+        self, arc: FlatArc, index: int, marking: Marking, found: Found, free: bool
+    ) -> Iterator[Found]:
+        assert arc.inscription is not None
+        term = arc.inscription.terms[index]
+        tokens = marking.places[arc.place]
+        assert term.pattern is not None
+        for value in self._colours_in(arc.place, tokens):
+            choice = dict(found)
+            if not match(term.pattern, value, choice):
+                continue
+            if not free and isinstance(tokens, TimedMultiSet):
+                earliest = tokens.stamps[value][0]
+                if earliest - self._early(arc, term, choice) > marking.time:
+                    continue
+            yield choice
+
+    def _colours_in(self, place: int, tokens: PlaceMarking) -> list[Value]:
+        """The different colours that a place holds, in order; asked again and again while it holds the same."""
+        before, found = self._in_order.get(place, (None, []))
+        if before is not tokens:
+            values = tokens.counts if isinstance(tokens, MultiSet) else tokens.stamps
+            found = self.colours.sorted(self.net.places[place].colset, values)
+            self._in_order[place] = tokens, found
+        return found
+
+    def _match_equation(
+        self, t: FlatTransition, guard: int, pattern: Pat, value: Any, found: Found
+    ) -> Iterator[Found]:
+        with running(t.origin, f"the guard of `{t.name}`", "guard"):
+            try:
+                result = self._evaluate(value, found)
+            except MlException as raised:
+                if (
+                    raised.name == "Bind"
+                ):  # the real engine takes it for a pattern that does not match
+                    return
+                raise
+        choice = dict(found)
+        if match(pattern, result, choice):
+            yield choice
+
+    def _match_all(self, t: FlatTransition, symbol: Symbol, found: Found) -> Iterator[Found]:
+        assert symbol.colset is not None
+        with running(t.origin, f"the colour set of `{symbol.name}`"):
+            everything = self.colours.all(symbol.colset)
+        for value in everything:
+            yield {**found, symbol.uid: value}
+
+    def _are_legal(self, new: list[Symbol], choice: Found) -> bool:
+        """A variable takes no value outside its colour set (the type of which may be larger)."""
+        return all(s.colset is None or self.colours.legal(s.colset, choice[s.uid]) for s in new)
+
+    def _guards_hold(self, t: FlatTransition, position: int, found: Found) -> bool:
+        """The guards that have just got their last variable: tested as early as possible."""
+        return all(self._guard(t, i, found) for i in self._guard_positions(t)[position])
+
+    def _guard(self, t: FlatTransition, i: int, found: Found) -> bool:
+        with running(t.origin, f"the guard of `{t.name}`", "guard"):
+            try:
+                return bool(self._evaluate(t.guards[i], found))
+            except MlException as raised:
+                if raised.name == "Bind":
+                    return False
+                raise
+
+    def _guard_positions(self, t: FlatTransition) -> list[list[int]]:
+        """For each position in the plan, which guards have all their variables there but not earlier."""
+        if t.index not in self._guards:
+            own = set(t.variables)
+            bound: set[Symbol] = set()
+            open_guards = {i: variables(g) & own for i, g in enumerate(t.guards)}
+            positions: list[list[int]] = []
+            for step in (None, *t.plan):
+                match step:
+                    case BindTerm(arc, term):
+                        inscription = t.arcs[arc].inscription
+                        assert inscription is not None
+                        pattern = inscription.terms[term].pattern
+                        assert pattern is not None
+                        bound |= variables(pattern)
+                    case BindEquation(_, pattern, _):
+                        bound |= variables(pattern)
+                    case BindAll(symbol) | BindRandom(symbol):
+                        bound.add(symbol)
+                    case None:
+                        pass
+                positions.append([i for i, needed in open_guards.items() if needed <= bound])
+                for i in positions[-1]:
+                    del open_guards[i]
+            assert not open_guards, "the plan binds all variables of the guards"
+            self._guards[t.index] = positions
+        return self._guards[t.index]
+
+    def _evaluate(self, exp: Any, found: Found) -> Any:
+        return self.evaluator.evaluate(exp, found)
+
+    def _early(self, arc: FlatArc, term: Term, found: Found) -> Any:
+        if term.delay is None:
+            return 0
+        with running(arc.origin, "the delay of an input arc"):
+            return self._evaluate(term.delay, found)
+
+    # --- demands ---------------------------------------------------------------------------------
+
+    def demands(
+        self, t: FlatTransition, binding: Binding, *, only: int | None = None
+    ) -> list[Demand]:
+        """What the input arcs want with a binding; `only`: the arc with that index."""
+        found = {s.uid: value for s, value in binding.items()}
+        demands: list[Demand] = []
+        for arc in t.arcs if only is None else (t.arcs[only],):
+            if arc.kind in (ArcKind.INPUT, ArcKind.BOTH) and arc.inscription is not None:
+                for term in arc.inscription.terms:
+                    demands.extend(self._term_demands(arc, term, found))
+        return demands
+
+    def _term_demands(self, arc: FlatArc, term: Term, found: Found) -> list[Demand]:
+        early = self._early(arc, term, found)
+        with running(arc.origin, "the inscription"):
+            value = self._evaluate(term.value, found)
+            count = self._evaluate(term.coefficient, found)
+        if term.whole:
+            return [
+                Demand(arc.place, item, n, early) for item, n in MultiSet.of(value).counts.items()
+            ]
+        return [Demand(arc.place, value, count, early)] if count > 0 else []
+
+    def take(self, marking: Marking, demands: list[Demand]) -> Marking | Demand:
+        """The marking without the demanded tokens, or the first demand that cannot be met.
+
+        Among the tokens of a colour that are available the one with the latest stamp is taken. Demands that accept
+        the fewest stamps choose first; what they accept the others accept as well.
+        """
+        places = list(marking.places)
+        for demand in sorted(demands, key=lambda d: d.early):
+            tokens = places[demand.place]
+            if isinstance(tokens, MultiSet):
+                wanted = MultiSet({demand.value: demand.count})
+                if not wanted <= tokens:
+                    return demand
+                places[demand.place] = tokens - wanted
+                continue
+            for _ in range(demand.count):
+                token = tokens.latest(demand.value, demand.early, marking.time)
+                if token is None:
+                    return demand
+                tokens = tokens - [token]
+            places[demand.place] = tokens
+        return replace(marking, places=tuple(places))
+
+    # --- enabled or not --------------------------------------------------------------------------
+
+    def enabled(
+        self, t: FlatTransition, marking: Marking, *, accept: Accept | None = None
+    ) -> Iterator[Binding]:
+        """The bindings with which the transition is enabled at the marking's time; priorities do not count here.
+
+        With `accept` only those all of whose values it accepts.
+        """
+        if self._inhibitors(t, marking):
+            return
+        for binding in self.bindings(t, marking, accept=accept):
+            if isinstance(self.take(marking, self.demands(t, binding)), Marking):
+                yield binding
+
+    def _inhibitors(self, t: FlatTransition, marking: Marking) -> list[FlatArc]:
+        """The inhibitor arcs whose place has an available token."""
+        return [a for a in t.arcs if a.kind is ArcKind.INHIBITOR and self.inhibited(a, marking)]
+
+    def inhibited(self, arc: FlatArc, marking: Marking) -> bool:
+        """Whether the place of an inhibitor arc has an available token."""
+        return bool(available(marking.places[arc.place], marking.time))
+
+    def why_disabled(self, t: FlatTransition, marking: Marking, binding: Binding) -> str | None:
+        """Why a binding is not enabled at the marking's time (priorities apart); None if it is."""
+        self.evaluator.now = marking.time
+        self.evaluator.random.start(self.evaluator.steps, bindings_of(t.index))
+        reason = self.guard_obstacle(t, binding)
+        if reason is not None:
+            return reason
+        outputs = t.code.outputs if t.code else ()
+        own_values = {s.uid: binding[s] for s in t.variables if s not in outputs}
+        found: Found = {**self.constants, **own_values}
+        own = {s: value for s, value in binding.items() if s not in outputs}
+        demands = self.demands(t, own)
+        missing = self.take(marking, demands)
+        if isinstance(missing, Demand):
+            return self.shortage(marking, missing, demands)
+        for step in t.plan:
+            if isinstance(step, BindTerm):
+                arc = t.arcs[step.arc]
+                if next(self._match_tokens(arc, step.term, marking, found, False), None) is None:
+                    return f"no token in place `{self.net.places[arc.place].name}` matches"
+        for arc in self._inhibitors(t, marking):
+            place = self.net.places[arc.place]
+            tokens = place_text(self.colours, place.colset, marking.places[arc.place])
+            return f"place `{place.name}` inhibits it: it holds {_one_line(tokens)}"
+        return None
+
+    def guard_obstacle(self, t: FlatTransition, binding: Binding) -> str | None:
+        """Why a binding is not possible whatever tokens there are: a value is missing or illegal, a guard is false."""
+        outputs = t.code.outputs if t.code else ()
+        found: Found = {}
+        for s in t.variables:
+            if s in outputs:
+                continue
+            if s not in binding:
+                return f"variable `{s.name}` has no value"
+            found[s.uid] = binding[s]
+            if s.colset is not None and not self.colours.legal(s.colset, binding[s]):
+                text = variable_text(self.colours, s, binding[s])
+                return f"{text} is not in the colour set `{s.colset.name}` of variable `{s.name}`"
+        for i, guard in enumerate(t.guards):
+            if not self._guard(t, i, found):
+                return f"the guard `{_one_line(guard.span.text)}` is false"
+        return None
+
+    def shortage(self, marking: Marking, missing: Demand, demands: list[Demand]) -> str:
+        """In words: the tokens that are missing."""
+        place = self.net.places[missing.place]
+        c = place.colset
+        wanted = sum(
+            d.count for d in demands if d.place == missing.place and d.value == missing.value
+        )
+        tokens = marking.places[missing.place]
+        held = _one_line(place_text(self.colours, c, tokens))
+        text = f"place `{place.name}` lacks {wanted}`{self.colours.text(c, missing.value)}: it holds {held}"
+        if isinstance(tokens, TimedMultiSet):
+            early = f" + {missing.early}" if missing.early else ""
+            text += f" at time {marking.time}{early}"
+        return text
+
+    # --- time ------------------------------------------------------------------------------------
+
+    def thresholds(self, t: FlatTransition, marking: Marking) -> set[int | float]:
+        """The times after the marking's at which tokens become available to the transition."""
+        later: set[int | float] = set()
+        for arc in t.arcs:
+            if arc.kind not in (ArcKind.INPUT, ArcKind.BOTH) or arc.inscription is None:
+                continue
+            tokens = marking.places[arc.place]
+            if not isinstance(tokens, TimedMultiSet):
+                continue
+            for term in arc.inscription.terms:
+                for early in self._possible_delays(t, arc, term, marking):
+                    later.update(token.stamp - early for token in tokens)
+        return {time for time in later if time > marking.time}
+
+    def _possible_delays(
+        self, t: FlatTransition, arc: FlatArc, term: Term, marking: Marking
+    ) -> set[int | float]:
+        """The values that the delay of an input term can have with the tokens that are there."""
+        if term.delay is None:
+            return {0}
+        if not variables(term.delay) & set(t.variables):
+            return {self._early(arc, term, {})}
+        return {
+            self._early(arc, term, {s.uid: value for s, value in binding.items()})
+            for binding in self.bindings(t, marking, ignore_stamps=True)
+        }
+
+
+def _patterns(t: FlatTransition) -> Iterator[Pat]:
+    """All patterns of a transition's inscriptions."""
+    for step in t.plan:
+        if isinstance(step, BindEquation):
+            yield step.pattern
+    for arc in t.arcs:
+        for term in arc.inscription.terms if arc.inscription is not None else ():
+            if term.pattern is not None:
+                yield term.pattern
+
+
+def available(tokens: PlaceMarking, now: float) -> list[Value] | list[Timed]:
+    """The tokens of a place that are available at a time."""
+    return list(tokens) if isinstance(tokens, MultiSet) else tokens.available(now)
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())

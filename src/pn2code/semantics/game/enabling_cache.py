@@ -1,0 +1,82 @@
+"""What was found enabled last: looked for again only where something that it depends on has changed.
+
+Most occurrences change few places, so most transitions are enabled with the same bindings as before. What a transition
+is enabled with depends on the model time, the tokens of the places of its input and inhibitor arcs, and nothing
+else, unless one of its texts reads references, draws random numbers, counts steps or looks at files: then
+nothing is remembered.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from pn2code.ml.core.colsets import Colset
+from pn2code.net.flat import ArcKind, BindEquation, FlatNet, FlatTransition
+from pn2code.semantics.evaluation.effects import Effects
+from pn2code.semantics.game.enabling import Enabling
+from pn2code.semantics.game.marking import Binding, Marking, PlaceMarking
+
+_EXAMINED = (ArcKind.INPUT, ArcKind.BOTH, ArcKind.INHIBITOR)
+
+
+class EnablingCache:
+    """The bindings of each transition in the marking in which they were asked for last."""
+
+    def __init__(self, net: FlatNet, enabling: Enabling) -> None:
+        self._enabling = enabling
+        effects = Effects(net.program)
+        self._places = {t.index: _examined(t, effects) for t in net.transitions}
+        self._known: dict[int, tuple[int | float, list[PlaceMarking], list[Binding]]] = {}
+
+    def enabled(self, t: FlatTransition, marking: Marking) -> list[Binding]:
+        """The bindings with which a transition is enabled, as `Enabling.enabled` lists them."""
+        known = self._still(t, marking)
+        if known is not None:
+            return known
+        found = list(self._enabling.enabled(t, marking))
+        places = self._places[t.index]
+        if places is not None:
+            self._known[t.index] = marking.time, [marking.places[i] for i in places], found
+        return found
+
+    def is_enabled(self, t: FlatTransition, marking: Marking) -> bool:
+        """Whether there is one; no more than that is looked for."""
+        known = self._still(t, marking)
+        if known is not None:
+            return bool(known)
+        return next(self._enabling.enabled(t, marking), None) is not None
+
+    def _still(self, t: FlatTransition, marking: Marking) -> list[Binding] | None:
+        """What is known, if all it depends on is as it was."""
+        known = self._known.get(t.index)
+        places = self._places[t.index]
+        if known is None or places is None:
+            return None
+        time, tokens, found = known
+        same = all(marking.places[i] is then for i, then in zip(places, tokens, strict=True))
+        return found if same and marking.time == time else None
+
+
+def _examined(t: FlatTransition, effects: Effects) -> tuple[int, ...] | None:
+    """The places on which it depends whether a transition is enabled; None if it does not on them alone."""
+    arcs = [a for a in t.arcs if a.kind in _EXAMINED]
+    texts: list[object] = [*t.guards]
+    texts += [step.value for step in t.plan if isinstance(step, BindEquation)]
+    for inscription in (a.inscription for a in arcs):
+        if inscription is not None:
+            for term in inscription.terms:
+                texts += [term.value, term.coefficient, term.delay]
+    for symbol in t.variables:
+        if symbol.colset is not None:
+            texts.extend(_tests(symbol.colset))
+    if effects.of(*texts):
+        return None
+    return tuple(sorted({a.place for a in arcs}))
+
+
+def _tests(c: Colset) -> Iterator[object]:
+    """The texts that say which values a colour set has."""
+    yield from (test for test in (c.members, c.predicate) if test is not None)
+    for part in c.components:
+        if part is not None:
+            yield from _tests(part)

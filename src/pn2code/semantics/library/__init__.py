@@ -1,0 +1,1 @@
+"""What the built-in functions of CPN ML mean, by structure."""

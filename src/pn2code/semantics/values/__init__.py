@@ -1,0 +1,1 @@
+"""Values of CPN ML in Python, colour sets over them, multi-sets and their texts."""

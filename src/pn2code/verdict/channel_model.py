@@ -1,0 +1,151 @@
+"""The checks of a cell's medium: docs/protocol.md, "The medium in the model"."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from pn2code.cell.divide import divide
+from pn2code.channel_model.check import WHOLE, Answer, Evidence, medium
+from pn2code.channel_model.faults import SAYS
+from pn2code.diagnostics import Diagnostics
+from pn2code.verdict.opened import OpenNet
+from pn2code.verify.answers import basis
+from pn2code.verify.answers.properties import Verdict
+from pn2code.verify.answers.reasons import clause
+from pn2code.verify.controller.control_types import BLOCKING, Control
+from pn2code.verify.controller.premises import Premises
+from pn2code.verify.exploring.explore import ExploreOptions
+from pn2code.verify.exploring.limits import Limits
+from pn2code.verify.exploring.result import Exploration
+
+Answers = tuple[Answer, ...]
+
+
+def look(
+    opened: OpenNet,
+    found: Exploration,
+    limits: Limits,
+    wishes: ExploreOptions,
+    d: Diagnostics,
+    control: Control | None = None,
+) -> Answers:
+    """All checks; none for a net that is no cell, or that could not be explored to the end because of an error.
+
+    Args:
+        opened: the net.
+        found: its own state space. Where that is too large, that with the medium is as well.
+        limits: of each exploration.
+        wishes: who is told of the progress, and who may interrupt.
+        d: gets the errors.
+        control: the checks of its supervisor; None: they were not asked.
+    """
+    if opened.config is None or found.why in ("interrupted", "error") or wishes.interrupted():
+        return ()
+    partition = divide(opened.flat, opened.config, d)
+    if partition is None:
+        return ()
+    is_small = found.complete or found.why in ("decided", "approximation")
+    answers = medium(
+        partition,
+        opened.storage,
+        limits,
+        d,
+        cell_states=found.nodes if is_small else None,
+        wishes=ExploreOptions(progress=wishes.progress, interrupted=wishes.interrupted),
+    )
+    premise = Premises.of(partition, opened.config).replies.premise
+    return tuple(_ending(a, control, premise) if a.check == WHOLE else a for a in answers)
+
+
+_NOT_LOOKED = "whether programs stop or come too late is for the checks of the supervisor, which were left out"
+
+
+def _ending(a: Answer, control: Control | None, premise: str) -> Answer:
+    """That the cell can come to its end is also for the checks of the supervisor: they know when programs stop."""
+    a = replace(a, assumes=f"{a.assumes}; {premise}" if premise else a.assumes)
+    if a.answer != "yes":
+        return a
+    if control is None:
+        return replace(a, answer="inconclusive", why=_NOT_LOOKED)
+    ends = next(c for c in control.checks if c.name == BLOCKING)
+    if ends.answer == "no":
+        return replace(a, answer="no", why=f"`{BLOCKING}`: {ends.says}")
+    if control.stops or (ends.answer == "unknown" and ends.why != "speeds"):
+        return replace(a, answer="inconclusive", why=control.stops or clause(ends.why or ""))
+    return a
+
+
+def verdict(answers: Answers) -> Verdict:
+    """As of properties: one "no" counts, then one that is not known; "yes" where there are none."""
+    said = {a.answer for a in answers}
+    return "no" if "no" in said else "inconclusive" if "inconclusive" in said else "yes"
+
+
+def told(answers: Answers) -> str:
+    """For people; "" without answers."""
+    if not answers:
+        return ""
+    parts = [" Medium", "-" * 72]
+    for a in answers:
+        parts += _one(a)
+    return "\n".join(parts)
+
+
+def _one(a: Answer) -> list[str]:
+    why = f" ({a.why})" if a.why else ""
+    lines = [f"  {a.check}: {a.answer}{why}", f"    {a.says}"]
+    if a.nodes:
+        lines.append(f"    {_counts(a)}")
+    lines += (f"    {more}" for more in _rests(a))
+    lines.append(f"    if {a.assumes}; and what docs/protocol.md says of the file system")
+    for e in a.evidence:
+        lines.append(f"    {_run(e)}:")
+        lines += [f"      {line}" for line in e.lines]
+    return lines
+
+
+def rows(answers: Answers) -> Iterator[dict[str, object]]:
+    """For the page."""
+    for a in answers:
+        remarks = [f"not known: {a.why}"] if a.why else []
+        if a.nodes:
+            remarks.append(_counts(a))
+        yield {
+            "name": f"{a.check[:1].upper()}{a.check[1:]}",
+            "said": f"{a.says[:1].upper()}{a.says[1:]}.",
+            "remarks": [*remarks, *_rests(a), f"if {a.assumes}"],
+            "answer": {"inconclusive": "not known"}.get(a.answer, a.answer),
+            "kind": {"yes": "good", "no": "bad"}.get(a.answer, "open"),
+            "runs": [(_run(e), *e.lines) for e in a.evidence],
+        }
+
+
+def _rests(a: Answer) -> Iterator[str]:
+    if a.rests_on is not None:
+        yield f"rests on this: {basis.SAYS[a.rests_on]}"
+
+
+def _counts(a: Answer) -> str:
+    return (
+        f"{a.nodes:,} markings, {a.arcs:,} arcs of a net with {a.places} places and "
+        f"{a.transitions} transitions, {a.seconds:.1f} s"
+    )
+
+
+_NO_END = "a state can be reached from which the cell cannot come to its end"
+
+
+def shown(a: Answer) -> str:
+    """What goes wrong, by the runs of an answer that is no."""
+    found = [_NO_END if e.fault is None else SAYS[e.fault] for e in a.evidence]
+    return "; ".join(dict.fromkeys(found)) or f"this does not hold: {a.says}"
+
+
+def _run(e: Evidence) -> str:
+    """What a run shows."""
+    return (
+        "shortest run to a state from which the end cannot be reached"
+        if e.fault is None
+        else f"shortest run in which {SAYS[e.fault]}"
+    )

@@ -1,0 +1,153 @@
+"""What the explorer has answered, in terms of the properties that were asked."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from pn2code.properties import meaning as m
+from pn2code.verify.answers import basis
+from pn2code.verify.answers.reasons import clause
+from pn2code.verify.exploring.result import Exploration
+
+Verdict = Literal["yes", "no", "inconclusive"]
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """A run that shows why.
+
+    Args:
+        trace: its file.
+        steps: how many.
+        loop: so many steps are before the cycle that the run goes round for ever; None: it has none.
+        confirmed: whether the token game has played it, and it shows what it should.
+    """
+
+    trace: Path
+    steps: int
+    loop: int | None
+    confirmed: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Answer:
+    """What is known of a property.
+
+    Args:
+        about: the property.
+        answer: whether it is true.
+        why: of "inconclusive": the reason, as a clause.
+        evidence: a run, where one shows it.
+        value: the number that decides: most tokens of a place, or the longest wait; None: there is none.
+        node: of the marking that decides, in the numbering of the report.
+        kept: whether a "yes" is kept when the programs of a cell do less than what was looked at.
+        cell: the answer is about a cell as it runs.
+        net: then what is so of the closed net, where that is known and differs; `net_why` says why it differs.
+    """
+
+    about: m.Property
+    answer: Verdict
+    why: str = ""
+    evidence: Evidence | None = None
+    value: float | None = None
+    node: int | None = None
+    kept: bool = False
+    cell: bool = False
+    net: Verdict | None = None
+    net_why: str = ""
+    assumes: tuple[str, ...] = ()
+    """what a "yes" about a cell rests on that no state of it shows"""
+
+    @property
+    def is_expected(self) -> bool:
+        """Whether the answer is the one that the author expects."""
+        return self.answer == ("yes" if self.about.expect else "no")
+
+    @property
+    def rests_on(self) -> str | None:
+        """What has to be seen for this answer: a word of `basis`; None: there is no answer."""
+        return basis.of_property(self.about, self.answer, has_run=self.evidence is not None)
+
+    def row(self) -> dict[str, Any]:
+        """For `--json`."""
+        e = self.evidence
+        run = None
+        if e is not None:
+            run = {
+                "trace": str(e.trace),
+                "steps": e.steps,
+                "loop": e.loop,
+                "confirmed": e.confirmed,
+            }
+        return {
+            "name": self.about.name,
+            "says": self.about.says,
+            "holds": self.about.holds,
+            "kind": self.about.kind,
+            "fair": list(self.about.fair),
+            "expect": self.about.expect,
+            "answer": self.answer,
+            "why": self.why or None,
+            "value": self.value,
+            "node": self.node,
+            "kept": self.kept,
+            "about": "cell" if self.cell else "net",
+            "net": {"answer": self.net, "why": self.net_why} if self.net else None,
+            "evidence": run,
+            "rests_on": self.rests_on,
+            "assumes": list(self.assumes),
+        }
+
+
+def answers(
+    properties: m.Properties, said: Sequence[Mapping[str, Any]], found: Exploration
+) -> tuple[Answer, ...]:
+    """One for each property.
+
+    Args:
+        properties: what was asked.
+        said: what the explorer prints of each question, in order; fewer: it came to nothing.
+        found: the exploration.
+    """
+    nothing: Mapping[str, Any] = {"answer": "unknown", "why": found.why}
+    padded = [*said, *[nothing] * (len(properties.properties) - len(said))]
+    return tuple(_answer(p, one) for p, one in zip(properties.properties, padded, strict=True))
+
+
+def _answer(p: m.Property, said: Mapping[str, Any]) -> Answer:
+    verdict: Verdict = "inconclusive"
+    if said["answer"] in ("yes", "no"):
+        # Of `reachable` it is asked whether nothing is reached, of `ltl` whether a path violates it.
+        turned = isinstance(p.asked, m.Linear) or (
+            isinstance(p.asked, m.Invariant) and not p.asked.wanted
+        )
+        verdict = "yes" if (said["answer"] == "yes") != turned else "no"
+    why = said.get("why") or ""
+    evidence = None
+    if said.get("trace"):
+        evidence = Evidence(Path(said["trace"]), said["steps"], said.get("loop"))
+    return Answer(
+        p,
+        verdict,
+        clause(why) if verdict == "inconclusive" else "",
+        evidence,
+        said.get("value"),
+        said.get("node"),
+    )
+
+
+def drawn(answer: Answer) -> Answer:
+    """What is known where chance decides: only what was found shows that it is possible."""
+    if answer.answer == "inconclusive" or answer.rests_on in (basis.MARKING, basis.RUN):
+        return answer
+    return Answer(answer.about, "inconclusive", clause("chance"))
+
+
+def verdict(found: Sequence[Answer]) -> Verdict:
+    """Of all together: "no" if one is not as expected, else "inconclusive" if one is not known."""
+    if any(x.answer != "inconclusive" and not x.is_expected for x in found):
+        return "no"
+    return "inconclusive" if any(x.answer == "inconclusive" for x in found) else "yes"

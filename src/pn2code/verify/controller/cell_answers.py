@@ -1,0 +1,148 @@
+"""Properties of a cell: what is so of the cell as it runs, and where the closed net differs.
+
+    for answer in of_cell(properties, control, partition, answers): ...
+
+The answer is that of the cell (`verify.controller.running`). Where it was not seen to its end, an invariant that
+holds in a closed
+net that can do more holds in the cell as well; nothing else does. What is so of the closed net is said beside, if it is
+something else.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from pn2code.cell.partition import Partition
+from pn2code.properties import meaning as m
+from pn2code.properties.silent import means_the_same
+from pn2code.verify.answers.properties import Answer, Evidence, answers
+from pn2code.verify.answers.reasons import clause
+from pn2code.verify.controller.control_answers import can_more, has_own_priorities
+from pn2code.verify.controller.control_types import Control
+from pn2code.verify.exploring import nondeterminism
+
+_PRIORITIES = (
+    "In the closed net priorities are global: a transition waits while one of higher priority is enabled anywhere. In "
+    "the cell each program knows only its own transitions and the messages that it has seen."
+)
+_TIME = (
+    "In the closed net time does not advance while something is enabled. In the cell the supervisor may be late, and "
+    "moves take time that the net does not know."
+)
+_CHOICES = (
+    "In the closed net everything that is enabled may occur, and messages arrive at once. In the cell the supervisor "
+    "and the scripts choose in the documented order, and a message has an effect only after it has been seen."
+)
+_NEXT = "it is about the very next step, but between two occurrences the programs take steps of their own"
+_INITIAL = "when the net returns to its initial marking, the programs are not at their start again"
+_WAITS = "the net knows neither how long moves take nor how late the supervisor is"
+
+
+def is_kept(p: m.Property) -> bool:
+    """Whether "yes" is kept when the programs do less."""
+    match p.asked:
+        case m.Bound():
+            return True
+        case m.Invariant(condition, wanted):
+            return wanted and all(a.kind in ("true", "pred") for a in m.atoms(condition))
+        case _:
+            return False
+
+
+def reason(partition: Partition) -> str:
+    """Why the closed net may differ from the cell: all that there is, since which of it mattered is not known."""
+    found = [_PRIORITIES] if has_own_priorities(partition) else []
+    found += [_TIME] if partition.net.timed else []
+    found += [_CHOICES]
+    return " ".join(found)
+
+
+def of_cell(
+    properties: m.Properties,
+    said: Sequence[Mapping[str, Any]],
+    control: Control,
+    partition: Partition,
+    closed: Sequence[Answer],
+    *,
+    all_orders: bool = False,
+) -> Iterator[Answer]:
+    """The answers; runs are those of the net, without steps of programs.
+
+    Args:
+        properties: what was asked.
+        said: what the explorer says of the cell.
+        control: what the cell was looked at in.
+        partition: the cell.
+        closed: the answers of the closed net.
+        all_orders: whether the supervisor was left its choice, so that it may do less.
+    """
+    found = control.found
+    if found is None:
+        looked: Sequence[Answer] = [
+            Answer(p, "inconclusive", clause(control.why)) for p in properties.properties
+        ]
+    else:
+        looked = answers(properties, said, found)
+    drawn = nondeterminism.draws(partition.net)
+    for of_net, answer in zip(closed, looked, strict=True):
+        if of_net.about.of_net:
+            yield of_net
+            continue
+        asked = (
+            of_net.about.asked
+        )  # of parts of transitions, what is assumed is a part of the formula
+        is_fair = isinstance(asked, m.Linear) and bool(asked.fair)
+        certain = _certain(answer, control, drawn, all_orders, is_fair)
+        found_one = _one(of_net, certain, partition)
+        assumes = control.premises.of_property(asked, found_one.answer, kept=found_one.kept)
+        yield replace(found_one, assumes=assumes)
+
+
+def _certain(
+    answer: Answer, control: Control, drawn: bool, all_orders: bool, is_fair: bool
+) -> Answer:
+    """Without what the cell's own steps, chance or durations leave open; `is_fair`: fairness is assumed."""
+    asked, running = answer.about.asked, control.running
+    open_ = ""
+    if answer.answer == "inconclusive":
+        return replace(answer, node=None)
+    if isinstance(asked, m.Response) and asked.time is not None:
+        open_ = _WAITS
+    elif not means_the_same(asked):
+        is_all = isinstance(asked, m.Invariant) and asked.wanted and answer.answer == "yes"
+        open_ = "" if is_all else _INITIAL if _asks_initial(asked) else _NEXT
+    elif all_orders and (answer.answer == "no" or is_fair):
+        # Where more is enabled, fewer paths are fair.
+        open_ = "this covers all orders in which the supervisor could fire"
+    is_possible = isinstance(asked, m.Invariant) and not asked.wanted
+    if not open_ and answer.answer == "yes" and not (is_kept(answer.about) or is_possible):
+        open_ = control.stops
+    if not open_ and drawn and answer.evidence is None:
+        open_ = clause("chance")
+    if open_:
+        return Answer(answer.about, "inconclusive", open_)
+    if answer.evidence is None or running is None:
+        return replace(answer, node=None)
+    e = answer.evidence
+    steps, loop = running.project(e.trace, e.loop)
+    return replace(answer, node=None, evidence=Evidence(e.trace, steps, loop))
+
+
+def _asks_initial(asked: m.Asked) -> bool:
+    match asked:
+        case m.Invariant(formula) | m.Branching(formula) | m.Linear(formula):
+            return any(a.kind == "initial" for a in m.atoms(formula))
+        case _:
+            return False
+
+
+def _one(of_net: Answer, of_cell: Answer, partition: Partition) -> Answer:
+    kept = is_kept(of_net.about)
+    if of_cell.answer == "inconclusive" and kept and can_more(partition) and of_net.answer == "yes":
+        return replace(of_net, kept=True, cell=True)
+    found = replace(of_cell, about=of_net.about, kept=kept, cell=True)
+    if of_net.answer == found.answer or of_net.answer == "inconclusive":
+        return found
+    return replace(found, net=of_net.answer, net_why=reason(partition))

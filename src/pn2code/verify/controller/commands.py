@@ -1,0 +1,101 @@
+"""Whether a code segment of a robot comes to a command: certainly, perhaps, or never.
+
+commands = Commands(partition)
+commands.must_come(action)      # whatever the values are, a primitive is called
+commands.may_come(action)       # one is called somewhere, perhaps on a branch
+"""
+
+from __future__ import annotations
+
+from pn2code.cell.config import Primitive
+from pn2code.cell.partition import Partition
+from pn2code.cell.reach import Reach
+from pn2code.ml.core import terms as core
+
+
+class Commands:
+    """The primitives of a cell, and the functions that call them."""
+
+    def __init__(self, partition: Partition) -> None:
+        self._primitives = partition.primitives
+        self._reach = Reach(partition.net.program)
+        self._looked: dict[int, bool] = {}
+
+    def may_come(self, action: core.Exp) -> bool:
+        """Whether a primitive is mentioned, here or in a function that is used."""
+        self._reach.add_locals(action)
+        return any(uid in self._primitives for uid in self._reach.everything(action))
+
+    def must_come(self, e: core.Exp) -> bool:
+        """Whether a primitive is called whatever the values are; what is not understood may do without.
+
+        What may take no time at all does not count, a tool or a wait: a script that repeats it stands still in time.
+        """
+        match e:
+            case core.If(condition, then, otherwise):
+                return self.must_come(condition) or (
+                    self.must_come(then) and self.must_come(otherwise)
+                )
+            case core.Case(scrutinee, rules):
+                return self.must_come(scrutinee) or all(self.must_come(r.body) for r in rules)
+            case core.Apply(function, argument):
+                return self._applies(function, argument) or self.must_come(argument)
+            case core.RecordExp(fields):
+                return any(self.must_come(x) for _, x in fields)
+            case core.Sequence(items):
+                return any(map(self.must_come, items))
+            case core.Let(declarations, body):
+                values = [d.value for d in declarations if isinstance(d, core.ValBind)]
+                return any(map(self.must_come, [*values, body]))
+            case _:
+                return False
+
+    def _applies(self, function: core.Exp, argument: core.Exp | None = None) -> bool:
+        """Whether applying a function calls a primitive in each of its rules."""
+        match function:
+            case core.Lambda(rules):
+                return all(self.must_come(rule.body) for rule in rules)
+            case core.Var(symbol):
+                primitive = self._primitives.get(symbol.uid)
+                if primitive is not None:
+                    return _takes_time(primitive, argument)
+                body = self._reach.body(symbol)
+                if symbol.uid not in self._looked:
+                    self._looked[symbol.uid] = (
+                        False  # while it is looked at: a function may call itself
+                    )
+                    self._looked[symbol.uid] = body is not None and self._applies(body)
+                return self._looked[symbol.uid]
+            case _:
+                return False
+
+
+def lasts(primitive: Primitive, argument: core.Exp | None) -> float | None:
+    """The seconds that a tool or a wait takes; None: the net does not show it, as of all moves.
+
+    Args:
+        primitive: the command.
+        argument: what it is applied to; None: that is not known.
+    """
+    match primitive.command:
+        case "tool":
+            return primitive.duration_s
+        case "wait" if isinstance(argument, core.RecordExp):
+            return primitive.duration_s
+        case "wait" if argument is not None:
+            return seconds(argument)
+        case _:
+            return None
+
+
+def seconds(e: core.Exp) -> float | None:
+    """The number of an expression that is one."""
+    if isinstance(e, core.Lit) and isinstance(e.value, int | float):
+        return float(e.value)
+    return None
+
+
+def _takes_time(primitive: Primitive, argument: core.Exp | None) -> bool:
+    """Whether it surely does; moves count as if they led somewhere else."""
+    known = lasts(primitive, argument)
+    return primitive.command not in ("tool", "wait") if known is None else known > 0.0

@@ -1,0 +1,255 @@
+"""Whether a cell's supervisor may follow its execution scheme (docs/execution.md), looked up in the cell as it runs.
+
+    control = examine(partition, Plan(), limits, d)
+    [(c.name, c.answer) for c in control.checks]     # ("finite-response", "yes"), ...
+
+Two spaces are gone through, both of the net that `verify.controller.running` makes of a cell. In that of the *cell*
+the supervisor
+takes the first of its binding elements: there it is looked what the cell can come to, and there properties are asked.
+In that of all *orders* it takes any: there it is looked whether the order matters. Which questions are asked, and what
+the answers mean, is here; the graphs are gone through by cnative/src/explore/query/explore_control.c and
+explore_running.c. That no owner touches what is not its own is seen in the net itself.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import reduce
+from pathlib import Path
+
+from pn2code.cell.partition import OwnerKind, Partition
+from pn2code.diagnostics import Diagnostics
+from pn2code.net.flat import ArcKind
+from pn2code.properties.questions import Questions
+from pn2code.tdl.interpret import MOST_AT_ONCE, MOST_OCCURRENCES
+from pn2code.verify.controller.control_answers import (
+    Keeper,
+    can_more,
+    capacities_check,
+    cell_answers,
+    channels_check,
+    drawn,
+    hesitating,
+    known,
+    order_answers,
+    refusal,
+    settled,
+    silent,
+    unknown,
+)
+from pn2code.verify.controller.control_messages import formats, memory
+from pn2code.verify.controller.control_types import (
+    BLOCKING,
+    BOUNDED,
+    CONFLUENT,
+    FINITE,
+    MAX_FIRINGS,
+    OWNERSHIP,
+    Check,
+    Control,
+    Plan,
+)
+from pn2code.verify.controller.running import NotModelledError, Running, Silence
+from pn2code.verify.exploring import nondeterminism
+from pn2code.verify.exploring.explore import explore
+from pn2code.verify.exploring.limits import Limits, Reduction
+from pn2code.verify.exploring.programs import Sizes
+from pn2code.verify.exploring.result import Exploration
+
+DOUBT = (
+    "a condition of a script that waits for a message raises an exception in a state of the cell, and whether the "
+    "script comes to it is not known"
+)
+
+# --- questions -----------------------------------------------------------------------------------
+
+
+def of_cell(running: Running, plan: Plan) -> str:
+    """The lines for the explorer about the cell: first properties, then what `cell_answers` understands."""
+    asked = Questions()
+    for p in plan.properties.properties:
+        asked.ask(p.asked)
+    end = "-"
+    if running.partition.final_places:
+        end = str(asked.line(f"ef {asked.line(f'within {running.over} 1 -')}"))
+    asked.asked += [
+        f"? ends {end}",
+        f"? bound {running.stopped} 0 0",
+        f"? restless {MOST_OCCURRENCES - 1}",
+        *(f"? invariant {_kept_silence(asked, s, running.resting)}" for s in running.silences),
+        *(f"? bound {c.place} 0 1" for c in running.partition.channels),
+        *(f"? bound {place} 0 {most}" for place, most in plan.capacities.items()),
+        *([] if running.unsure is None else [f"? bound {running.unsure} 0 0"]),
+    ]
+    return "".join(f"{line}\n" for line in running.lines(first=True)) + asked.text()
+
+
+def _kept_silence(asked: Questions, silence: Silence, idle: int) -> int:
+    """The item of the states in which it does *not* wait for others while it owes an answer."""
+
+    def marked(place: int) -> int:
+        return asked.line(f"within {place} 1 -")
+
+    def no(item: int) -> int:
+        return asked.line(f"not {item}")
+
+    def joined(operator: str, items: Sequence[int]) -> int:
+        return reduce(lambda a, b: asked.line(f"{operator} {a} {b}"), items)
+
+    waits = [
+        joined("and", [marked(place), *(no(joined("and", _flat(marked, x))) for x in needed)])
+        for place, needed in silence.states
+    ]
+    unseen = [joined("and", [marked(p), no(marked(seen))]) for p, seen in silence.answers]
+    others = [marked(silence.owes), marked(idle), *map(no, unseen)]
+    return no(joined("and", [*others, joined("or", waits)]))
+
+
+def _flat(marked: Callable[[int], int], messages: Sequence[Sequence[int]]) -> list[int]:
+    return [marked(place) for places in messages for place in places]
+
+
+def of_orders(running: Running, firings: int = MAX_FIRINGS) -> str:
+    """The lines for the explorer about all orders, which `order_answers` understands."""
+    lines = [
+        *running.lines(first=False),
+        "? finite-response",
+        f"? bounded-response {firings}",
+        "? confluence 0",
+        "? confluence 1",
+        f"? restless {MOST_AT_ONCE - 1}",
+    ]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def examine(
+    partition: Partition,
+    plan: Plan,
+    limits: Limits,
+    d: Diagnostics,
+    closed: Exploration | None = None,
+) -> Control | None:
+    """Explores the cell as it runs and answers all checks; None after an error that was reported.
+
+    Args:
+        partition: the cell.
+        plan: how.
+        limits: of each exploration.
+        d: gets the errors.
+        closed: the state space of the closed net, if it is known.
+
+    Raises:
+        GameError: a declaration or an initial marking raises an exception.
+    """
+    try:
+        running = Running.of(partition, plan.properties.predicates)
+    except NotModelledError as problem:
+        why = f"the cell as it runs cannot be modelled: {problem}"
+        return replace(not_looked(why, partition, plan.capacities, closed), why=why)
+    limits = replace(
+        limits,
+        approximation=None,
+        graph=True,
+        reductions=(Reduction.TIME,) if partition.net.timed else (),
+    )
+    with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
+        wishes = replace(
+            plan.wishes,
+            sizes=Sizes.start(running.net, plan.storage),
+            traces=Path(name),
+            whole=tuple(c.place for c in partition.channels),
+            graph=None,
+            questions=of_cell(running, plan),
+            predicates=plan.properties.predicates,
+            evidence=plan.evidence or Path(name),
+            stem="cell",
+        )
+        found = explore(running.net, plan.storage, limits, d, wishes)
+        if found is None:
+            return None
+        count = len(plan.properties.properties)
+        wishes = replace(wishes, questions=of_orders(running, plan.firings), stem="orders")
+        wishes = replace(wishes, evidence=Path(name))
+        orders: Exploration | None = found
+        if found.complete or found.why == "decided":
+            orders = explore(running.net, plan.storage, limits, d, wishes)
+        if orders is None:
+            return None
+        keep = Keeper(plan, running)
+        asked = orders.answers if orders is not found else ()
+        said = found.answers[count:]
+        doubt = ""
+        if running.unsure is not None and said:
+            said, last = said[:-1], said[-1]
+            doubt = DOUBT if last["answer"] == "no" else ""
+        checks = (
+            *order_answers(partition, orders, asked, plan, keep),
+            *cell_answers(partition, found, said, plan, keep, closed),
+            *formats(partition, found, plan, d),
+            memory(found),
+            ownership(partition),
+        )
+        if running.idle != running.instant:
+            checks = tuple(hesitating(c, orders, asked) for c in checks)
+        refused = refusal(partition, found, keep)
+        if refused is not None:
+            checks = tuple(refused if c.name == BLOCKING else c for c in checks)
+        if nondeterminism.draws(partition.net):
+            checks = tuple(drawn(c) for c in checks)
+        late = plan.premises.replies.late or silent(running, said)
+        control = Control(checks, found, running, answers=found.answers[:count], closed=closed)
+        return settled(replace(control, late=late, doubt=doubt, premises=plan.premises))
+
+
+# --- the net itself ------------------------------------------------------------------------------
+
+
+def ownership(partition: Partition) -> Check:
+    """Each arc leads to a place of the transition's owner, or to a channel in its direction."""
+    net = partition.net
+    channels = {c.place: c for c in partition.channels}
+    wrong: list[str] = []
+    arcs = 0
+    for t, owner in zip(net.transitions, partition.transition_owner, strict=True):
+        who = partition.owners[owner]
+        for arc in t.arcs:
+            arcs += 1
+            channel = channels.get(arc.place)
+            if channel is None:
+                is_fine = partition.place_owner[arc.place] == owner
+            else:
+                is_fine = (arc.kind is ArcKind.INPUT and channel.reader == owner) or (
+                    arc.kind is ArcKind.OUTPUT and channel.writer == owner
+                )
+            if not is_fine:
+                whose = "the supervisor" if who.kind is OwnerKind.SUPERVISOR else f"`{who.name}`"
+                wrong.append(f"`{t.name}` of {whose} touches `{net.places[arc.place].name}`")
+    if wrong:
+        return Check(OWNERSHIP, "no", "; ".join(wrong[:5]), len(wrong), transitions=tuple(wrong))
+    says = f"all {arcs:,} arcs keep to places of their owner and channels in their direction"
+    return Check(OWNERSHIP, "yes", says, arcs)
+
+
+def not_looked(
+    why: str,
+    partition: Partition,
+    capacities: Mapping[int, int] | None = None,
+    closed: Exploration | None = None,
+) -> Control:
+    """When there is no space of the cell to look in."""
+    nothing = {"answer": "unknown", "why": why}
+    checks = [unknown(name, nothing) for name in (FINITE, BOUNDED, CONFLUENT, BLOCKING)]
+    declared = capacities or {}
+    open_rows = [nothing] * (len(partition.channels) + len(declared))
+    rows = [*known(partition, declared, open_rows, closed)]
+    keep = Keeper(Plan(), None)
+    if partition.channels:
+        checks.append(channels_check(partition, rows[: len(partition.channels)], keep))
+    if declared:
+        checks.append(capacities_check(partition, declared, rows[len(partition.channels) :], keep))
+    seen = closed if closed is not None and can_more(partition) else None
+    checks += formats(partition, seen, Plan(), Diagnostics(), why)
+    checks.append(memory(seen, why))
+    return Control((*checks, ownership(partition)), None, why=why)

@@ -1,0 +1,65 @@
+"""Whether what the programs of a cell say and keep has room: messages in their files, lists and strings in memory."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+from pn2code.cell.partition import Partition
+from pn2code.diagnostics import Diagnostics
+from pn2code.verify.controller import arena, messages
+from pn2code.verify.controller.control_answers import unknown
+from pn2code.verify.controller.control_types import MEMORY, MESSAGES, Check, Evidence, Plan
+from pn2code.verify.controller.running import chunks
+from pn2code.verify.exploring.result import Exploration
+from pn2code.verify.exploring.token_run import token_run
+
+
+def formats(
+    partition: Partition, found: Exploration | None, plan: Plan, d: Diagnostics, why: str = ""
+) -> list[Check]:
+    """Whether every message can be sent; nothing of a cell without channels. `why` there is no space to look in."""
+    if not partition.channels:
+        return []
+    sent = messages.examine(partition, found, d)
+    if sent.answer == "unknown":
+        return [unknown(MESSAGES, {"why": why if found is None else found.why})]
+    if sent.channel is None:
+        return [Check(MESSAGES, sent.answer, sent.says, sent.count)]
+    place = partition.net.places[sent.channel.place]
+    asked = "".join(f"{line}\n" for line in own_priorities(partition))
+    with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
+        to = (plan.folder or Path(name)) / f"{plan.stem}.controller-{MESSAGES}.trace.jsonl"
+        run = token_run(partition.net, plan.storage, asked, place.index, sent.value, to, d)
+    evidence: tuple[Evidence, ...] = ()
+    if run is not None:
+        kept = None if plan.folder is None else run.file
+        evidence = (Evidence(run.steps, None, run.node, run.transitions, kept),)
+    return [Check(MESSAGES, "no", sent.says, sent.count, evidence=evidence, place=place.name)]
+
+
+def own_priorities(partition: Partition) -> Iterator[str]:
+    """For the explorer of the closed net: priorities count among the transitions of one owner."""
+    for owner in partition.owners:
+        own = [i for i, o in enumerate(partition.transition_owner) if o == owner.index]
+        yield from chunks(f"owner {owner.index}", own)
+    yield "priorities own"
+
+
+def memory(found: Exploration | None, why: str = "") -> Check:
+    """Whether the supervisor's lists and strings have room; its arena is made as large as the state space says."""
+    size = arena.size(found)
+    if found is None or size is None or found.arena is None:
+        return unknown(MEMORY, {"why": why if found is None else found.why})
+    firing, marking = found.arena["firing"], found.arena["marking"]
+    held = f"lists and strings take at most {marking:,} bytes in a marking"
+    if marking == 0:
+        held = "no marking has lists or strings that need any"
+    needs = f"{held}, and what is worked out on the way {firing:,} in one firing"
+    if size > arena.MOST:
+        return Check(MEMORY, "no", f"{needs}, which is too much", firing)
+    says = f"{needs}; the supervisor has {size:,} bytes"
+    if firing == marking == 0:
+        says = "there are no lists and strings"
+    return Check(MEMORY, "yes", says, firing)

@@ -1,0 +1,239 @@
+"""The checks of a cell: their names, what is known of each, and how to look (docs/execution.md)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from pn2code.properties import meaning as m
+from pn2code.verify.answers import basis
+from pn2code.verify.controller.premises import Premises
+from pn2code.verify.controller.running import Running
+from pn2code.verify.exploring.explore import ExploreOptions
+from pn2code.verify.exploring.result import Exploration
+
+FINITE = "finite-response"
+BOUNDED = "bounded-response"
+CONFLUENT = "confluence"
+BLOCKING = "non-blocking"
+CHANNELS = "channels"
+CAPACITY = "capacity"
+MESSAGES = "messages"
+MEMORY = "memory"
+OWNERSHIP = "ownership"
+
+TITLES = {
+    FINITE: "Finite response",
+    BOUNDED: "Bounded response",
+    CONFLUENT: "Confluence",
+    BLOCKING: "Non-blocking under control",
+    CHANNELS: "One message in flight",
+    CAPACITY: "Declared capacities",
+    MESSAGES: "Every message can be sent",
+    MEMORY: "Room for lists and strings",
+    OWNERSHIP: "Owners use their own places only",
+}
+MEANINGS = {
+    FINITE: "the supervisor always comes to rest when no message arrives",
+    BOUNDED: "the number of firings in one cycle of the supervisor has a limit",
+    CONFLUENT: "the order of the supervisor's firings within a cycle does not matter",
+    BLOCKING: "the cell comes to its end from every state that it can reach, even when some of its programs are slow",
+    CHANNELS: "no channel ever holds two messages",
+    CAPACITY: "no place ever holds more tokens than `[capacity]` declares",
+    MESSAGES: "every message can be written into its file, and is read as it was written",
+    MEMORY: "the lists and strings of every marking, and what a firing works out, have room in the supervisor",
+    OWNERSHIP: "each transition uses places of its owner only, and channels in their direction only",
+}
+KEPT = frozenset({FINITE, BOUNDED, CHANNELS, CAPACITY, MESSAGES, MEMORY, OWNERSHIP})
+"""Checks whose "yes" is kept when the programs do less than what was looked at."""
+STOPPING = (FINITE, BOUNDED, CHANNELS, CAPACITY, MESSAGES, MEMORY)
+"""Checks where a "no" means that the supervisor stops."""
+MAX_FIRINGS = 100_000
+"""What `./supervisor` permits in one cycle unless it is told another number."""
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """A run that shows an answer.
+
+    Args:
+        steps: its length; `loop`: the step (from 0) at which its cycle begins, None: it ends.
+        node: its last marking.
+        transitions: what occurs, by name, as far as it was read.
+        file: the trace; None: it was not kept.
+    """
+
+    steps: int
+    loop: int | None
+    node: int | None
+    transitions: tuple[str, ...]
+    file: Path | None
+
+    def row(self) -> dict[str, Any]:
+        """For programs."""
+        trace = None if self.file is None else str(self.file)
+        return {"trace": trace, "steps": self.steps, "loop": self.loop, "node": self.node}
+
+
+@dataclass(frozen=True, slots=True)
+class Check:
+    """A check and its answer.
+
+    Args:
+        name: one of those above.
+        answer: "yes", "no" or "unknown".
+        says: one line for people.
+        value: the number that belongs to it, if there is one.
+        why: of "unknown", as in `reasons`; of a blocked cell "deadlock" or "endless".
+        is_accepted: cell.toml says that it need not be so.
+        evidence: the run; of confluence a second one, which goes on in another way.
+        transitions: the two whose order matters; those that touch what is another's.
+        place: the channel, or the place with a capacity, by name.
+        assumes: what a "yes" rests on that no state of the cell shows.
+    """
+
+    name: str
+    answer: str
+    says: str
+    value: int | None = None
+    why: str | None = None
+    is_accepted: bool = False
+    evidence: tuple[Evidence, ...] = ()
+    transitions: tuple[str, ...] = ()
+    place: str | None = None
+    assumes: tuple[str, ...] = ()
+
+    @property
+    def rests_on(self) -> str | None:
+        """What has to be seen for this answer: a word of `basis`; None: there is no answer."""
+        return basis.of_check(self.name, self.answer, self.why, has_run=bool(self.evidence))
+
+    @property
+    def fails(self) -> bool:
+        """Whether the supervisor is wrong."""
+        return self.answer == "no" and not self.is_accepted
+
+    def row(self) -> dict[str, Any]:
+        """For programs: docs/execution.md."""
+        return {
+            "check": self.name,
+            "answer": self.answer,
+            "value": self.value,
+            "says": self.says,
+            "why": self.why,
+            "accepted": self.is_accepted,
+            "kept": self.name in KEPT,
+            "rests_on": self.rests_on,
+            "assumes": list(self.assumes),
+            "transitions": list(self.transitions),
+            "place": self.place,
+            "evidence": [e.row() for e in self.evidence],
+        }
+
+
+def _is_script(check: Check) -> bool:
+    """Whether it says that a script stops, or that nobody knows whether one does."""
+    reason = {"no": "stopped", "unknown": "commands"}.get(check.answer)
+    return check.name == BLOCKING and reason is not None and check.why == reason
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """How to look.
+
+    Args:
+        storage: as for `Game`.
+        firings: the most firings in one cycle that are permitted.
+        order_decides: cell.toml says that the documented order is meant to decide.
+        folder: where traces are kept; None: nowhere.
+        stem: what the names of their files begin with.
+        capacities: place -> most tokens, as cell.toml declares.
+        properties: what is asked about the cell besides.
+        evidence: a folder for the runs that answer these; None: they are not kept.
+        wishes: of the exploration. What it is asked, and the files it writes, are ours.
+        premises: what answers rest on besides.
+    """
+
+    storage: Mapping[str, str] = field(default_factory=dict)
+    firings: int = MAX_FIRINGS
+    order_decides: bool = False
+    folder: Path | None = None
+    stem: str = "net"
+    capacities: Mapping[int, int] = field(default_factory=dict)
+    properties: m.Properties = m.Properties()
+    evidence: Path | None = None
+    wishes: ExploreOptions = ExploreOptions()
+    premises: Premises = Premises()
+
+
+@dataclass(frozen=True, slots=True)
+class Control:
+    """All checks of a cell, and what they were looked up in.
+
+    Args:
+        checks: with their answers.
+        found: the space of the cell as it runs; None: there is none.
+        running: its net; None: the cell cannot be modelled so, and `why` says why.
+        answers: what the explorer says of each property.
+        closed: the state space of the closed net, if it is known.
+        late: why somebody may owe an answer for too long; "": that is not known of anybody.
+        doubt: why a script may stop with an exception; "": none does, as far as is known.
+        premises: what answers rest on besides.
+    """
+
+    checks: tuple[Check, ...]
+    found: Exploration | None
+    running: Running | None = None
+    why: str = ""
+    answers: tuple[Mapping[str, Any], ...] = ()
+    closed: Exploration | None = None
+    late: str = ""
+    doubt: str = ""
+    premises: Premises = Premises()
+
+    @property
+    def stops(self) -> str:
+        """Why the supervisor may stop where the model of the cell goes on; "": that is not known."""
+        broken = (c for c in self.checks if c.name in STOPPING and c.answer == "no")
+        found = next((f"the supervisor stops (`{c.name}`: {c.says})" for c in broken), self.late)
+        return found or next((c.says for c in self.checks if _is_script(c)), self.doubt)
+
+    @property
+    def failed(self) -> tuple[Check, ...]:
+        """Those that say that the supervisor is wrong."""
+        return tuple(c for c in self.checks if c.fails)
+
+    @property
+    def open(self) -> tuple[Check, ...]:
+        """Those that are not known."""
+        return tuple(c for c in self.checks if c.answer == "unknown")
+
+    def other_bounds(self) -> list[tuple[str, int, int]]:
+        """Places that hold at most another number of tokens in the cell: name, that number, the one of the net."""
+        cell, net = (x.bounds if x and x.complete else None for x in (self.found, self.closed))
+        if cell is None or net is None or self.running is None:
+            return []
+        places = self.running.partition.net.places
+        pairs = ((p.name, cell[p.index].upper, net[p.index].upper) for p in places)
+        return [(name, own, other) for name, own, other in pairs if own != other]
+
+    def row(self) -> dict[str, Any]:
+        """What was looked at, for programs."""
+        found, running = self.found, self.running
+        bounds = None
+        if found is not None and found.complete and found.bounds and running is not None:
+            places = running.partition.net.places
+            bounds = [
+                {"place": p.name, "lower": b.lower, "upper": b.upper}
+                for p, b in zip(places, found.bounds, strict=False)
+            ]
+        return {
+            "modelled": running is not None,
+            "why": self.why or None,
+            "complete": found.complete if found else False,
+            "states": found.nodes if found else 0,
+            "arcs": found.arcs if found else 0,
+            "bounds": bounds,
+        }

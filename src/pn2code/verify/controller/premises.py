@@ -1,0 +1,100 @@
+"""What the answers about a cell rest on that no state of it shows, said beside each "yes" that needs it.
+
+premises = Premises.of(partition, config)
+premises.of_check("non-blocking", "yes")    # ("nobody owes an answer for longer than ...",)
+"""
+
+from __future__ import annotations
+
+from pn2code.base.frozen import frozen
+from pn2code.cell.config import CellConfig
+from pn2code.cell.partition import OwnerKind, Partition
+from pn2code.cell.reach import Reach
+from pn2code.properties import meaning as m
+from pn2code.verify.controller.replies import Replies
+
+_DURATIONS = (
+    "it can happen for some durations of commands; known durations are not compared with timers"
+)
+
+_SENSORS = "each possible value of a sensor occurs from time to time"
+
+
+@frozen
+class Premises:
+    """The premises of a cell.
+
+    Args:
+        replies: what is known of answers that are owed.
+        states: premises of whatever rests on the states of the cell.
+        durations: whether timers and what programs do go on side by side.
+        sensors: whether programs ask sensors.
+    """
+
+    replies: Replies = Replies()
+    states: tuple[str, ...] = ()
+    durations: bool = False
+    sensors: bool = False
+
+    @staticmethod
+    def of(partition: Partition, config: CellConfig) -> Premises:
+        """Those of a cell."""
+        states: list[str] = []
+        measured = _measured(partition, config)
+        if measured:
+            names = ", ".join(f"`{name}`" for name in measured)
+            states.append(f"a measurement gives the result of {names} in the net")
+        if partition.inputs:
+            names = ", ".join(f"`{i.name}`" for i in partition.inputs)
+            states.append(f"{names} begins with the tokens of the net, not with those of its file")
+        replies = Replies.of(partition, config)
+        return Premises(replies, tuple(states), partition.net.timed, bool(config.sensors))
+
+    def of_check(self, name: str, answer: str) -> tuple[str, ...]:
+        """Those of an answer to a check (`control_types`)."""
+        if answer != "yes" or name == "ownership":
+            return ()
+        found = list(self.states)
+        if name == "non-blocking":
+            found += [self.replies.premise] if self.replies.premise else []
+            found += [_SENSORS] if self.sensors else []
+        return tuple(found)
+
+    def of_property(self, asked: m.Asked, answer: str, *, kept: bool) -> tuple[str, ...]:
+        """Those of an answer to a property; `kept`: a "yes" that is kept when programs do less."""
+        if answer != "yes":
+            return ()
+        found = list(self.states)
+        if not kept and self.replies.premise:
+            found.append(self.replies.premise)
+        if self.durations and _is_possibility(asked):
+            found.append(_DURATIONS)
+        return tuple(found)
+
+
+def _is_possibility(asked: m.Asked) -> bool:
+    """Whether it says that something can happen."""
+    match asked:
+        case m.Invariant(wanted=wanted):
+            return not wanted
+        case m.Branching():
+            return True
+        case _:
+            return False
+
+
+def _measured(partition: Partition, config: CellConfig) -> tuple[str, ...]:
+    """The functions by which robots measure."""
+    program = partition.net.program
+    known = {
+        program.globals[name].uid: name
+        for name, p in config.primitives.items()
+        if p.command == "measure" and name in program.globals
+    }
+    reach = Reach(program)
+    found: set[str] = set()
+    for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True):
+        if t.code is not None and partition.owners[owner].kind is OwnerKind.ROBOT:
+            reach.add_locals(t.code.action)
+            found |= {known[uid] for uid in reach.everything(t.code.action) if uid in known}
+    return tuple(sorted(found))

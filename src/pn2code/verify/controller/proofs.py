@@ -1,0 +1,254 @@
+"""What `generate` wants to know of a net before it becomes a program: is its supervisor fine, how large are its places.
+
+    found = prove(partition, config, d)      # None: the supervisor fails a check, or a place has no bound; reported
+    found.rooms                              # for `rooms.with_rooms`
+    found.verdicts                           # lines for the head of cell_config.c
+
+Of a net without a cell.toml only the structure is looked at: it takes no compiler and little time.
+"""
+
+from __future__ import annotations
+
+import textwrap
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+
+from pn2code.cell.config import CellConfig
+from pn2code.cell.divide import PlaceFinder
+from pn2code.cell.partition import Partition
+from pn2code.diagnostics import Diagnostics, Note
+from pn2code.semantics.game.token_game import Game, GameError
+from pn2code.structure import bounds_and_sums
+from pn2code.toolchain.build import TOOL_MISSING
+from pn2code.verify.answers.reasons import clause
+from pn2code.verify.codes import BEYOND_ROOM, CONTROL_FAILED, CONTROL_OPEN
+from pn2code.verify.controller import arena, control, control_types
+from pn2code.verify.controller.control_types import Check, Control, Plan
+from pn2code.verify.controller.premises import Premises
+from pn2code.verify.exploring import place_capacity as rooms
+from pn2code.verify.exploring.explore import ExploreOptions
+from pn2code.verify.exploring.limits import Limits, cores
+
+MOST_STATES = 3_000_000
+MOST_SECONDS = 60.0
+"""A supervisor of a larger space is generated with a warning; `verify` takes as long as it takes."""
+_WIDTH = 136
+"""Of a line in the head of a generated file."""
+UNCHECKED = "Not checked, since it was generated with --unchecked (docs/execution.md):"
+
+
+@dataclass(frozen=True, slots=True)
+class Proofs:
+    """What was found.
+
+    Args:
+        rooms: for each place.
+        verdicts: lines for people, the same whenever the same is generated.
+        control: the checks; None: they were not asked for.
+        arena: bytes for the lists and strings of the program; None: not known.
+    """
+
+    rooms: tuple[rooms.PlaceCapacity, ...]
+    verdicts: tuple[str, ...]
+    control: Control | None
+    arena: int | None = None
+
+
+def prove(
+    partition: Partition, config: CellConfig | None, d: Diagnostics, *, checked: bool = True
+) -> Proofs | None:
+    """Checks the supervisor of a cell, and finds the bounds of all places; None when an error was reported.
+
+    Args:
+        partition: the net and its owners.
+        config: the cell; None: a net that is one program, which is only warned about.
+        d: gets the errors.
+        checked: without, nothing is refused and the state space is not explored.
+    """
+    net = partition.net
+    storage = config.storage if config else {}
+    given = _given(partition, storage)
+    structure = bounds_and_sums(net, storage=storage, given=given)
+    structural = structure[0]
+    capacities = declared(partition, config, d)
+    if capacities is None:
+        return None
+    if config is None or not checked:
+        found = rooms.rooms(partition, capacities, structural, None)
+        if config is None:
+            rooms.warn_assumed(net, found, d)
+        rooms.refuse_large(net, found, d)
+        if d.has_errors:
+            return None
+        return Proofs(found, tuple(_not_asked(partition)) if config else (), None)
+    plan = Plan(
+        storage=storage,
+        order_decides=config.supervisor.order_decides,
+        capacities=capacities,
+        premises=Premises.of(partition, config),
+    )
+    looked = _look(partition, plan, d)
+    if looked is None:
+        return None
+    for check in looked.failed:
+        _refuse(check, partition, config, d)
+    if looked.open and not looked.failed:
+        _warn_open(looked, config, d)
+    space = looked.found
+    # From a marking that has other tokens than the net's own, more may be reached.
+    found = rooms.rooms(partition, capacities, structural, None if given else space)
+    why = looked.open[0].why if looked.open else None
+    if why == "compiler":  # nobody can build it here, either: it will be checked where that is done
+        rooms.warn_assumed(net, found, d)
+    else:
+        other = (
+            f"the file of `{given[0]}` brings a token that the net does not have" if given else ""
+        )
+        rooms.refuse(net, found, other or clause(why or ""), d)
+    rooms.refuse_large(net, found, d)
+    if d.has_errors:
+        return None
+    return Proofs(found, tuple(_verdicts(looked)), looked, None if given else arena.size(space))
+
+
+def _given(partition: Partition, storage: Mapping[str, str]) -> tuple[str, ...]:
+    """Places that do not begin with as many tokens as the net says: a file gives one token."""
+    names = [partition.net.places[i.place].name for i in partition.inputs]
+    if not names:
+        return ()
+    try:
+        marking = Game(partition.net, storage).marking
+    except GameError:
+        return tuple(names)
+    counts = Counter({i.place: len(tuple(marking.places[i.place])) for i in partition.inputs})
+    return tuple(partition.net.places[i].name for i, count in counts.items() if count != 1)
+
+
+def declared(
+    partition: Partition, config: CellConfig | None, d: Diagnostics
+) -> dict[int, int] | None:
+    """`[capacity]` by place; None when it names what is not there."""
+    if config is None or not config.capacity:
+        return {}
+    find = PlaceFinder(partition.net, d)
+    found = {}
+    for name, bound in config.capacity.items():
+        place = find(name, config.locator.origin("capacity", name), "capacity")
+        if place is None:
+            return None
+        found[place.index] = bound
+    return found
+
+
+def _look(partition: Partition, plan: Plan, d: Diagnostics) -> Control | None:
+    """The checks; open ones where the state space cannot be had. None after an error that has nothing to do with it."""
+    own = Diagnostics()
+    limits = Limits(max_states=MOST_STATES, max_seconds=MOST_SECONDS, threads=cores(), traces=0)
+    try:
+        found = control.examine(
+            partition, replace(plan, wishes=ExploreOptions(quick=True)), limits, own
+        )
+    except GameError as error:
+        error.report(d)
+        return None
+    if found is None and any(i.code == TOOL_MISSING for i in own.errors):
+        return control.not_looked("compiler", partition, plan.capacities)
+    # A place that grows without end is one without a bound, which is refused with a better hint.
+    d.items += [i for i in own.items if i.code != BEYOND_ROOM]
+    return found
+
+
+def _refuse(check: Check, partition: Partition, config: CellConfig, d: Diagnostics) -> None:
+    net = partition.net
+    places = {p.name: p.origins[0] for p in net.places}
+    transitions = {t.name: t.origin for t in net.transitions}
+    at = [transitions[t] for t in check.transitions if t in transitions]
+    if check.place is not None:
+        at.insert(0, places[check.place])
+    final = config.locator.origin("supervisor", "final")
+    is_end = check.name == control_types.BLOCKING and bool(partition.final_places)
+    notes: list[str | Note] = [f"checked: {control_types.MEANINGS[check.name]}"]
+    notes += [
+        Note("the other transition is here", other)
+        for other in at[1:2]
+        if other.describe() != at[0].describe()
+    ]
+    for run in check.evidence[:1]:
+        notes.append(_last_steps(run))
+    d.error(
+        CONTROL_FAILED,
+        f"{check.name}: {check.says}",
+        at[0] if at else final if is_end else config.supervisor.origin,
+        notes=[n for n in notes if n],
+        hint=_HINTS.get(check.name, _HINT),
+    )
+
+
+_HINT = (
+    "`pn2code verify` on the cell writes the run that shows it; `--unchecked` generates it anyway"
+)
+_HINTS = {
+    control_types.CONFLUENT: "give the transitions different priorities, or say in cell.toml that the documented "
+    'order is intended: `order = "documented"` in [supervisor]; `--unchecked` generates it anyway',
+}
+_SHOWN = 4
+
+
+def _last_steps(run: control_types.Evidence) -> str:
+    last = run.transitions[-_SHOWN:]
+    if not last:
+        return ""
+    before = "... " if len(run.transitions) > len(last) else ""
+    return f"the run that shows it ends with {before}{', '.join(f'`{t}`' for t in last)}"
+
+
+def _warn_open(looked: Control, config: CellConfig, d: Diagnostics) -> None:
+    names = ", ".join(c.name for c in looked.open)
+    d.warning(
+        CONTROL_OPEN,
+        f"it is not known whether the supervisor keeps to its execution scheme: {looked.open[0].says}",
+        config.supervisor.origin,
+        notes=[f"not checked: {names}"],
+        hint=_OPEN_HINTS.get(looked.open[0].why or "", _OPEN_HINT),
+    )
+
+
+_OPEN_HINT = (
+    "`pn2code verify` on the cell has no limits of its own; the generated files say `unchecked`"
+)
+_OPEN_HINTS = {
+    "late": "make `reply_timeout_s` longer; what is never answered is `data`, not a flag (docs/protocol.md, I8)",
+    "speeds": "`pn2code verify` writes the run; the generated files say `unchecked`",
+}
+
+
+def _not_asked(partition: Partition) -> Iterator[str]:
+    """What nothing is known of, and what is seen without exploring."""
+    yield UNCHECKED
+    for check in control.not_looked("", partition).checks:
+        yield (
+            f"  {check.name}: unchecked ({control_types.MEANINGS[check.name]})"
+            if check.answer == "unknown"
+            else _verdict(check)
+        )
+
+
+def _verdicts(looked: Control) -> Iterator[str]:
+    if looked.open:
+        yield "Not checked completely (docs/execution.md):"
+    else:
+        assert looked.found is not None
+        yield f"Checked in all {looked.found.nodes:,} states of the cell as it runs (docs/execution.md):"
+    for check in looked.checks:
+        yield from textwrap.wrap(_verdict(check), _WIDTH, subsequent_indent="    ")
+    assumed = dict.fromkeys(x for check in looked.checks for x in check.assumes)
+    if assumed:
+        yield "Assumed:"
+    for premise in assumed:
+        yield from textwrap.wrap(f"  {premise}", _WIDTH, subsequent_indent="    ")
+
+
+def _verdict(check: Check) -> str:
+    answer = {"unknown": "unchecked"}.get(check.answer, check.answer)
+    return f"  {check.name}: {answer}; {check.says}"

@@ -1,0 +1,124 @@
+"""What a script cannot carry out though the net goes on: in the cell as it runs it raises an exception.
+
+net = refusing(partition)       # the net; its primitives and its robots' delays take only what a robot can do
+
+A robot waits for no time that is negative or without end, and moves to no pose one of whose numbers is not finite. Its
+script stops at such a command, and that stops the cell. In the net a primitive is an ordinary function that may do with
+anything, and a negative delay is one more stamp. So primitives and delays get a case that no rule fits.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import count
+
+from pn2code.cell.partition import Partition
+from pn2code.ml.core import terms as core
+from pn2code.ml.core.types import BOOL, INT, REAL, TFun, TRecord, Type, tuple_of
+from pn2code.net.flat import FlatNet, FlatTransition
+
+_DELAYED = frozenset({"Time.token@+", "Time.token@++", "Time.@+", "Time.@++"})
+
+
+def refusing(partition: Partition) -> FlatNet:
+    """The net of a cell, with exceptions where scripts would stop."""
+    net = partition.net
+    uids = count(max([1 << 24, *(s.uid for s in net.program.variables.values())]) + 1)
+    true = next(c for c, _ in net.program.datatypes["bool"].constructors if c.name == "true")
+    make = _Refusal(true, uids)
+    declarations = tuple(
+        replace(
+            d,
+            bindings=tuple(
+                (s, make.primitive(f) if s.uid in partition.primitives else f)
+                for s, f in d.bindings
+            ),
+        )
+        if isinstance(d, core.RecBind)
+        else d
+        for d in net.program.declarations
+    )
+    transitions = tuple(
+        make.delays(t) if owner else t
+        for t, owner in zip(net.transitions, partition.transition_owner, strict=True)
+    )
+    return replace(
+        net, program=replace(net.program, declarations=declarations), transitions=transitions
+    )
+
+
+class _Refusal:
+    def __init__(self, true: core.Constructor, uids: count[int]) -> None:
+        self._true = true
+        self._uids = uids
+
+    def primitive(self, function: core.Lambda) -> core.Lambda:
+        """The function, with an argument that a robot can carry out."""
+        t = function.type
+        assert isinstance(t, TFun)
+        symbol = core.Symbol(next(self._uids), "argument", t.argument)
+        value = core.Var(symbol, t.argument, function.span)
+        conditions = self._of_argument(value)
+        if not conditions:
+            return function
+        result: core.Exp = core.Apply(function, value, t.result, function.span)
+        for condition in conditions:
+            result = self._only_if(condition, result)
+        pattern = core.PVar(symbol, t.argument, function.span)
+        return replace(function, rules=(core.Rule(pattern, result, function.span),))
+
+    def _of_argument(self, value: core.Var) -> list[core.Exp]:
+        match value.type:
+            case TRecord(fields):
+                parts = [core.Select(label, value, t, value.span) for label, t in fields]
+                return [_is_finite(x) for x in parts if x.type == REAL]
+            case t if t == REAL:
+                zero = core.Lit(0.0, REAL, value.span)
+                return [_compared("Real.>=", value, zero, REAL), _is_finite(value)]
+            case _:
+                return []
+
+    def delays(self, t: FlatTransition) -> FlatTransition:
+        """A transition of a robot, with delays that are not negative."""
+        arcs = tuple(
+            a
+            if a.inscription is None
+            else replace(
+                a, inscription=replace(a.inscription, value=self._later(a.inscription.value))
+            )
+            for a in t.arcs
+        )
+        return replace(t, arcs=arcs, delay=None if t.delay is None else self._delay(t.delay))
+
+    def _later(self, e: core.Exp) -> core.Exp:
+        match e:
+            case core.If(then=then, otherwise=otherwise):
+                return replace(e, then=self._later(then), otherwise=self._later(otherwise))
+            case core.Apply(
+                core.Builtin(name), core.RecordExp(((first, value), (second, delay))) as pair
+            ) if name in _DELAYED:
+                fields = ((first, value), (second, self._delay(delay)))
+                return replace(e, argument=replace(pair, fields=fields))
+            case _:
+                return e
+
+    def _delay(self, e: core.Exp) -> core.Exp:
+        name = "Int.>=" if e.type == INT else "IntInf.>="
+        zero = core.Lit(0, e.type, e.span)
+        return self._only_if(_compared(name, e, zero, e.type), e)
+
+    def _only_if(self, condition: core.Exp, value: core.Exp) -> core.Exp:
+        pattern = core.PCon(self._true, None, BOOL, value.span)
+        rule = core.Rule(pattern, value, value.span)
+        return core.Case(condition, (rule,), value.type, value.span)
+
+
+def _is_finite(value: core.Exp) -> core.Exp:
+    function = core.Builtin("Real.isFinite", TFun(REAL, BOOL), value.span)
+    return core.Apply(function, value, BOOL, value.span)
+
+
+def _compared(name: str, a: core.Exp, b: core.Exp, t: Type) -> core.Exp:
+    pair = tuple_of(t, t)
+    function = core.Builtin(name, TFun(pair, BOOL), a.span)
+    return core.Apply(function, core.RecordExp((("1", a), ("2", b)), pair, a.span), BOOL, a.span)

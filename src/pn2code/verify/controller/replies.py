@@ -1,0 +1,189 @@
+"""Whether a robot answers before `reply_timeout_s` is over (I8 of docs/protocol.md), as far as durations are known.
+
+A robot that owes an answer for longer stops the cell. What its tools, waits and delays take is written in cell.toml and
+in the net; how long it moves and measures is not (layouts decide that), nor how long somebody else lets it wait.
+
+replies = Replies.of(partition, config)
+replies.late      # "device `press` may need 4 s ...": that the cell ends is no certainty then; "": it is not known
+replies.premise   # what a "yes" rests on otherwise
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+
+from pn2code.base.frozen import frozen
+from pn2code.cell.config import CellConfig, Primitive
+from pn2code.cell.partition import ChannelKind, Partition
+from pn2code.cell.reach import Reach
+from pn2code.lowering.expressions.values import children
+from pn2code.ml.core import terms as core
+from pn2code.robot_scripts.machine import Machine
+from pn2code.verify.controller.commands import lasts, seconds
+from pn2code.verify.controller.stops import NoProgramError, machine
+
+_ENDLESS = math.inf
+
+
+@frozen
+class Time:
+    """Seconds that are known, and whether there are further ones."""
+
+    seconds: float = 0.0
+    is_open: bool = False
+
+    def __add__(self, other: Time) -> Time:
+        """One after the other."""
+        return Time(self.seconds + other.seconds, self.is_open or other.is_open)
+
+    @staticmethod
+    def longest(times: Iterable[Time]) -> Time:
+        """Of several, one of which is taken."""
+        known = list(times)
+        return Time(max((t.seconds for t in known), default=0.0), any(t.is_open for t in known))
+
+
+OPEN = Time(0.0, True)
+
+
+@frozen
+class Replies:
+    """What is known of a cell's answers.
+
+    Args:
+        late: why an answer may come too late; "": that is not known of any.
+        premise: what "the cell comes to its end" rests on; "": nobody owes answers.
+    """
+
+    late: str = ""
+    premise: str = ""
+
+    @staticmethod
+    def of(partition: Partition, config: CellConfig) -> Replies:
+        """Those of a cell."""
+        limit = config.supervisor.reply_timeout_s
+        asked = {c.reader for c in partition.channels if c.kind is ChannelKind.FLAG} - {0}
+        most = Time()
+        for owner in sorted(asked):
+            try:
+                program = machine(partition, owner)
+            except NoProgramError:
+                return Replies()
+            time = _Silence(program, config).longest()
+            who = partition.owners[owner].phrase
+            # An answer takes a little longer than its commands: with as much time as there is, it is late.
+            if time.seconds >= limit:
+                needs = "any time" if time.seconds == _ENDLESS else f"{time.seconds:g} s"
+                return Replies(
+                    f"{who} may need {needs} for an answer, by its tools, waits and delays alone, and "
+                    f"`reply_timeout_s` is {limit:g}: whoever owes an answer for that long stops the cell"
+                )
+            most = Time.longest((most, time))
+        if not asked:
+            return Replies()
+        known = f"tools, waits and delays take at most {most.seconds:g} s"
+        more = "; how long moves and measurements take is not known" if most.is_open else ""
+        return Replies(
+            "",
+            f"nobody owes an answer for longer than `reply_timeout_s`, {limit:g} s ({known}{more})",
+        )
+
+
+@dataclass(slots=True)
+class _Silence:
+    """How long a program may go on without a message to the supervisor."""
+
+    program: Machine
+    config: CellConfig
+
+    def longest(self) -> Time:
+        """From the start, or from one message on, until the next one; unbounded if it may go round meanwhile."""
+        net, channels = self.program.net, self.program.channels
+        spent = _Commands(net.program, self.config)
+        quiet: list[tuple[int, int, Time]] = []
+        begins: dict[int, Time] = {self.program.start: Time()}
+        last: list[tuple[int, Time]] = []
+        for step in self.program.steps:
+            t = step.transition
+            (here,) = (p for p, *_ in step.takes if p in self.program.control)
+            acts = spent.of(t.code.action) if t.code is not None else Time()
+            for outcome in step.outcomes:
+                there = self.program.target(outcome)
+                delays = [e for p, e in outcome.delays if p == there]
+                delays += [] if t.delay is None else [t.delay]
+                after = sum((_time(seconds(e)) for e in delays), Time())
+                if any(p in channels and channels[p].reader == 0 for p, _ in outcome.puts):
+                    last.append((here, acts))  # commands, then the message, then the delay
+                    begins[there] = Time.longest((begins.get(there, Time()), after))
+                else:
+                    quiet.append((here, there, acts + after))
+        at = dict(begins)
+        for turn in range(len(self.program.control) + 1):
+            changed = False
+            for here, there, time in quiet:
+                if here in at:
+                    reached = Time.longest((at.get(there, Time()), at[here] + time))
+                    changed = changed or reached != at.get(there)
+                    at[there] = reached
+            if not changed:
+                break
+            if turn == len(self.program.control):
+                return Time(_ENDLESS, True)
+        return Time.longest([*at.values(), *(at[p] + acts for p, acts in last if p in at)])
+
+
+class _Commands:
+    """The commands that an expression gives."""
+
+    def __init__(self, program: core.Program, config: CellConfig) -> None:
+        self._reach = Reach(program)
+        self._primitives: Mapping[int, Primitive] = {
+            program.globals[name].uid: p
+            for name, p in config.primitives.items()
+            if name in program.globals
+        }
+
+    def of(self, e: core.Exp) -> Time:
+        """What its commands take, at most."""
+        self._reach.add_locals(e)
+        return self._of(e, frozenset())
+
+    def _of(self, e: core.Exp, inside: frozenset[int]) -> Time:
+        match e:
+            case core.Apply(core.Var(symbol=symbol), argument) if symbol.uid in self._primitives:
+                return self._of(argument, inside) + self._command(symbol.uid, argument)
+            case core.Var(symbol=symbol) if symbol.uid in self._primitives:
+                return self._command(symbol.uid, None)
+            case core.Var(symbol=symbol):
+                body = self._reach.body(symbol)
+                if not isinstance(body, core.Lambda) or symbol.uid in inside:
+                    return Time()
+                return self._of(body, inside | {symbol.uid})
+            case core.If(condition, then, otherwise):
+                chosen = Time.longest((self._of(then, inside), self._of(otherwise, inside)))
+                return self._of(condition, inside) + chosen
+            case core.Case(scrutinee, rules):
+                chosen = Time.longest(self._of(r.body, inside) for r in rules)
+                return self._of(scrutinee, inside) + chosen
+            case core.Let(declarations, body):
+                return self._all(_values(declarations), inside) + self._of(body, inside)
+        return self._all(children(e), inside)
+
+    def _all(self, parts: Iterable[core.Exp], inside: frozenset[int]) -> Time:
+        return sum((self._of(part, inside) for part in parts), Time())
+
+    def _command(self, uid: int, argument: core.Exp | None) -> Time:
+        return _time(lasts(self._primitives[uid], argument))
+
+
+def _values(declarations: Iterable[core.Dec]) -> Iterator[core.Exp]:
+    """What is evaluated where it is declared: functions are counted where they are mentioned."""
+    for declaration in declarations:
+        if isinstance(declaration, core.ValBind):
+            yield declaration.value
+
+
+def _time(seconds: float | None) -> Time:
+    return OPEN if seconds is None else Time(seconds)

@@ -1,0 +1,598 @@
+"""The cell as it runs, as a net: what each program sees and when, around the transitions of the closed net.
+
+    running = Running.of(partition)          # or NotModelledError
+    running.net                              # places and transitions of the net keep their numbers; steps are added
+    running.lines(first=True)                # for the explorer: owners, priorities, choices
+
+The places of the net mean what they mean in the net: a channel holds its token from the moment it is put until it is
+taken. Added are flags of which others know nothing:
+
+    supervisor   idle --sees c--> looks at the next file -- ... --> calm --fires--> calm --publishes c--> calm --> idle
+                 (or, with a token in a final place: over)
+    channel      `seen`: the supervisor has read the message; `out`: it has been published
+
+* A transition of the supervisor needs *calm*, and takes only messages that have been *seen*. A round of looks goes from
+  file to file, flags first; a look that finds nothing leaves no trace, so a round begins with the first file that holds
+  something: those before it were looked at earlier, and may have been filled since.
+* A robot takes only messages that are *out*. What it writes is there at once, as nothing tells that from writing a
+  little later, unless one reader gets two messages of one kind (`NotModelledError`). Only where a transition writes to
+  several readers, its messages are *out* one after the other: the first reader may act before the next is written to.
+* When the supervisor has finished, a robot ends where it notices that (docs/protocol.md, I9): as likely before its next
+  message as after it. One step ends them all, since any of them may have been slow until then.
+* Where a script stops, the cell stops: nothing happens after the step that says so. What others do until they hear of
+  it comes before this step, which may come late: the supervisor ends its cycle, and looks at the robots between two.
+* Emptying a file is no step: whoever writes a second message without having heard that the first one was taken may do
+  so before it is taken, too; then the place holds two.
+* Time: a step of the clock may come whenever something is waited for, whether or not something else is enabled: the
+  supervisor comes late, a move takes longer than its page says. Only within the supervisor's firing no time goes by.
+  Each step of the clock may wake the supervisor.
+
+So each run of the cell is a run of this net, and each run of this net, without the added steps, is an occurrence
+sequence of the closed net in which priorities count among the transitions of an owner.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Sequence
+from pathlib import Path
+from typing import Any
+
+from pn2code.base.frozen import frozen
+from pn2code.base.whole_file import whole_file
+from pn2code.cell.partition import Channel, ChannelKind, Partition
+from pn2code.ml.core import terms as core
+from pn2code.net.builder import Arc, Builder
+from pn2code.net.flat import ArcKind, BindEquation, FlatArc, FlatNet, FlatTransition
+from pn2code.net.predicate import Predicate
+from pn2code.robot_scripts.machine import Machine, Step
+from pn2code.trace.parties import VERIFY
+from pn2code.verify.controller.commands import Commands, seconds
+from pn2code.verify.controller.refusals import refusing
+from pn2code.verify.controller.stops import MOST_MESSAGES, NoProgramError, machine, waits
+from pn2code.verify.controller.unsure import Conditions
+from pn2code.verify.exploring import time_reduction
+
+MOST_OWNERS = 250
+OWING = "has finished, but it owes an answer"
+"""A step that stops the cell."""
+SUPERVISOR = 0
+_WORDS = 200
+"""Of a line."""
+
+
+class NotModelledError(Exception):
+    """The programs of a cell do something that this model does not have; the text is a clause that says what."""
+
+
+@frozen
+class Silence:
+    """When somebody waits for others while it owes an answer (I8 of docs/protocol.md): for how long, nobody knows.
+
+    Args:
+        owes: the place that is marked while it does.
+        states: the control places at which all transitions need messages; of each transition, for each of its
+            messages, the places that are marked if it is there.
+        answers: of each channel to the supervisor, its place and that of what the supervisor has seen.
+    """
+
+    who: str
+    owes: int
+    states: tuple[tuple[int, tuple[tuple[tuple[int, ...], ...], ...]], ...]
+    answers: tuple[tuple[int, int], ...]
+
+
+@frozen
+class Running:
+    """The net, and what is needed to ask about it.
+
+    Args:
+        net: with the added places and steps; those of the cell's net come first.
+        partition: the cell.
+        over: the place of the supervisor's end.
+        stopped: that of robots whose scripts have stopped; the cell stops then.
+        steps: by added transition, in order: whose step it is (the clock has the number after the last owner's).
+        clock: which of them are steps of the clock; `probes`: which never occur, and only hold others back.
+        instant: transitions for which a script neither waits nor does anything; `idle`: for which it may not, or may do
+            so for no time.
+        meek: transitions that hold no other one of their robot back: their messages may not have come yet.
+    """
+
+    net: FlatNet
+    partition: Partition
+    over: int
+    stopped: int
+    steps: tuple[int, ...]
+    clock: tuple[int, ...]
+    probes: tuple[int, ...]
+    meek: tuple[int, ...]
+    instant: tuple[int, ...]
+    idle: tuple[int, ...]
+    names: frozenset[str]
+    """of the transitions of the cell's net"""
+    resting: int
+    """the place of a supervisor that rests"""
+    silences: tuple[Silence, ...] = ()
+    unsure: int | None = None
+    """the place that is marked where a condition of a script that waits has raised an exception; None: none can"""
+
+    @staticmethod
+    def of(partition: Partition, predicates: Sequence[Predicate] = ()) -> Running:
+        """That of a cell; `predicates` are asked of it.
+
+        Raises:
+            NotModelledError: not everything that its programs do can be said so.
+        """
+        _check(partition, predicates)
+        try:
+            return _Composer(partition).made()
+        except NoProgramError as problem:
+            raise NotModelledError(str(problem)) from None
+        except ValueError as problem:
+            raise NotModelledError(
+                f"the net does not show when a script waits: {problem}"
+            ) from None
+
+    def lines(self, *, first: bool, names: Sequence[str] | None = None) -> list[str]:
+        """How the programs choose.
+
+        Args:
+            first: whether of the supervisor's binding elements only the first in the documented order occurs; else
+                transitions count as instant whose commands stand on branches.
+            names: where transitions of the net were made several (`properties.split`): of each, that of the whole one.
+        """
+        whole = [t.name for t in self.net.transitions]
+        parts: dict[str, list[int]] = {}
+        for i, name in enumerate(names or whole):
+            parts.setdefault(name, []).append(i)
+
+        def now(old: Iterable[int]) -> Iterator[int]:
+            return (i for k in old for i in parts[whole[k]])
+
+        owners = [*self.partition.transition_owner, *self.steps]
+        count = len(self.partition.net.transitions)
+        lines: list[str] = []
+        for owner in sorted(set(owners)):
+            lines += chunks(f"owner {owner}", now(i for i, o in enumerate(owners) if o == owner))
+        lines.append("priorities own")
+        for owner in range(len(self.partition.owners)):
+            own = [i for i, o in enumerate(self.partition.transition_owner) if o == owner]
+            if owner != SUPERVISOR:
+                lines += chunks(f"choose {owner + 1}", now(own))
+            elif first:
+                lines += chunks("first 1", now(own))
+        lines += [" ".join(["kin", *map(str, own)]) for own in parts.values() if len(own) > 1]
+        lines += chunks("meek", now(self.meek))
+        lines += chunks("instant", now(self.instant if first else self.idle))
+        lines += chunks("silent", now(range(count, count + len(self.steps))))
+        lines += chunks("clock", now(self.clock))
+        lines += chunks("probe", now(self.probes))
+        return lines
+
+    def project(self, trace: Path, loop: int | None = None) -> tuple[int, int | None]:
+        """Makes a run of this net one of the cell's net, in place; gives its length and where its cycle begins.
+
+        Raises:
+            OSError: it cannot be read or written.
+        """
+        kept: list[str] = []
+        steps = seen = 0
+        begins = None
+        text = trace.read_text(encoding="utf-8", errors="surrogateescape")
+        for line in text.rstrip("\n").split("\n"):  # other ends of lines may stand in tokens
+            row: dict[str, Any] = json.loads(line)
+            if "transition" in row:
+                if loop is not None and seen == loop:
+                    begins = steps
+                seen += 1
+                if row["transition"] not in self.names:
+                    continue
+                steps += 1
+                row["step"] = steps
+            elif not kept:
+                row["by"] = VERIFY
+            elif row.get("event") == "end":
+                row["why"] = "evidence"
+            kept.append(json.dumps(row, ensure_ascii=False) + "\n")
+        if loop is not None and begins is None:
+            begins = steps
+        with whole_file(trace) as beside:
+            beside.write_text("".join(kept), encoding="utf-8", errors="surrogateescape")
+        return steps, begins
+
+
+def chunks(head: str, numbers: Iterable[int]) -> Iterator[str]:
+    """Lines for the explorer, each with some of the numbers."""
+    words = [str(n) for n in numbers]
+    for i in range(0, len(words), _WORDS):
+        yield " ".join([head, *words[i : i + _WORDS]])
+
+
+# --- what is not modelled ------------------------------------------------------------------------
+
+
+def _check(partition: Partition, predicates: Sequence[Predicate]) -> None:
+    net = partition.net
+    if len(partition.owners) > MOST_OWNERS:
+        raise NotModelledError(f"the cell has more than {MOST_OWNERS} programs")
+    if net.timed:
+        obstacle = time_reduction.obstacle(net, predicates)
+        if obstacle is not None:
+            raise NotModelledError(
+                f"steps may come later than in the net, and {obstacle.message}, so that there would be infinitely many "
+                "states"
+            )
+    for place in partition.final_places:
+        if net.places[place].colset.timed:
+            raise NotModelledError(f"the final place `{net.places[place].name}` is timed")
+    channels = {c.place: c for c in partition.channels}
+    for t, owner in zip(net.transitions, partition.transition_owner, strict=True):
+        _check_transition(t, owner, channels, partition)
+
+
+def _check_transition(
+    t: FlatTransition, owner: int, channels: dict[int, Channel], partition: Partition
+) -> None:
+    taken: set[int] = set()
+    put: list[Channel] = []
+    for arc in t.arcs:
+        channel = channels.get(arc.place)
+        if channel is None:
+            if partition.place_owner[arc.place] not in (owner, None):
+                raise NotModelledError(f"`{t.name}` touches a place of another owner")
+            continue
+        name = channel.name
+        if arc.kind is ArcKind.OUTPUT and channel.writer == owner:
+            put.append(channel)
+        elif arc.kind is ArcKind.INPUT and channel.reader == owner:
+            if arc.place in taken or not _takes_one(arc):
+                raise NotModelledError(
+                    f"the net does not show that `{t.name}` takes only one message of `{name}`"
+                )
+            taken.add(arc.place)
+        else:
+            raise NotModelledError(f"`{t.name}` does more with channel `{name}` than its direction")
+    if owner == SUPERVISOR:
+        return
+    for kind in ChannelKind:
+        readers = [c.reader for c in put if c.kind is kind]
+        if len(set(readers)) < len(readers):
+            raise NotModelledError(f"`{t.name}` writes two messages of one kind to the same reader")
+
+
+def _takes_one(arc: FlatArc) -> bool:
+    """Whether an input arc takes one token whatever happens."""
+    terms = arc.inscription.terms if arc.inscription is not None else ()
+    if len(terms) != 1 or terms[0].whole or terms[0].delay is not None:
+        return False
+    coefficient = terms[0].coefficient
+    return isinstance(coefficient, core.Lit) and coefficient.value == 1
+
+
+# --- the net -------------------------------------------------------------------------------------
+
+
+class _Composer:
+    def __init__(self, partition: Partition) -> None:
+        self.partition = partition
+        self.b = b = Builder(refusing(partition))
+        self.step_owner: list[int] = []
+        self.clock: list[int] = []
+        self.probes: list[int] = []
+        # Priorities count among the steps of an owner: firing comes before publishing, that before resting.
+        self.after = max([t.priority for t in partition.net.transitions] or [1000]) + 1
+        looked = [c for c in partition.channels if c.reader == SUPERVISOR]
+        looked.sort(key=lambda c: c.kind is not ChannelKind.FLAG)
+        self.looked = looked
+        self.seen = {c.place: b.place(f"cell.{c.name}.seen", b.unit) for c in looked}
+        written = [c for c in partition.channels if c.writer == SUPERVISOR]
+        self.staged = list(_staged(partition))
+        self.out = {
+            c.place: b.place(f"cell.{c.name}.out", b.unit) for c in (*written, *self.staged)
+        }
+        self.written = written
+        self.idle = b.place("cell.supervisor.idle", b.unit)
+        self.calm = b.place("cell.supervisor.calm", b.unit)
+        self.over = b.place("cell.supervisor.over", b.unit)
+        self.news = b.place("cell.supervisor.news", b.unit)
+        self.stopped = b.place("cell.stopped", b.unit)
+        self.unsure: int | None = None
+        truth = {c.name: c for c, _ in partition.net.program.datatypes["bool"].constructors}
+        self.conditions = Conditions(truth["true"], truth["false"])
+        self.going: int | None = None
+        if partition.final_places and len(partition.owners) > 1:
+            self.going = b.place("cell.robots.go on", b.unit)
+            b.begin(self.going, b.dot)
+        self.machines = {i: machine(partition, i) for i in range(1, len(partition.owners))}
+        self.owes = dict(self._owing())
+        self.looks = [b.place(f"cell.supervisor.looks at {c.file}", b.unit) for c in looked]
+        b.begin(self.looks[0] if self.looks else self.calm, b.dot)
+        for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True):
+            self._transition(t, owner)
+        self._publishing()
+        self._writing()
+        self._reading()
+        for owner in range(1, len(partition.owners)):
+            self._stopping(owner)
+        if partition.net.timed:
+            self._time()
+
+    def made(self) -> Running:
+        """The whole."""
+        return Running(
+            net=self.b.net(),
+            partition=self.partition,
+            over=self.over,
+            stopped=self.stopped,
+            steps=tuple(self.step_owner),
+            clock=tuple(self.clock),
+            probes=tuple(self.probes),
+            meek=tuple(_meek(self.partition)),
+            instant=tuple(_instant(self.partition, self.machines.values(), surely=True)),
+            idle=tuple(_instant(self.partition, self.machines.values(), surely=False)),
+            names=frozenset(t.name for t in self.partition.net.transitions),
+            resting=self.idle,
+            silences=tuple(self._silences()),
+            unsure=self.unsure,
+        )
+
+    def _step(
+        self,
+        owner: int,
+        name: str,
+        priority: int,
+        *arcs: Arc,
+        guards: Sequence[core.Exp] = (),
+    ) -> int:
+        arcs = (*arcs, self.b.absent(self.stopped))
+        self.b.transition(f"cell.{name}", arcs, priority=priority, guards=guards)
+        self.step_owner.append(owner)
+        return len(self.partition.net.transitions) + len(self.step_owner) - 1
+
+    def _on(self, place: int) -> Arc:
+        return self.b.put(place, self.b.dot)
+
+    def _off(self, place: int) -> Arc:
+        return self.b.take(place, self.b.dot)
+
+    def _has(self, place: int) -> Arc:
+        return self.b.test(place, self.b.dot)
+
+    def _goes_on(self) -> list[Arc]:
+        """More arcs of what a robot does: it may have ended with the supervisor."""
+        return [] if self.going is None else [self._has(self.going)]
+
+    def _any(self, place: int) -> Arc:
+        """Tests that the place holds a token."""
+        return self.b.test(place, self.b.var("v", self.b.places[place].colset))
+
+    def _transition(self, t: FlatTransition, owner: int) -> None:
+        flags = [self.seen, self.out] if owner == SUPERVISOR else [self.out]
+        taken = [a.place for a in t.arcs if a.kind is ArcKind.INPUT]
+        arcs = [self._off(own[place]) for place in taken for own in flags if place in own]
+        arcs += [self._has(self.calm)] if owner == SUPERVISOR else self._goes_on()
+        arcs.append(self.b.absent(self.stopped))
+        self.b.add_arcs(t.index, arcs, {})
+
+    def _owing(self) -> Iterator[tuple[int, int]]:
+        """By robot that gets flags: a place that is marked while it owes an answer (I8 of docs/protocol.md)."""
+        for owner in self.machines:
+            if any(c.reader == owner and c.kind is ChannelKind.FLAG for c in self.written):
+                name = self.partition.owners[owner].name
+                yield owner, self.b.place(f"cell.{name}.owes", self.b.unit)
+
+    def _silences(self) -> Iterator[Silence]:
+        """Of each robot that may wait for others while it owes an answer."""
+        for owner, owes in self.owes.items():
+            program = self.machines[owner]
+            states = []
+            for place in program.control:
+                steps = program.steps_from(place)
+                needed = [[p for p, *_ in s.takes if p in program.channels] for s in steps]
+                if needed and all(needed):
+                    there = (tuple((p, *self._shown(p)) for p in places) for places in needed)
+                    states.append((place, tuple(there)))
+            mine = [c.place for c in self.looked if c.writer == owner]
+            if states:
+                answers = tuple((place, self.seen[place]) for place in mine)
+                yield Silence(self.partition.owners[owner].phrase, owes, tuple(states), answers)
+
+    def _shown(self, place: int) -> tuple[int, ...]:
+        return (self.out[place],) if place in self.out else ()
+
+    def _asked(self, c: Channel) -> list[list[Arc]]:
+        """More arcs of the step that publishes a message: whoever gets a flag owes an answer."""
+        owes = self.owes.get(c.reader)
+        if owes is None or c.kind is not ChannelKind.FLAG:
+            return [[]]
+        return [[self.b.absent(owes), self._on(owes)], [self._has(owes)]]
+
+    def _answered(self, c: Channel) -> list[list[Arc]]:
+        """The same of the step that sees a message: any is an answer."""
+        owes = self.owes.get(c.writer)
+        return [[]] if owes is None else [[self._off(owes)], [self.b.absent(owes)]]
+
+    def _publishing(self) -> None:
+        """What has been put is published in its order; then the supervisor rests, or has finished."""
+        at = self.after
+        for c in self.written:  # data come before flags
+            out = self.out[c.place]
+            arcs = [self._has(self.calm), self._any(c.place), self.b.absent(out), self._on(out)]
+            for more in self._asked(c):
+                self._step(SUPERVISOR, f"publishes {c.file}", at, *arcs, *more)
+            at += 1
+        for place in self.partition.final_places:
+            arcs = [self._off(self.calm), self._any(place), self._on(self.over)]
+            self._step(SUPERVISOR, "is over", at, *arcs)
+        self._step(SUPERVISOR, "rests", at + 1, self._off(self.calm), self._on(self.idle))
+        if self.going is not None:
+            arcs = [self._has(self.over), self._off(self.going)]
+            self._step(SUPERVISOR, "ends the robots", at + 1, *arcs)
+
+    def _writing(self) -> None:
+        """What a robot writes to several readers goes out in its order, before the robot does anything else."""
+        first = min([t.priority for t in self.partition.net.transitions] or [0])
+        for i, c in enumerate(reversed(self.staged), 1):
+            out = self.out[c.place]
+            arcs = [self._any(c.place), self.b.absent(out), self._on(out)]
+            name = self.partition.owners[c.writer].name
+            self._step(c.writer, f"{name} publishes {c.file}", first - i, *arcs)
+
+    def _reading(self) -> None:
+        for i, c in enumerate(self.looked):
+            after = self.looks[i + 1] if i + 1 < len(self.looks) else self.calm
+            seen = self.seen[c.place]
+            found = [self._any(c.place), self.b.absent(seen), self._on(seen), self._on(after)]
+            found += self._is_there(c.place)
+            here = self._off(self.looks[i])
+            for more in self._answered(c):
+                idle = self._off(self.idle)
+                self._step(SUPERVISOR, f"sees {c.file}", self.after, idle, *found, *more)
+                self._step(SUPERVISOR, f"sees {c.file} as well", self.after, here, *found, *more)
+            self._step(SUPERVISOR, f"passes {c.file}", self.after + 1, here, self._on(after))
+
+    def _stopping(self, owner: int) -> None:
+        """A robot whose script finds no transition that fits, and none that waits, stops; or ends owing an answer."""
+        program = self.machines[owner]
+        name = self.partition.owners[owner].name
+        for step in program.steps:
+            t = step.transition
+            if sum(p in program.channels for p, *_ in step.takes) > MOST_MESSAGES:
+                raise NotModelledError(f"`{t.name}` takes more than {MOST_MESSAGES} messages")
+            for arcs, guards in waits(self.partition, t, self._is_there, self._is_missing):
+                binding = {x.guard for x in t.plan if isinstance(x, BindEquation)}
+                bound = [t.guards[i] for i in binding]
+                asked = [g for g in guards if g not in bound]
+                kept = [g for g in guards if g in bound]
+                held = [*kept, *self.conditions.held(asked)]
+                made = self._step(owner, f"{name} waits", self.after, *arcs, guards=held)
+                self.probes.append(made)
+                self._doubt(owner, f"{name} may raise", arcs, kept, asked)
+        for place in program.control:
+            if program.steps_from(place):
+                short = self.partition.net.places[place].short
+                arcs = [self._any(place), self._on(self.stopped), *self._goes_on()]
+                for between in (self.idle, self.over):
+                    here = self._has(between)
+                    self._step(owner, f"{name} stops at {short}", self.after + 1, *arcs, here)
+            elif owner in self.owes:
+                arcs = [self._any(place), self._has(self.owes[owner]), self._has(self.idle)]
+                arcs += [self._on(self.stopped)]
+                self._step(owner, f"{name} {OWING}", self.after + 3, *arcs)
+        can_end = not all(map(program.steps_from, program.control))
+        for c in self.looked if owner in self.owes and can_end else ():
+            if c.writer == owner:  # what is on its way may be the answer
+                arcs = [self._any(c.place), self.b.absent(self.seen[c.place])]
+                made = self._step(owner, f"{name} has answered", self.after + 2, *arcs)
+                self.probes.append(made)
+
+    def _doubt(
+        self,
+        owner: int,
+        name: str,
+        arcs: Sequence[Arc],
+        kept: Sequence[core.Exp],
+        asked: Sequence[core.Exp],
+    ) -> None:
+        """A step that marks, before anything else of its owner, that a probe's condition raises an exception."""
+        guards = self.conditions.unsure(asked)
+        if guards is None:
+            return
+        if self.unsure is None:
+            self.unsure = self.b.place("cell.unsure", self.b.unit)
+        first = min([t.priority for t in self.partition.net.transitions] or [0])
+        # A probe's arcs only take, as it never occurs: this one gives everything back.
+        tests = [
+            Arc(ArcKind.BOTH, a.place, a.value, a.form) if a.kind is ArcKind.INPUT else a
+            for a in arcs
+        ]
+        here = [*tests, self.b.absent(self.unsure), self._on(self.unsure)]
+        self._step(owner, name, first - len(self.staged) - 1, *here, guards=[*kept, *guards])
+
+    def _is_there(self, place: int) -> list[Arc]:
+        return [self._has(self.out[place])] if place in self.out else []
+
+    def _is_missing(self, place: int) -> Arc:
+        return self.b.absent(self.out.get(place, place))
+
+    def _time(self) -> None:
+        """The clock, whose steps the explorer takes one unit later; each of them may wake the supervisor."""
+        self._step(
+            SUPERVISOR,
+            "wakes",
+            self.after,
+            self._off(self.idle),
+            self._off(self.news),
+            self._on(self.calm),
+        )
+        clock = len(self.partition.owners)
+        quiet = self.b.absent(self.calm)
+        for name, news in (
+            ("waits", [self.b.absent(self.news), self._on(self.news)]),
+            ("waits on", [self._has(self.news)]),
+        ):
+            self.clock.append(self._step(clock, f"clock.{name}", self.after, quiet, *news))
+
+
+def _staged(partition: Partition) -> Iterator[Channel]:
+    """Channels of robots whose messages come out in an order that somebody could notice, in that order."""
+    channels = {c.place: c for c in partition.channels}
+    found: set[int] = set()
+    for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True):
+        put = {a.place for a in t.arcs if a.kind is ArcKind.OUTPUT and a.place in channels}
+        if owner != SUPERVISOR and len({channels[place].reader for place in put}) > 1:
+            found |= put
+    return (c for c in partition.channels if c.place in found)
+
+
+def _instant(partition: Partition, machines: Iterable[Machine], *, surely: bool) -> Iterator[int]:
+    """Transitions of robots for which their scripts neither wait for a message nor carry out a command.
+
+    A delay that is not zero lets a step of the clock come before what follows. One that is zero is a wait for no time,
+    unless nothing but a zero is written there: a script that repeats it stands still in time, but does not stop.
+
+    Args:
+        partition: the cell.
+        machines: its programs.
+        surely: whether only those count of which that is certain: a command may stand on a branch, a delay may be zero.
+    """
+    channels = {c.place for c in partition.channels}
+    commands = Commands(partition)
+    for program in machines:
+        for step in program.steps:
+            t = step.transition
+            waits_for = any(a.place in channels and a.kind is not ArcKind.OUTPUT for a in t.arcs)
+            action = None if t.code is None else t.code.action
+            acts = action is not None and (
+                commands.may_come(action) if surely else commands.must_come(action)
+            )
+            if not (waits_for or acts or (surely and _may_pause(step))):
+                yield t.index
+
+
+def _may_pause(step: Step) -> bool:
+    """Whether a delay of a robot's transition becomes a wait, for however long."""
+    delays = [e for outcome in step.outcomes for _, e in outcome.delays]
+    delays += [] if step.transition.delay is None else [step.transition.delay]
+    return any(seconds(e) != 0.0 for e in delays)
+
+
+def _meek(partition: Partition) -> Iterator[int]:
+    """Transitions of robots that wait for a message which another one, that comes later in order, does not need."""
+    net = partition.net
+    channels = {c.place for c in partition.channels}
+
+    def inputs(t: FlatTransition, which: bool) -> set[int]:
+        return {
+            a.place
+            for a in t.arcs
+            if a.kind in (ArcKind.INPUT, ArcKind.BOTH) and (a.place in channels) is which
+        }
+
+    for owner in range(1, len(partition.owners)):
+        own = [t for t in net.transitions if partition.transition_owner[t.index] == owner]
+        own.sort(key=lambda t: (t.priority, t.index))
+        for i, t in enumerate(own):
+            rivals = (u for u in own[i + 1 :] if inputs(t, False) & inputs(u, False))
+            if any(inputs(t, True) - inputs(u, True) for u in rivals):
+                yield t.index

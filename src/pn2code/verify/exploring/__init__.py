@@ -1,0 +1,1 @@
+"""Exploring a net: the compiled explorer, its options and reductions, and what it has found."""

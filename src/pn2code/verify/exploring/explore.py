@@ -1,0 +1,414 @@
+"""Exploring: the compiled explorer at work, and again with more room where a place turned out to hold more.
+
+found = explore(net, {}, Limits(threads=2), d)
+found.nodes, found.complete
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import ExitStack, suppress
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import IO, Any
+
+from pn2code.base.deadline import Deadline, TimeIsOverError
+from pn2code.base.os_reason import os_reason
+from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.net.flat import FlatNet
+from pn2code.net.predicate import Predicate
+from pn2code.verify.codes import (
+    BEYOND_ROOM,
+    EXPLORER_FAILED,
+    REDUCTION_MISMATCH,
+    SPILL_FULL,
+    TIME_OVER,
+)
+from pn2code.verify.exploring import nondeterminism, programs
+from pn2code.verify.exploring.grace import Grace, processor_time
+from pn2code.verify.exploring.limits import Limits, default_memory
+from pn2code.verify.exploring.programs import Sizes
+from pn2code.verify.exploring.reductions import OF_ELEMENTS, Chosen, possible, refuse
+from pn2code.verify.exploring.result import Exploration
+
+Progress = Callable[[Mapping[str, Any]], None]
+"""Is told what the explorer says of itself twice a second: states, arcs, rate, frontier, depth, mib, phase."""
+KEPT_ERRORS = 20
+"""Lines of what the explorer says that are no progress."""
+TOO_DEEP = "recursion too deep"
+"""What the runtime says of it (pn_num.c)."""
+LEAST_SECONDS = 1e-6
+"""No time at all is a limit, too; the explorer wants a positive one."""
+
+
+def _nothing(_: Mapping[str, Any]) -> None:
+    """For those who do not care."""
+
+
+def _never() -> bool:
+    return False
+
+
+@dataclass(frozen=True, slots=True)
+class ExploreOptions:
+    """What to do besides counting.
+
+    Args:
+        traces: a folder for the traces to dead markings and to an exception; None: none are wanted.
+        stem: what the names of their files begin with.
+        graph: a file for the whole graph, marking by marking; None: not wanted. It is not written when the
+            exploration is not complete, or has more than `graph_limit` nodes.
+        colours: of each multi-set bound at most so many colours are told; None: all. `whole`: places of which all are.
+        questions: about the states and the runs (`properties.questions`), "" for none; `predicates`: the conditions
+            that they mention. `evidence`: a folder for the runs that show the answers.
+        sizes: what the places of the compiled net hold at first; None: what their structure and initial marking say.
+        quick: rather compile quickly than explore quickly.
+        pace: seconds between two tellings of progress.
+        progress, interrupted: how the outside hears and says that it has been enough.
+    """
+
+    traces: Path | None = None
+    stem: str = "net"
+    graph: Path | None = None
+    graph_limit: int | None = None
+    colours: int | None = None
+    whole: tuple[int, ...] = ()
+    questions: str = ""
+    predicates: tuple[Predicate, ...] = ()
+    evidence: Path | None = None
+    sizes: Sizes | None = None
+    quick: bool = False
+    pace: float = 0.5
+    progress: Progress = _nothing
+    interrupted: Callable[[], bool] = _never
+
+
+def explore(
+    net: FlatNet,
+    storage: Mapping[str, str],
+    limits: Limits,
+    d: Diagnostics,
+    wishes: ExploreOptions | None = None,
+) -> Exploration | None:
+    """Explores a net; None after an error that was reported.
+
+    Args:
+        net: the net.
+        storage: as for `Game`.
+        limits: how far.
+        d: gets the errors.
+        wishes: what else.
+
+    Raises:
+        GameError: a declaration or an initial marking raises an exception.
+    """
+    wishes = wishes or ExploreOptions()
+    deadline = limits.deadline
+    began = time.perf_counter()
+    try:
+        with deadline.enforced():
+            if nondeterminism.refuse(net, d):
+                return None
+            chosen = possible(net, limits.reductions, d, wishes.predicates)
+            sizes = wishes.sizes or Sizes.start(net, storage)
+    except TimeIsOverError:
+        return _too_late(net, limits, time.perf_counter() - began, d)
+
+    def interrupted() -> bool:
+        return wishes.interrupted() or deadline.is_over()
+
+    # Most spaces of large nets are small: it does not pay to have the compiler work for long before that is known.
+    is_first = len(net.transitions) > programs.MANY and not wishes.quick
+    compiling = 0.0
+    while True:
+        began = time.perf_counter()
+        with ExitStack() as stack:
+            compiled = programs.program(
+                net,
+                storage,
+                sizes,
+                d,
+                wishes.predicates,
+                interrupted=interrupted,
+                quick=wishes.quick or is_first,
+            )
+            program = None
+            with suppress(TimeIsOverError), deadline.enforced():
+                program = stack.enter_context(compiled)
+            compiling += time.perf_counter() - began
+            if program is None:
+                if d.has_errors or not interrupted():
+                    return None
+                if not wishes.interrupted():
+                    return _too_late(net, limits, compiling, d)
+                return Exploration.of(net, nothing(net, limits), compiling)
+            own = limits
+            if is_first:
+                most = limits.max_states or programs.FIRST_STATES
+                own = replace(limits, max_states=min(most, programs.FIRST_STATES))
+            options = _options(own, chosen, sizes, wishes)
+            telling = replace(wishes, progress=_nothing) if is_first else wishes
+            found = _run_with_tables(net, program, options, chosen, telling, deadline, d)
+        if found is None:
+            return None
+        if is_first and _is_too_much(found, own, limits):
+            is_first = False
+            continue
+        if found.get("spill_error") and found["why"] == "memory":
+            d.warning(
+                SPILL_FULL,
+                f"no more can be kept in `{limits.spill}`: {found['spill_error'].lower()}",
+                Origin(str(limits.spill)),
+            )
+        error = found["error"]
+        if error and error["kind"] == "reduction":
+            for reduction in set(OF_ELEMENTS).intersection(chosen.reductions):
+                refuse(reduction, error["message"], Origin(net.file), d)
+            chosen = chosen.without_elements()
+            continue
+        if error and error["kind"] == "mismatch":
+            _differs(net, error, d)
+            return None
+        if not error or error["kind"] not in ("capacity", "memory"):
+            return replace(
+                Exploration.of(net, found, compiling), symmetries=chosen.symmetry_names()
+            )
+        place = net.places[error["place"]] if error["kind"] == "capacity" else None
+        larger = sizes.larger(place.name if place else None)
+        if larger is None:
+            what = f"place `{place.name}`" if place else "one marking's lists and strings"
+            d.error(
+                BEYOND_ROOM,
+                f"{what} needs more memory than the explorer can give it",
+                place.origins[0] if place else Origin(net.file),
+                hint="run the net with `pn2code simulate`, limit the place in the net, or limit the exploration",
+            )
+            return Exploration.of(net, {**found, "why": "memory"}, compiling)
+        sizes = larger
+
+
+def _is_too_much(found: Mapping[str, Any], own: Limits, limits: Limits) -> bool:
+    """Whether what was compiled quickly has come to an end of its own, not to one that the user has set.
+
+    A stack that is full is full later in what the compiler has worked at for longer.
+    """
+    said = [found["error"]["message"]] if found["error"] else []
+    said += [answer["why"] for answer in found.get("queries") or ()]
+    return TOO_DEEP in said or (found["why"] == "states" and own.max_states != limits.max_states)
+
+
+def _too_late(net: FlatNet, limits: Limits, compiling: float, d: Diagnostics) -> Exploration:
+    """Nothing has been explored, since the time was over before that."""
+    if all(i.code != TIME_OVER for i in d):
+        d.warning(
+            TIME_OVER,
+            "the time was up before the net was compiled, so no marking has been explored",
+            Origin(net.file),
+            hint="give it more time with `--max-seconds`; a net that has been compiled once is kept",
+        )
+    return Exploration.of(net, nothing(net, limits, "seconds"), compiling)
+
+
+def nothing(net: FlatNet, limits: Limits, why: str = "interrupted") -> dict[str, Any]:
+    """What an explorer would have printed that was ended before it began."""
+    sizes = ("nodes", "arcs", "depth", "seconds", "bytes_per_state", "peak_mib", "dead_count")
+    return {
+        **dict.fromkeys(sizes, 0),
+        "complete": False,
+        "why": why,
+        "error": None,
+        "threads": limits.threads,
+        "fired": [0] * len(net.transitions),
+        "dead": [],
+        "reductions": [reduction.value for reduction in limits.reductions],
+    }
+
+
+def _options(limits: Limits, chosen: Chosen, sizes: Sizes, wishes: ExploreOptions) -> list[str]:
+    ends = [s for s in (limits.max_seconds, limits.deadline.left) if s is not None]
+    seconds = min(ends, default=None)
+    given: list[tuple[str, object]] = [
+        ("--threads", limits.threads),
+        ("--order", limits.order.value),
+        ("--arena", sizes.memory >> 20),
+        ("--max-states", limits.max_states),
+        ("--max-seconds", None if seconds is None else max(seconds, LEAST_SECONDS)),
+        ("--memory", limits.memory or default_memory()),
+        ("--parent", os.getpid()),
+        ("--approximate", limits.approximation.value if limits.approximation else None),
+        ("--spill", limits.spill),
+        ("--trace-to", wishes.traces and wishes.traces / f"{wishes.stem}.dead-"),
+        ("--traces", limits.traces if wishes.traces else None),
+        ("--error-trace-to", wishes.traces and wishes.traces / f"{wishes.stem}.error-"),
+        ("--query-trace-to", wishes.evidence and wishes.evidence / f"{wishes.stem}.query-"),
+        ("--write-graph", wishes.graph),
+        ("--write-limit", wishes.graph_limit),
+        ("--multiset-limit", wishes.colours),
+        ("--whole", ",".join(map(str, wishes.whole)) or None),
+        ("--progress-every", wishes.pace),
+        *(("--reduce", reduction.value) for reduction in chosen.reductions),
+    ]
+    options = [text for name, value in given if value is not None for text in (name, str(value))]
+    return options + ["--progress"] + ([] if limits.graph else ["--no-graph"])
+
+
+def _run_with_tables(
+    net: FlatNet,
+    program: Path,
+    options: Sequence[str],
+    chosen: Chosen,
+    wishes: ExploreOptions,
+    deadline: Deadline,
+    d: Diagnostics,
+) -> dict[str, Any] | None:
+    """Like `_run`, with files of binding elements (for reductions) and of questions as long as it runs."""
+    tables = {
+        "--elements": chosen.elements.text() if chosen.elements else "",
+        "--queries": wishes.questions,
+    }
+    made: list[Path] = []
+    options = list(options)
+    try:
+        for option, text in tables.items():
+            if not text:
+                continue
+            try:
+                handle, name = tempfile.mkstemp(prefix="pn2code-")
+                os.close(handle)
+                made.append(Path(name))
+                made[-1].write_text(text, encoding="ascii")
+            except OSError as problem:
+                what = "binding elements" if option == "--elements" else "questions"
+                d.error(
+                    EXPLORER_FAILED,
+                    f"there is no room for the table of {what}: {os_reason(problem)}",
+                    Origin(net.file),
+                    hint="explore with `--no-reduction`, or set TMPDIR",
+                )
+                return None
+            options += [option, name]
+        return _run(net, program, options, wishes, deadline, d)
+    finally:
+        for table in made:
+            table.unlink(missing_ok=True)
+
+
+def _differs(net: FlatNet, error: Mapping[str, Any], d: Diagnostics) -> None:
+    index = error["transition"]
+    known = index is not None and index < len(net.transitions)
+    d.error(
+        REDUCTION_MISMATCH,
+        f"the compiled net and the unfolded net differ: {error['message']}",
+        net.transitions[index].origin if known else Origin(net.file),
+        hint="explore with `--no-reduction`",
+    )
+
+
+def _run(
+    net: FlatNet,
+    program: Path,
+    options: Sequence[str],
+    wishes: ExploreOptions,
+    deadline: Deadline,
+    d: Diagnostics,
+) -> dict[str, Any] | None:
+    """One process from its start to its last word."""
+    process = subprocess.Popen(
+        [str(program), *options],
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        start_new_session=True,  # Ctrl-C is for us; we pass it on, once
+        env={**os.environ, "LC_ALL": "C"},
+    )
+    assert process.stdout is not None and process.stderr is not None
+    said: list[str] = []
+    report: list[bytes] = []
+    listeners = (
+        threading.Thread(target=_listen, args=(process.stderr, wishes, said), daemon=True),
+        threading.Thread(target=_read, args=(process.stdout, report), daemon=True),
+    )
+    for listener in listeners:
+        listener.start()
+    told = is_late = False
+    grace = Grace(deadline, lambda: processor_time(process.pid))
+    try:
+        while True:
+            with suppress(subprocess.TimeoutExpired):
+                process.wait(0.05)
+                break
+            if not told and wishes.interrupted():
+                told = True
+                process.send_signal(signal.SIGINT)
+            if grace.is_over():  # in an inscription that takes too long, or for ever
+                is_late = True
+                process.kill()
+    except BaseException:
+        process.kill()
+        process.wait()
+        _tidy(wishes, process.pid)
+        raise
+    for listener in listeners:
+        listener.join()
+    try:
+        found: dict[str, Any] = json.loads(b"".join(report).decode("utf-8", "surrogateescape"))
+    except ValueError:
+        _tidy(wishes, process.pid)
+        if told and process.returncode == -signal.SIGINT:  # before it could listen
+            return nothing(net, Limits())
+        if is_late:
+            d.warning(
+                TIME_OVER,
+                "the explorer did not end when its time was up, and was stopped; what it had found is lost",
+                Origin(net.file),
+                hint="an inscription may compute for very long, or for ever; `--max-states` ends it earlier",
+            )
+            return nothing(net, Limits(), "seconds")
+        _bad_end(net, process.returncode, said, d)
+        return None
+    return found
+
+
+def _tidy(wishes: ExploreOptions, pid: int) -> None:
+    """Removes what an explorer that came to a bad end was writing."""
+    if wishes.traces is not None:
+        for part in wishes.traces.glob(f"*.{pid}.part"):
+            with suppress(OSError):
+                part.unlink()
+
+
+def _read(stream: IO[bytes], report: list[bytes]) -> None:
+    with stream:
+        report.append(stream.read())
+
+
+def _listen(stream: IO[bytes], wishes: ExploreOptions, said: list[str]) -> None:
+    with stream:
+        for line in stream:
+            text = line.decode("utf-8", "replace").rstrip()
+            try:
+                progress = json.loads(text)
+            except ValueError:
+                progress = None
+            if isinstance(progress, dict):
+                wishes.progress(progress)
+            elif text and len(said) < KEPT_ERRORS:
+                said.append(text)
+
+
+def _bad_end(net: FlatNet, code: int, said: Sequence[str], d: Diagnostics) -> None:
+    how = f"was ended by signal {-code}" if code < 0 else f"ended with code {code}"
+    d.error(
+        EXPLORER_FAILED,
+        f"the explorer {how} without a report",
+        Origin(net.file),
+        notes=said[-3:],
+        hint="give it a limit: `--memory MIB` or `--max-states N`",
+    )

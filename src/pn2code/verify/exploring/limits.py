@@ -1,0 +1,96 @@
+"""How far, and how, a state space is explored."""
+
+from __future__ import annotations
+
+import os
+from contextlib import suppress
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+
+from pn2code.base.deadline import NEVER, Deadline
+
+_LEAST = 64
+_UNKNOWN = 2048
+"""MiB, when the system does not say what is free."""
+
+
+class Order(StrEnum):
+    """The order in which markings are expanded."""
+
+    BREADTH = "bfs"
+    DEPTH = "dfs"
+
+
+class Approximation(StrEnum):
+    """Ways of storing less than the markings; some may then be taken for others, and be missed."""
+
+    BITSTATE = "bitstate"
+    HASH = "hash"
+
+
+class Reduction(StrEnum):
+    """Ways of seeing less than the whole space that keep what is asked."""
+
+    TIME = "time"
+    PARTIAL_ORDER = "partial-order"
+    SYMMETRY = "symmetry"
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What an exploration may use.
+
+    Args:
+        max_states: markings, None: no limit.
+        max_seconds: of exploration, None: no limit.
+        deadline: when all has to be over: compiling, too, and whatever else is explored for the same command.
+        memory: MiB of the explorer's tables, None: three quarters of what is free at the start.
+        threads: at least 1.
+        order: breadth first gives shortest traces.
+        approximation: None: every marking is stored completely.
+        spill: a folder for tables that are larger than memory, None: none.
+        graph: whether the graph is analysed (components, home markings, liveness, fairness).
+        traces: most dead markings that get a trace.
+        reductions: those that are wanted; one that the net does not permit is left out, with a diagnostic.
+    """
+
+    max_states: int | None = None
+    max_seconds: float | None = None
+    deadline: Deadline = NEVER
+    memory: int | None = None
+    threads: int = 1
+    order: Order = Order.BREADTH
+    approximation: Approximation | None = None
+    spill: Path | None = None
+    graph: bool = True
+    traces: int = 1
+    reductions: tuple[Reduction, ...] = ()
+
+
+def default_memory() -> int:
+    """Three quarters of what is free now, in MiB: of the machine, and of the control group that we are in."""
+    free = [_machine(), _group()]
+    known = [size for size in free if size is not None]
+    return max(_LEAST, min(known) * 3 // 4 >> 20) if known else _UNKNOWN
+
+
+def _machine() -> int | None:
+    with suppress(OSError, ValueError, IndexError):
+        for line in Path("/proc/meminfo").read_text(encoding="ascii").splitlines():
+            if line.startswith("MemAvailable:"):
+                return int(line.split()[1]) << 10
+    return None
+
+
+def _group() -> int | None:
+    folder = Path("/sys/fs/cgroup")
+    with suppress(OSError, ValueError):
+        most = int((folder / "memory.max").read_text(encoding="ascii"))  # "max": no limit
+        return max(most - int((folder / "memory.current").read_text(encoding="ascii")), 0)
+    return None
+
+
+def cores() -> int:
+    """Processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

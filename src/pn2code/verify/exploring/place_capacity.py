@@ -1,0 +1,155 @@
+"""How many tokens the places of a generated program hold, and what proves that it is enough.
+
+    found = rooms(partition, {"dadosrobo1": 1}, structural, space.found)
+    found[0]            # Room(bound=1, kind="invariant", proof="Waiting + Moving = 1")
+
+The structure of the net comes first (it needs no state space, and holds whatever the input files say), then the
+complete state space of the closed net, unless cell.toml declares the bound. A room without a bound is *assumed*.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+from pn2code.cell.partition import Partition
+from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.ir import nodes as ir
+from pn2code.lowering.nets.packing import colours
+from pn2code.net.flat import FlatNet
+from pn2code.structure.bounds import PlaceBound
+from pn2code.structure.report import Names, weighted
+from pn2code.verify.codes import CAPACITY_ASSUMED, CAPACITY_LARGE, CAPACITY_UNPROVED
+from pn2code.verify.exploring.result import Exploration
+
+DECLARED = "declared"
+SPACE = "state space"
+ASSUMED = "assumed"
+_LISTED = 5
+MOST_TOKENS = 1 << 20
+"""Of a place: for more, no program is generated."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlaceCapacity:
+    """Of a place.
+
+    Args:
+        bound: most tokens at a time; None: nothing is proven or declared.
+        kind: "invariant", "sub-invariant", "constant", "never marked", `SPACE`, `DECLARED` or `ASSUMED`.
+        proof: for the head of the generated file.
+    """
+
+    bound: int | None
+    kind: str
+    proof: str
+
+
+def rooms(
+    partition: Partition,
+    declared: Mapping[int, int],
+    structural: Mapping[int, PlaceBound],
+    found: Exploration | None,
+) -> tuple[PlaceCapacity, ...]:
+    """For each place.
+
+    Args:
+        partition: the net and its owners.
+        declared: place index -> what cell.toml says.
+        structural: what the structure of the net proves.
+        found: the state space of the cell as it runs, if it was explored.
+    """
+    net = partition.net
+    names = Names(net)
+    counts = found.bounds if found is not None and found.complete else None
+    result = []
+    for place in net.places:
+        own = structural.get(place.index)
+        if place.index in declared:
+            result.append(
+                PlaceCapacity(declared[place.index], DECLARED, "nothing: declared in cell.toml")
+            )
+        elif own is not None and own.bound is not None and own.proof is not None:
+            kind, weights = own.proof.kind, own.proof.weights
+            relation = "<=" if kind == "sub-invariant" else "="
+            terms = weighted((names.place(p), w) for p, w in sorted(weights.items()))
+            text = f"{kind} {terms} {relation} {own.proof.initial}" if weights else kind
+            result.append(PlaceCapacity(own.bound, kind, text))
+        elif counts is not None:
+            assert found is not None
+            text = f"the state space, all {found.nodes:,} states of the cell as it runs"
+            result.append(PlaceCapacity(counts[place.index].upper, SPACE, text))
+        else:
+            result.append(PlaceCapacity(None, ASSUMED, "nothing: assumed"))
+    return tuple(result)
+
+
+def with_rooms(net: ir.NetIR, found: Sequence[PlaceCapacity]) -> ir.NetIR:
+    """The compiled net with arrays of these sizes.
+
+    An array has an entry for each *different* token, so that a place over few colours needs no more than there are;
+    the bound is of all tokens, and looked at by the supervisor.
+    """
+    descriptors = {d.name: d for d in net.descriptors}
+    places = []
+    for place, room in zip(net.places, found, strict=True):
+        capacity = place.capacity
+        if room.bound is not None:
+            few = 0 if place.timed else colours(descriptors, place.table)
+            capacity = max(min(room.bound, few) if few else room.bound, 1)
+        places.append(replace(place, capacity=capacity, bound=room.bound, proof=room.proof))
+    return replace(net, places=tuple(places))
+
+
+# --- what is said of them ------------------------------------------------------------------------
+
+
+def refuse(net: FlatNet, found: Sequence[PlaceCapacity], why: str, d: Diagnostics) -> None:
+    """Reports each place whose room is assumed.
+
+    Args:
+        net: the net.
+        found: of its places.
+        why: why the state space does not tell, as a clause; "" if it was not asked.
+        d: gets the errors.
+    """
+    for place, room in zip(net.places, found, strict=True):
+        if room.bound is None:
+            d.error(
+                CAPACITY_UNPROVED,
+                f"nothing proves how many tokens place `{place.name}` can hold",
+                place.origins[0],
+                notes=[f"its structure proves no bound, and neither does the state space: {why}"]
+                if why
+                else [],
+                hint=f'declare the most tokens in cell.toml: [capacity] "{place.short}" = N; or use `--unchecked`',
+            )
+
+
+def refuse_large(net: FlatNet, found: Sequence[PlaceCapacity], d: Diagnostics) -> None:
+    """Reports each place that can hold more tokens than a program has arrays for."""
+    for place, room in zip(net.places, found, strict=True):
+        if room.bound is not None and room.bound > MOST_TOKENS:
+            d.error(
+                CAPACITY_LARGE,
+                f"place `{place.name}` can hold {room.bound:,} tokens, and a program has room for {MOST_TOKENS:,}",
+                place.origins[0],
+                notes=[f"what proves it: {room.proof}"],
+                hint="limit the place in the net, or declare in cell.toml what it really holds: "
+                f'[capacity] "{place.short}" = N',
+            )
+
+
+def warn_assumed(net: FlatNet, found: Sequence[PlaceCapacity], d: Diagnostics) -> None:
+    """One warning for all places whose room is assumed."""
+    assumed = [p.name for p, room in zip(net.places, found, strict=True) if room.bound is None]
+    if assumed:
+        some = ", ".join(f"`{name}`" for name in assumed[:_LISTED])
+        more = ", ..." if len(assumed) > _LISTED else ""
+        many = "these places" if len(assumed) > 1 else "this place"
+        d.warning(
+            CAPACITY_ASSUMED,
+            f"nothing proves how many tokens {many} can hold: {some}{more}",
+            Origin(net.file),
+            hint="the program stops safely when there is no room left; `[capacity]` in a cell.toml declares bounds",
+        )

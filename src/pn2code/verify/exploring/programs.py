@@ -1,0 +1,165 @@
+"""Compiled explorers: a net and the host `explore`.
+
+with program(net, {}, Sizes.start(net, {}), d) as built:      # None after a diagnostic
+    subprocess.run([built, "--threads", "2"])
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+import pn2code
+from pn2code.cell.divide import divide
+from pn2code.diagnostics import Diagnostics
+from pn2code.emission import c as emit_c
+from pn2code.emission.output import OutputFile
+from pn2code.lowering.nets import net as lower_net
+from pn2code.lowering.nets.packing import Packing, choose
+from pn2code.net.flat import FlatNet
+from pn2code.net.predicate import Predicate
+from pn2code.semantics.evaluation.files import Files
+from pn2code.semantics.game.token_game import Game
+from pn2code.structure import Sum, bounds_and_sums
+from pn2code.structure.bounds import PlaceBound
+from pn2code.toolchain import programs
+from pn2code.toolchain.programs import Host
+
+HOST = Host("explore", flags=("-pthread",), own=("-march=native",), libraries=("-pthread", "-lm"))
+"""Explorers run where they are compiled, so the search and its store may use all that the processor has. The net,
+and the runtime that computes its values, are compiled as everywhere else."""
+QUICK = replace(HOST, net=("-O0",))
+"""For small spaces: compiled in a fifth of the time. Only the net is slower, up to three times; the explorer is not."""
+LARGE = replace(HOST, net=("-DPN_MANY",))
+"""For nets of many transitions: the compiler decides itself what is worth having in several copies."""
+MANY = 40
+"""Transitions of a net that is worth to be compiled quickly first."""
+FIRST_STATES = 100_000
+"""So many states are soon seen also by what was compiled quickly."""
+ROOM = 16
+"""Different tokens that a place can hold at first; what proves too little is made more, place by place."""
+MOST_ROOM = 1 << 20
+MEMORY = 1 << 26
+"""Bytes for the lists and strings of one thread, at first."""
+MOST_MEMORY = 1 << 32
+GROWTH = 4
+Structure = tuple[Mapping[int, PlaceBound], tuple[Sum, ...]]
+"""What `bounds_and_sums` gives."""
+FEW = 2
+"""Places that get more one by one, before all do that may need it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """What the places of a compiled net hold.
+
+    Args:
+        packing: the widths of counters.
+        room: by name of the place, different tokens; all others `ROOM`.
+        memory: bytes for lists and strings.
+        proven: places whose counters are wide enough for all that can come.
+        enlarged: how often a place turned out to hold more.
+    """
+
+    packing: Packing
+    room: Mapping[str, int] = field(default_factory=dict)
+    memory: int = MEMORY
+    proven: frozenset[str] = frozenset()
+    enlarged: int = 0
+
+    @staticmethod
+    def start(net: FlatNet, storage: Mapping[str, str], known: Structure | None = None) -> Sizes:
+        """From what the places hold at first, and what the structure proves (unless that is `known`).
+
+        Raises:
+            GameError: a declaration or an initial marking raises an exception.
+        """
+        marking = Game(net, storage, files=Files(None)).marking
+        counts = [Counter(tokens).values() for tokens in marking.places]
+        room = {
+            p.name: max(ROOM, 2 * len(tokens)) for p, tokens in zip(net.places, counts, strict=True)
+        }
+        bounds, sums = known or bounds_and_sums(net, storage=storage)
+        proven = {k: b.per_colour for k, b in bounds.items() if b.per_colour is not None}
+        more = {k: n for k, n in room.items() if n > ROOM}
+        return Sizes(
+            choose(net, counts, proven, sums),
+            more,
+            proven=frozenset(net.places[i].name for i in proven),
+        )
+
+    def larger(self, place: str | None) -> Sizes | None:
+        """With more for a place, or (None) for lists and strings; None at the end of all sizes."""
+        if place is None:
+            return replace(self, memory=self.memory * GROWTH) if self.memory < MOST_MEMORY else None
+        room = self.room.get(place, ROOM) * GROWTH
+        if room > MOST_ROOM:
+            return None
+        packing = self.packing.wider(place)
+        width = packing.of(place)
+        if self.enlarged >= FEW and width > 0:
+            # Others will be next. To find that out one by one would take longer than their counters are worth.
+            wider = {
+                name: max(own, width) if own > 0 and name not in self.proven else own
+                for name, own in packing.width.items()
+            }
+            packing = replace(packing, width=wider)
+        return replace(
+            self,
+            room={**self.room, place: room},
+            packing=packing,
+            enlarged=self.enlarged + 1,
+        )
+
+
+def generated(
+    net: FlatNet,
+    storage: Mapping[str, str],
+    sizes: Sizes,
+    d: Diagnostics,
+    predicates: Sequence[Predicate] = (),
+) -> tuple[OutputFile, ...] | None:
+    """net.c and net.h; None when the net cannot be compiled, which was reported."""
+    partition = divide(net, None, d)
+    if partition is None:
+        return None
+    capacity = {p.name: sizes.room.get(p.name, ROOM) for p in net.places}
+    ir = lower_net.lower(
+        partition, storage, d, capacity=capacity, packing=sizes.packing, predicates=predicates
+    )
+    return None if ir is None or d.has_errors else emit_c.emit(ir, pn2code.__version__)
+
+
+@contextmanager
+def program(
+    net: FlatNet,
+    storage: Mapping[str, str],
+    sizes: Sizes,
+    d: Diagnostics,
+    predicates: Sequence[Predicate] = (),
+    *,
+    interrupted: Callable[[], bool] = lambda: False,
+    quick: bool = False,
+) -> Iterator[Path | None]:
+    """The explorer of a net, as long as the block lasts; None after a diagnostic, or when it was interrupted.
+
+    Args:
+        net: the net.
+        storage: as for `Game`.
+        sizes: how much its places hold.
+        d: gets the errors.
+        predicates: what can be asked of its markings.
+        interrupted: asked while compilers run.
+        quick: rather compile quickly than run quickly, unless it has been compiled already.
+    """
+    files = generated(net, storage, sizes, d, predicates)
+    if files is None:
+        yield None
+        return
+    best = LARGE if len(net.transitions) > MANY else HOST
+    host = QUICK if quick and not programs.is_kept(best, files) else best
+    with programs.program(host, files, d, interrupted=interrupted) as found:
+        yield found

@@ -1,0 +1,118 @@
+"""Which of the reductions that are asked for a net permits, and what the explorer needs for them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from pn2code.diagnostics import Diagnostics, Origin, Span
+from pn2code.net.flat import FlatNet
+from pn2code.net.predicate import Predicate
+from pn2code.verify.codes import REDUCTION_NOT_POSSIBLE
+from pn2code.verify.exploring import time_reduction
+from pn2code.verify.exploring.elements import Elements, NotPossibleError, elements
+from pn2code.verify.exploring.limits import Reduction
+from pn2code.verify.exploring.time_reduction import Obstacle
+
+OBSTACLES: dict[Reduction, Callable[..., Obstacle | None]] = {
+    Reduction.TIME: time_reduction.obstacle,
+}
+"""What looks for the first thing in a net that is in the way of a reduction."""
+OF_ELEMENTS = (Reduction.PARTIAL_ORDER, Reduction.SYMMETRY)
+"""Reductions that rest on the table of binding elements."""
+
+
+@dataclass(frozen=True, slots=True)
+class Chosen:
+    """The reductions that are used.
+
+    Args:
+        reductions: which.
+        elements: the table of binding elements, None: none of them needs it.
+    """
+
+    reductions: tuple[Reduction, ...]
+    elements: Elements | None
+
+    def without_elements(self) -> Chosen:
+        """Those that need no table."""
+        return Chosen(tuple(r for r in self.reductions if r not in OF_ELEMENTS), None)
+
+    def symmetry_names(self) -> tuple[str, ...]:
+        """What is permuted, for people."""
+        found = self.elements.symmetries if self.elements else None
+        is_used = Reduction.SYMMETRY in self.reductions
+        return found.names() if is_used and found is not None else ()
+
+
+def possible(
+    net: FlatNet,
+    wanted: Sequence[Reduction],
+    d: Diagnostics,
+    predicates: Sequence[Predicate] = (),
+) -> Chosen:
+    """Those that keep the answers for this net; each of the others gives a warning.
+
+    Args:
+        net: the net.
+        wanted: what was asked for.
+        d: gets the warnings.
+        predicates: conditions on markings that are asked for besides.
+
+    Raises:
+        GameError: a declaration or an initial marking raises an exception.
+    """
+    found: list[Reduction] = []
+    for reduction in wanted:
+        if reduction not in OBSTACLES:
+            continue
+        obstacle = OBSTACLES[reduction](net, predicates)
+        if obstacle is None:
+            found.append(reduction)
+        else:
+            refuse(reduction, obstacle.message, obstacle.at, d)
+    table = _table(net, [r for r in wanted if r in OF_ELEMENTS], d)
+    if table is not None:
+        found += _of_elements(net, table, wanted, d)
+    is_used = any(r in OF_ELEMENTS for r in found)
+    return Chosen(tuple(r for r in wanted if r in found), table if is_used else None)
+
+
+def refuse(reduction: Reduction, why: str, at: Origin | Span, d: Diagnostics) -> None:
+    """Reports that a reduction is not used."""
+    d.warning(
+        REDUCTION_NOT_POSSIBLE,
+        f"the reduction `{reduction.value}` is not possible: {why}",
+        at,
+        hint="the net is explored without it",
+    )
+
+
+def _table(net: FlatNet, wanted: Sequence[Reduction], d: Diagnostics) -> Elements | None:
+    if not wanted:
+        return None
+    try:
+        return elements(net, wants_symmetry=Reduction.SYMMETRY in wanted)
+    except NotPossibleError as problem:
+        for reduction in wanted:
+            refuse(reduction, str(problem), Origin(net.file), d)
+        return None
+
+
+def _of_elements(
+    net: FlatNet, table: Elements, wanted: Sequence[Reduction], d: Diagnostics
+) -> list[Reduction]:
+    found = []
+    if Reduction.PARTIAL_ORDER in wanted:
+        if table.unfolding.has_priorities:
+            why = "transitions have different priorities"
+            refuse(Reduction.PARTIAL_ORDER, why, Origin(net.file), d)
+        else:
+            found.append(Reduction.PARTIAL_ORDER)
+    if Reduction.SYMMETRY in wanted:
+        if table.symmetries is None or not table.symmetries.names():
+            why = "no permutation of the colours of a colour set maps the net to itself"
+            refuse(Reduction.SYMMETRY, why, Origin(net.file), d)
+        else:
+            found.append(Reduction.SYMMETRY)
+    return found

@@ -1,0 +1,339 @@
+"""What an exploration has found, in terms of the net."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+from pn2code.ml.core.colsets import Colset
+from pn2code.net.engine_names import EngineNames
+from pn2code.net.flat import FlatNet
+from pn2code.semantics.game.report import value_text
+from pn2code.semantics.values.colour_json import from_json
+from pn2code.semantics.values.colours import TEXTS
+
+FAIRNESS = ("impartial", "fair", "just", "none")
+
+
+@dataclass(frozen=True, slots=True)
+class Bounds:
+    """Of one place: least and greatest number of tokens, and for each colour (JSON of the traces) the same.
+
+    `lower_multiset` and `upper_multiset` are [[count, value], ...]; None: not computed. Of a multi-set with more
+    colours than were wanted they have only so many; `lower_colours` and `upper_colours` say how many there are.
+    """
+
+    lower: int
+    upper: int
+    lower_multiset: tuple[tuple[int, Any], ...] | None
+    upper_multiset: tuple[tuple[int, Any], ...] | None
+    lower_colours: int = 0
+    upper_colours: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """What an answer may rest on.
+
+    Args:
+        markings: every marking that can be reached has been seen, and what occurs in it.
+        arcs: the graph has been made, with all of its arcs.
+        components: the graph has been gone through: components, home markings, liveness, fairness.
+    """
+
+    markings: bool = False
+    arcs: bool = False
+    components: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Graph:
+    """What only the whole graph tells. Nodes are numbered breadth first; 1 is the initial marking.
+
+    Args:
+        scc_nodes, scc_arcs: strongly connected components, and arcs between different ones.
+        home_count: number of home markings; `home`: the first of them.
+        initial_is_home: whether the initial marking is one.
+        live: for each transition.
+        fairness: for each transition one of `FAIRNESS`; None: there is no infinite occurrence sequence.
+        seconds: what it took.
+    """
+
+    scc_nodes: int
+    scc_arcs: int
+    home_count: int
+    home: tuple[int, ...]
+    initial_is_home: bool
+    live: tuple[bool, ...]
+    fairness: tuple[str, ...] | None
+    seconds: float
+
+
+@dataclass(frozen=True, slots=True)
+class Trace:
+    """A shortest run to a marking."""
+
+    node: int
+    file: Path
+    steps: int
+
+    @staticmethod
+    def of(found: Mapping[str, Any]) -> Trace:
+        """From what the explorer prints."""
+        return Trace(found["node"], Path(found["file"]), found["steps"])
+
+
+@dataclass(frozen=True, slots=True)
+class Exploration:
+    """The state space, or the part of it that was seen.
+
+    Args:
+        complete: whether all that was wanted was done; else `why` says what was in the way: "states", "seconds",
+            "memory", "interrupted", "error", "approximation".
+        seen: what is complete, also where not all is.
+        error: of "error": `message`, `where`, `transition` (index or None), `node` (None: not known),
+            `binding` (texts, when it is an occurrence that raises it), `trace` (as those of `traces`, or None).
+        nodes, arcs, depth: of the graph.
+        seconds: of exploration, compilation and analysis not included.
+        bytes_per_state: of the tables; `peak_mib`: of the process.
+        fired: for each transition the number of its arcs.
+        bounds: for each place; None when nothing is known.
+        dead_count: markings without successors; `dead`: their first nodes.
+        graph: None when it was not computed, or is not complete.
+        approximation: None, or its name and the probability that a marking was omitted.
+        reductions: what was used to see less than everything; "partial-order" keeps whether there are dead markings and
+            how many; with "symmetry" a node stands for all markings that are symmetric to it.
+        symmetries: for people, of "symmetry".
+        answers: what the explorer says of each question, in order.
+        arena: bytes for lists and strings: "start" (before the first marking), "firing" (one occurrence), "marking";
+            None where bounds are not known.
+    """
+
+    complete: bool
+    why: str
+    error: Mapping[str, Any] | None
+    nodes: int
+    arcs: int
+    depth: int
+    seconds: float
+    bytes_per_state: float
+    peak_mib: float
+    compile_seconds: float
+    threads: int
+    fired: tuple[int, ...]
+    bounds: tuple[Bounds, ...] | None
+    dead_count: int
+    dead: tuple[int, ...]
+    graph: Graph | None
+    traces: tuple[Trace, ...]
+    approximation: Mapping[str, Any] | None
+    reductions: tuple[str, ...]
+    seen: Seen = Seen()
+    symmetries: tuple[str, ...] = ()
+    answers: tuple[Mapping[str, Any], ...] = ()
+    arena: Mapping[str, int] | None = None
+
+    @property
+    def is_reduced(self) -> bool:
+        """Whether nodes and arcs are less than those of the whole space, and only some properties are known."""
+        return bool({"partial-order", "symmetry"}.intersection(self.reductions))
+
+    @property
+    def knows_dead_transitions(self) -> bool:
+        """Whether a transition without arcs never occurs."""
+        return "partial-order" not in self.reductions
+
+    @property
+    def states_per_second(self) -> float:
+        """Markings found in a second of exploration."""
+        return self.nodes / self.seconds if self.seconds > 0 else 0.0
+
+    @staticmethod
+    def of(net: FlatNet, found: Mapping[str, Any], compile_seconds: float) -> Exploration:
+        """From what the explorer prints."""
+        graph = found.get("graph")
+        return Exploration(
+            complete=found["complete"],
+            why=found["why"],
+            error=_error(net, found["error"]),
+            nodes=found["nodes"],
+            arcs=found["arcs"],
+            depth=found["depth"],
+            seconds=found["seconds"],
+            bytes_per_state=found["bytes_per_state"],
+            peak_mib=found["peak_mib"],
+            compile_seconds=compile_seconds,
+            threads=found["threads"],
+            fired=tuple(found["fired"]),
+            bounds=_reduced_bounds(_bounds(found.get("bounds")), found.get("reductions") or ()),
+            dead_count=found["dead_count"],
+            dead=tuple(found["dead"]),
+            graph=_graph(graph) if graph is not None else None,
+            traces=tuple(Trace.of(t) for t in found.get("traces") or ()),
+            approximation=found.get("approximate"),
+            reductions=tuple(found.get("reductions") or ()),
+            seen=Seen(**(found.get("seen") or {})),
+            answers=tuple(found.get("queries") or ()),
+            arena=found.get("arena"),
+        )
+
+    @property
+    def error_trace(self) -> Trace | None:
+        """The run to the marking in which an inscription raises an exception."""
+        trace = self.error and self.error.get("trace")
+        return Trace.of(trace) if trace else None
+
+    def dead_transitions(self) -> tuple[int, ...]:
+        """Transitions that never occur, by index."""
+        return tuple(i for i, count in enumerate(self.fired) if count == 0)
+
+    def live_transitions(self) -> tuple[int, ...]:
+        """Transitions that can always become enabled again, by index."""
+        return tuple(i for i, live in enumerate(self.graph.live) if live) if self.graph else ()
+
+
+def _error(net: FlatNet, found: Mapping[str, Any] | None) -> Mapping[str, Any] | None:
+    """With the binding as CPN ML texts, without what the code segment would have given."""
+    if found is None or not found.get("binding"):
+        return found
+    transition = net.transitions[found["transition"]]
+    outputs = transition.code.outputs if transition.code else ()
+    binding = {
+        s.name: value_text(s, from_json(s.colset, found["binding"][s.name]))
+        for s in transition.variables
+        if s.colset is not None and s not in outputs
+    }
+    return {**found, "binding": binding}
+
+
+def _bounds(found: Sequence[Mapping[str, Any]] | None) -> tuple[Bounds, ...] | None:
+    if not found:
+        return None
+    return tuple(
+        Bounds(
+            b["lower"],
+            b["upper"],
+            _multiset(b["lower_multiset"]),
+            _multiset(b["upper_multiset"]),
+            b["lower_colours"],
+            b["upper_colours"],
+        )
+        for b in found
+    )
+
+
+def _reduced_bounds(
+    found: tuple[Bounds, ...] | None, reductions: Sequence[str]
+) -> tuple[Bounds, ...] | None:
+    """Those that reductions keep: symmetries change the colours, not the number of tokens of a place."""
+    if found is None or "partial-order" in reductions:
+        return None
+    if "symmetry" in reductions:
+        return tuple(Bounds(b.lower, b.upper, None, None) for b in found)
+    return found
+
+
+def _multiset(found: Sequence[Sequence[Any]] | None) -> tuple[tuple[int, Any], ...] | None:
+    return None if found is None else tuple((row[0], row[1]) for row in found)
+
+
+def _graph(found: Mapping[str, Any]) -> Graph:
+    fairness = found["fairness"]
+    return Graph(
+        scc_nodes=found["scc_nodes"],
+        scc_arcs=found["scc_arcs"],
+        home_count=found["home_count"],
+        home=tuple(found["home"]),
+        initial_is_home=found["initial_is_home"],
+        live=tuple(found["live"]),
+        fairness=None if fairness is None else tuple(fairness),
+        seconds=found["seconds"],
+    )
+
+
+def row(net: FlatNet, found: Exploration) -> dict[str, Any]:
+    """For programs (docs/verify.md)."""
+    graph = found.graph
+    name = EngineNames(net).transition
+    fairness = None
+    if graph is not None:
+        fairness = {
+            kind: [name(i) for i, own in enumerate(graph.fairness or ()) if own == kind]
+            for kind in FAIRNESS
+        }
+    return {
+        "complete": found.complete,
+        "why": found.why,
+        "seen": asdict(found.seen),
+        "nodes": found.nodes,
+        "arcs": None if found.is_reduced else found.arcs,
+        "scc_nodes": graph.scc_nodes if graph else None,
+        "scc_arcs": graph.scc_arcs if graph else None,
+        "dead_markings": found.dead_count,
+        "dead_marking_nodes": list(found.dead),
+        "home_markings": graph.home_count if graph else None,
+        "home_marking_nodes": list(graph.home) if graph else None,
+        "initial_is_home": graph.initial_is_home if graph else None,
+        "dead_transitions": (
+            [name(i) for i in found.dead_transitions()] if found.knows_dead_transitions else None
+        ),
+        "live_transitions": ([name(i) for i in found.live_transitions()] if graph else None),
+        "infinite_occurrence_sequences": graph.fairness is not None if graph else None,
+        "fairness": fairness,
+        "bounds": bounds_rows(net, found),
+        "seconds": round(found.seconds, 6),
+        "states_per_second": round(found.states_per_second, 1),
+        "bytes_per_state": round(found.bytes_per_state, 2),
+        "peak_mib": round(found.peak_mib, 1),
+        "compile_seconds": round(found.compile_seconds, 3),
+        "analysis_seconds": round(graph.seconds, 6) if graph else None,
+        "threads": found.threads,
+        "depth": found.depth,
+        "reductions": list(found.reductions),
+        "symmetries": list(found.symmetries),
+        "approximation": dict(found.approximation) if found.approximation else None,
+        "error": dict(found.error) if found.error else None,
+        "traces": [{"node": t.node, "file": str(t.file), "steps": t.steps} for t in found.traces],
+    }
+
+
+def bounds_rows(net: FlatNet, found: Exploration) -> list[dict[str, Any]]:
+    """For each place instance `page`, `instance`, `name`, `id`, `lower`, `upper`, and the multi-set bounds as texts."""
+    if found.bounds is None:
+        return []
+    rows = []
+    for place in net.place_instances:
+        own = found.bounds[place.place]
+        colset = net.places[place.place].colset
+        rows.append(
+            {
+                "page": place.page,
+                "instance": place.number,
+                "name": place.caption or place.name,
+                "id": place.id,
+                "lower": own.lower,
+                "upper": own.upper,
+                "lower_multiset": multiset_text(colset, own.lower_multiset),
+                "upper_multiset": multiset_text(colset, own.upper_multiset),
+                "lower_cut": cut(own.lower_multiset, own.lower_colours),
+                "upper_cut": cut(own.upper_multiset, own.upper_colours),
+            }
+        )
+    return rows
+
+
+def cut(found: Sequence[tuple[int, Any]] | None, colours: int) -> int | None:
+    """How many colours a multi-set has of which not all are there; None: all are, or it was not computed."""
+    return None if found is None or len(found) >= colours else colours
+
+
+def multiset_text(colset: Colset, found: Sequence[tuple[int, Any]] | None) -> str | None:
+    """As the real tool prints it, without stamps; None for None."""
+    if found is None:
+        return None
+    values = [(from_json(colset, value), count) for count, value in found if count]
+    values.sort(key=lambda item: TEXTS.key(colset, item[0]))
+    lines = [f"{count}`{TEXTS.text(colset, value)}" for value, count in values]
+    return "++\n".join(lines) or "empty"

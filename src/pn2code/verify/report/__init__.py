@@ -1,0 +1,1 @@
+"""Reports of a state space: text, a page of HTML, graphs and pictures, progress."""

@@ -1,1 +1,0 @@
-"""Random cells: what `verify` proves of them must hold in what runs. `python -m tests.adversary --help`."""

@@ -1,0 +1,69 @@
+"""What the deployed supervisor of the riveting cell takes of a machine (pn2code.toolchain.footprint)."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import pytest
+
+from pn2code.toolchain import footprint
+from pn2code.toolchain.footprint import FootprintError, Graph, long_functions, read_graph
+
+pytestmark = pytest.mark.cc
+
+
+@pytest.fixture
+def built(riveting_program: Path) -> Path:
+    if shutil.which("gcc") is None or shutil.which("objdump") is None:
+        pytest.skip("the call graph needs gcc and binutils")
+    return riveting_program
+
+
+def test_the_riveting_supervisor(built: Path, tmp_path: Path) -> None:
+    folder = tmp_path / "program"
+    shutil.copytree(built, folder)
+
+    found = footprint.measure(folder)
+
+    assert found.is_good, found.report()
+    assert found.text <= 60_000
+    assert found.path[0] == "main" and found.stack > 1000
+    assert not {"fopen", "opendir", "readdir", "realpath"} & set(found.library)
+
+
+def test_what_is_deployed_has_no_code_of_others(built: Path) -> None:
+    own, traced = ((built / name).read_bytes() for name in ("supervisor", "supervisor.traced"))
+    for name in (b"Robot_Accept_fire", b"pn_json", b"pn_trace_open", b"sup_run_alone"):
+        assert name in traced and name not in own
+
+
+NOTES = """
+node: { title: "main" label: "main\\nx.c:1:1\\n16 bytes (static)" }
+node: { title: "x.c:walk" label: "walk\\nx.c:2:1\\n32 bytes (static)" }
+edge: { sourcename: "main" targetname: "x.c:walk" }
+"""
+
+
+def test_recursion_is_found() -> None:
+    again = NOTES + 'edge: { sourcename: "x.c:walk" targetname: "main" }'
+    linked = frozenset(("main", "walk"))
+
+    assert read_graph(NOTES, frozenset(), linked).deepest("main") == (48, ("main", "x.c:walk"))
+    assert set(read_graph(again, frozenset(), linked).cycle()) == {"main", "x.c:walk"}
+    assert Graph({"f": frozenset("f")}, {"f": 1}, ()).cycle() == ("f",)
+
+
+def test_pointers_that_lead_nobody_knows_where_are_an_error() -> None:
+    linked = frozenset(("main", "walk"))
+    with pytest.raises(FootprintError, match="who calls walk"):
+        read_graph(NOTES, frozenset(("walk",)), linked)
+    calling = NOTES + 'edge: { sourcename: "x.c:walk" targetname: "__indirect_call" }'
+    with pytest.raises(FootprintError, match="calls through a pointer"):
+        read_graph(calling, frozenset(), linked)
+
+
+def test_long_functions_are_found() -> None:
+    body = "    x++;\n" * 59
+    assert list(long_functions(f"void f(int x)\n{{\n{body}}}\n")) == [("f", 61)]
+    assert list(long_functions(f"void f(int x)\n{{\n{body[9:]}}}\n")) == []

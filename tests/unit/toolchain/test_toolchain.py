@@ -1,0 +1,107 @@
+"""Building: missing tools, and compiler errors told at the net element."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+
+from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.emission.output import Block, OutputFile
+from pn2code.toolchain.build import build, find_compiler
+from pn2code.toolchain.programs import Host, program
+
+HOST = Host("nothing", only=("pn_channel.c",))
+MAIN = OutputFile("main.c", "int main(void) { return 0; }\n", ())
+ORIGIN = Origin("cell.cpn", 12, 3, page="Robot", element="transition `Pick`", element_id="ID7")
+
+
+def folder(tmp_path: Path, makefile: str, c: str = "") -> tuple[Path, tuple[OutputFile, ...]]:
+    (tmp_path / "Makefile").write_text(makefile)
+    (tmp_path / "net.c").write_text(c)
+    return tmp_path, (OutputFile("net.c", c, (Block("Top.Pick", "transition", ORIGIN, 1, 3),)),)
+
+
+@pytest.mark.cc
+def test_builds(tmp_path: Path) -> None:
+    path, files = folder(
+        tmp_path, "supervisor: net.c\n\t$(CC) -o $@ net.c\n", "int main(void) { return 0; }\n"
+    )
+    d = Diagnostics()
+    program = build(path, files, d)
+    assert not d.items
+    assert program is not None and program.is_file()
+
+
+@pytest.mark.cc
+def test_a_compiler_error_names_the_net_element(tmp_path: Path) -> None:
+    path, files = folder(
+        tmp_path, "supervisor: net.c\n\t$(CC) -o $@ net.c\n", "\nint main(void) { return x; }\n"
+    )
+    d = Diagnostics()
+    assert build(path, files, d) is None
+    assert d.errors[0].code == "c-error"
+    assert "transition `Top.Pick`" in d.errors[0].message
+    assert d.errors[0].origin == ORIGIN
+    assert (path / "build.log").read_text()
+
+
+@pytest.mark.cc
+def test_a_failing_make_keeps_its_last_words(tmp_path: Path) -> None:
+    path, files = folder(tmp_path, "supervisor:\n\t@echo disk on fire >&2; exit 1\n")
+    d = Diagnostics()
+    assert build(path, files, d) is None
+    assert d.errors[0].code == "build-failed"
+    assert any("disk on fire" in n.message for n in d.errors[0].notes)
+
+
+def test_missing_tools_say_what_to_type(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.delenv("CC", raising=False)
+    monkeypatch.setitem(sys.modules, "ziglang", None)  # not installed
+    d = Diagnostics()
+    assert build(tmp_path, (), d) is None
+    assert d.errors[0].code == "tool-missing"
+    assert "apt-get install" in d.errors[0].hint
+    assert "pip install 'pn2code[compiler]'" in d.errors[0].hint
+    with program(HOST, (MAIN,), d) as path:
+        assert path is None
+    assert "pip install 'pn2code[compiler]'" in d.errors[1].hint
+
+
+ZIGLANG = """
+import os, sys
+os.environ["PATH"] = {path!r}
+tool = {tools!r}[sys.argv[1]]
+os.execv(tool, [tool, *sys.argv[2:]])
+"""
+
+
+@pytest.mark.cc
+def test_without_a_compiler_that_of_ziglang_is_used(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With a package of that name whose tools are those of the machine."""
+    tools = {"cc": shutil.which("gcc") or shutil.which("cc"), "ar": shutil.which("ar")}
+    package = tmp_path / "site" / "ziglang"
+    package.mkdir(parents=True)
+    (package / "__init__.py").touch()
+    (package / "__main__.py").write_text(ZIGLANG.format(path=os.environ["PATH"], tools=tools))
+    monkeypatch.delitem(sys.modules, "ziglang", raising=False)
+    monkeypatch.syspath_prepend(package.parent)
+    for name, value in (
+        ("PYTHONPATH", package.parent),
+        ("PATH", tmp_path),
+        ("XDG_CACHE_HOME", tmp_path),
+    ):
+        monkeypatch.setenv(name, str(value))
+    monkeypatch.delenv("CC", raising=False)
+    assert shlex.split(find_compiler() or "") == [sys.executable, "-m", "ziglang", "cc"]
+    d = Diagnostics()
+    with program(HOST, (MAIN,), d) as path:
+        assert path is not None and os.access(path, os.X_OK), d.items
+    assert not d.items

@@ -1,0 +1,23 @@
+"""What the engine of CPN Tools said of expressions, recorded: the token game says the same."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from tools.oracle.answers import Here
+from tools.oracle.recorded import FOLDER, differing
+from tools.oracle.texts import NET
+
+from helpers.netbuilder import write
+
+
+@pytest.fixture(scope="module")
+def here(tmp_path_factory: pytest.TempPathFactory) -> Here:
+    return Here(write(NET, tmp_path_factory.mktemp("oracle") / "Oracle.cpn"))
+
+
+@pytest.mark.parametrize("name", sorted(p.stem for p in FOLDER.glob("*.tsv")))
+def test_the_engine_said_the_same(name: str, here: Here) -> None:
+    assert Path(FOLDER / f"{name}.tsv").stat().st_size > 100
+    assert differing(name, here) == []

@@ -1,0 +1,100 @@
+"""How long tests take: what is recorded, which are chosen for a quick run, in what order they run, what is left."""
+
+from __future__ import annotations
+
+import pytest
+
+from pace.choose import Asked, chosen, longest_first
+from pace.durations import UNKNOWN_S, Durations
+from pace.estimate import Estimate, clock
+
+A, B, C = "tests/unit/test_a.py", "tests/e2e/test_b.py", "tests/unit/test_c.py"
+KNOWN = Durations(
+    {
+        f"{A}::test_one[1]": 0.5,
+        f"{A}::test_one[2]": 0.1,
+        f"{A}::test_two": 3.0,
+        f"{B}::test_slow": 40.0,
+        f"{B}::test_built": 1.0,
+    },
+    {"tests/e2e::program": 10.0, f"{A}::program": 0.25},
+)
+TESTS = [
+    *(Asked(test, ()) for test in KNOWN.tests if test != f"{B}::test_built"),
+    Asked(f"{B}::test_built", ("program", "tmp_path")),
+    Asked(f"{B}::test_built_too", ("program",)),
+    Asked(f"{C}::test_new", ()),
+]
+
+
+def names(numbers: list[int]) -> list[str]:
+    return [TESTS[n].test.rpartition("/")[2] for n in numbers]
+
+
+def test_a_fixture_counts_for_those_below_its_place() -> None:
+    assert KNOWN.fixtures_of(f"{B}::test_built", ["program"]) == ["tests/e2e::program"]
+    assert KNOWN.fixtures_of(f"{A}::test_two", ["program"]) == [f"{A}::program"]
+    assert KNOWN.fixtures_of(f"{C}::test_new", ["program"]) == []
+    assert KNOWN.fixtures_of("tests/e2e_more/test_x.py::t", ["program"]) == []
+
+
+def test_what_is_known_of_a_test() -> None:
+    table = KNOWN.as_table()
+    assert table["functions"][f"{A}::test_one"] == pytest.approx(0.3)
+    assert table["seconds"] == pytest.approx(44.6 + 10.25, abs=0.06)
+    committed = Durations.of({}, table)
+    assert committed.of_test(f"{A}::test_one[9]") == pytest.approx(0.3)
+    assert committed.of_test(f"{C}::test_new") == UNKNOWN_S
+    both = Durations.of(KNOWN.as_record(), {"functions": {f"{A}::test_two": 99.0}})
+    assert both.of_test(f"{A}::test_two") == 3.0
+    assert both.fixtures == KNOWN.fixtures
+
+
+def test_quick_tests_of_a_file_have_one_entry() -> None:
+    table = Durations({f"{C}::test_{n}": 0.01 * n for n in range(1, 4)}).as_table()
+    assert table["functions"] == {}
+    assert table["files"] == {C: 0.02}
+
+
+def test_a_quick_run_has_one_test_of_each_file() -> None:
+    assert names(chosen(TESTS, KNOWN, 0.0)) == [
+        "test_a.py::test_one[2]",
+        "test_b.py::test_built_too",
+        "test_c.py::test_new",
+    ]
+
+
+def test_then_one_of_each_function_then_more() -> None:
+    """What a fixture costs is paid once: after the first test that needs it the second is cheap."""
+    least = 10.0 + 2 * UNKNOWN_S + 0.1
+    assert "test_b.py::test_built" in names(chosen(TESTS, KNOWN, least + 1.01))
+    more = names(chosen(TESTS, KNOWN, least + 4.01))
+    assert "test_a.py::test_two" in more and "test_a.py::test_one[1]" not in more
+    assert "test_a.py::test_one[1]" in names(chosen(TESTS, KNOWN, least + 4.52))
+    assert chosen(TESTS, KNOWN, 1e9) == list(range(len(TESTS)))
+
+
+def test_files_that_take_long_come_first_and_stay_together() -> None:
+    order = names(longest_first(TESTS, KNOWN))
+    assert [name.partition("::")[0] for name in order] == ["test_b.py"] * 3 + ["test_a.py"] * 3 + [
+        "test_c.py"
+    ]
+    assert order[3:6] == ["test_a.py::test_one[1]", "test_a.py::test_one[2]", "test_a.py::test_two"]
+
+
+def test_the_estimate_follows_the_pace_of_the_run() -> None:
+    run = Estimate({"a": 100.0, "b": 60.0, "c": 40.0}, cores=2)
+    assert (run.share(), run.left(0.0)) == (0.0, 100.0)
+    run.done("a")
+    assert run.share() == pytest.approx(0.5)
+    assert run.left(50.0) == pytest.approx(50.0)
+    assert 50.0 < run.left(100.0) < 100.0
+    assert run.line(50.0) == " 50%  1 of 3 tests, 0:50 gone, about 0:50 left"
+    for test in ("b", "c", "c"):
+        run.done(test)
+    assert (run.share(), run.tests) == (1.0, 3)
+    assert run.left(90.0) == pytest.approx(0.0)
+
+
+def test_clock() -> None:
+    assert (clock(0.4), clock(187.0), clock(3600.0)) == ("0:00", "3:07", "60:00")

@@ -1,0 +1,59 @@
+"""Why nothing can occur: one net for each thing that a transition can lack."""
+
+from __future__ import annotations
+
+import pytest
+
+from helpers.netbuilder import flat
+from pn2code.semantics.game.token_game import Game
+from pn2code.verify.answers.why_disabled import MOST_REASONS, reasons
+
+HEAD = """
+    net Stuck
+      standard
+      colset TIMED = int timed;
+      var n, m : INT;
+      place A : INT = 1`1
+      place B : INT
+      place C : INT
+      place Clock : TIMED = 1`7
+"""
+
+
+@pytest.mark.parametrize(
+    ("transition", "why"),
+    [
+        ("trans T\n  in A : n\n  in B : m", "place `B` is empty"),
+        ("trans T\n  in A : n\n  in B : m\n  in C : m", "places `B` and `C` are empty"),
+        (
+            "trans T guard [n > 3, m = n + 1]\n  in A : n\n  out B : m",
+            "its guard `n > 3, m = n + 1` is false for the tokens that are there",
+        ),
+        ("trans T\n  in A : 2", "the tokens in `A` are not those that its arcs take"),
+        ("trans T\n  in A : 2`n", "the tokens in `A` are not those that its arcs take"),
+        (
+            "trans T guard [n > 0]\n  in A : n\n  in Clock : n",
+            "the tokens in `A` and `Clock` are not those that its arcs take",
+        ),
+        ("trans T\n  in A : n\n  inhibit Clock", "place `Clock` inhibits it"),
+    ],
+)
+def test_what_a_transition_lacks(transition: str, why: str) -> None:
+    lines = "".join(f"      {line}\n" for line in transition.split("\n"))
+    assert reasons(Game(flat(HEAD + lines))) == [f"`T` cannot occur: {why}."]
+
+
+def test_nothing_is_said_where_something_can_occur() -> None:
+    assert reasons(Game(flat(HEAD + "      trans T\n        in A : n\n"))) == []
+
+
+def test_a_transition_without_any_token_is_not_named() -> None:
+    assert reasons(Game(flat(HEAD + "      trans T\n        in B : n\n"))) == []
+
+
+def test_those_that_lack_least_come_first() -> None:
+    text = HEAD + "      trans Far\n        in A : n\n        in B : n\n        in C : n\n"
+    text += "".join(f"      trans N{i}\n        in A : n\n        in B : n\n" for i in range(5))
+    found = reasons(Game(flat(text)))
+    assert len(found) == MOST_REASONS
+    assert [line.split()[0] for line in found] == ["`N0`", "`N1`", "`N2`"]
