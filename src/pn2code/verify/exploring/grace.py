@@ -22,8 +22,7 @@ class Grace:
 
     Args:
         deadline: when it should have ended.
-        used: seconds of processor time that it has used until now, over its number of threads; None: not known, or it
-            has ended.
+        used: seconds of processor time that all its threads have used until now; None: not known, or it has ended.
     """
 
     def __init__(self, deadline: Deadline, used: Callable[[], float | None]) -> None:
@@ -48,11 +47,11 @@ class Grace:
 
 
 def processor_time(pid: int) -> float | None:
-    """Seconds of processor time of a process, over its number of threads; None where the system does not tell."""
+    """Seconds of processor time of a process with all its threads; None where the system does not tell."""
     try:
         # The name of the program, in parentheses, may have blanks in it.
         words = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
     except OSError:
         return None
-    user, system, threads = int(words[11]), int(words[12]), int(words[17])
-    return (user + system) / os.sysconf("SC_CLK_TCK") / max(threads, 1)
+    user, system = int(words[11]), int(words[12])
+    return float(user + system) / os.sysconf("SC_CLK_TCK")
