@@ -41,8 +41,8 @@ def test_a_process_that_waits_for_the_processor_has_more_time() -> None:
     machine = Machine()
     grace = machine.grace()
     assert not at(machine, grace, 10.0, 4.0)
-    assert not at(machine, grace, 15.0, 5.0)
-    assert at(machine, grace, 15.1, 5.2)
+    assert not at(machine, grace, 12.0, 5.0)
+    assert at(machine, grace, 12.1, 5.2)
 
 
 def test_a_process_that_does_nothing_is_ended_in_the_end() -> None:

@@ -13,8 +13,8 @@ from pathlib import Path
 
 from pn2code.base.deadline import GRACE, GRACE_S, Deadline
 
-MOST = 10.0
-"""A process that neither computes nor ends is ended after so many times the grace."""
+MOST = 2.0
+"""After so many times the grace a process is ended, whatever it does: a limit of time is kept."""
 
 
 class Grace:
