@@ -20,7 +20,7 @@ PAGE = ROOT / "docs" / "misra.md"
 SOURCES = (
     "net.c",
     "cell_config.c",
-    *(f"runtime/src/supervisor{part}.c" for part in ("", "_cell", "_input", "_play")),
+    *(f"runtime/src/supervisor/supervisor{part}.c" for part in ("", "_cell", "_input", "_play")),
     "runtime/src/channel/pn_channel.c",
     "runtime/src/channel/pn_channel_files.c",
 )

@@ -43,10 +43,10 @@ def test_no_false_alarm(tmp_path: Path) -> None:
         path.write_text(file.text, encoding="utf-8")
     command = ["make", "-s", "-C", folder, f"-j{os.cpu_count()}", "CFLAGS=-O0"]
     done = subprocess.run(
-        [*command, "supervisor", "monitor"], capture_output=True, text=True, check=False
+        [*command, "supervisor.traced", "monitor"], capture_output=True, text=True, check=False
     )
     assert done.returncode == 0, done.stderr
-    for name in ("supervisor", "supervisor.monitor"):
+    for name in ("supervisor.traced", "supervisor.monitor"):
         done = subprocess.run(
             [folder / name, "-q", "--trace", tmp_path / name],
             capture_output=True,
@@ -54,6 +54,6 @@ def test_no_false_alarm(tmp_path: Path) -> None:
             check=False,
         )
         assert done.returncode == 0, done.stderr
-    plain, monitored = ((tmp_path / n).read_text() for n in ("supervisor", "supervisor.monitor"))
+    plain, monitored = ((tmp_path / n).read_text() for n in ("supervisor.traced", "supervisor.monitor"))
     assert plain == monitored
     assert plain.count("Top.T") > 2 and plain.count("Top.U") > 2

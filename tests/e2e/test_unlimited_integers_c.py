@@ -35,7 +35,7 @@ NUMBERS = """
           List.map Int.toString (safe (fn () => [IntInf.log2 a])),
           List.map Int.toString (safe (fn () => [IntInf.toInt a])),
           [IntInf.fmt StringCvt.HEX a, IntInf.fmt StringCvt.BIN b, IntInf.fmt StringCvt.OCT a],
-          [Real.fmt (StringCvt.SCI (SOME 16)) (Real.fromLargeInt a)]])
+          [Real.fmt (StringCvt.SCI (SOME 11)) (Real.fromLargeInt a)]])
         end
 """
 
@@ -76,7 +76,7 @@ def expected(a: int, b: int, n: int) -> Iterator[int | str]:
     if -(2**30) <= a < 2**30:
         yield a
     yield from (format(a, "x"), format(b, "b"), format(a, "o"))
-    digits, exponent = format(float(a), ".16e").split("e")
+    digits, exponent = format(float(a), ".11e").split("e")
     yield f"{digits}E{int(exponent)}"
 
 

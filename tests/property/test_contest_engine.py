@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from helpers.table_nets import Graph, random_branching, random_condition, random_tables
+from helpers.random_tables import Graph, random_branching, random_condition, random_tables
 from pn2code.contest import linear
 from pn2code.contest.engine import Answer, Space, Task, ask, engine
 from pn2code.contest.formulas import Formula, Op, Tokens

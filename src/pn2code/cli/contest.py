@@ -18,6 +18,7 @@ from pn2code.contest.portfolio import METHODS, answers, space
 from pn2code.contest.tables import Tables
 from pn2code.diagnostics import Diagnostics
 from pn2code.net import front
+from pn2code.semantics.evaluation.constants import compute
 from pn2code.unfold.unfold import unfold
 
 EPILOG = """Examples:
@@ -75,7 +76,7 @@ def contest(
 def _read(folder: Path, examination: Examination) -> tuple[Tables, list[Asked]]:
     """The net and what is asked of it; leaves with a report when it is wrong."""
     d = Diagnostics()
-    net = front.load(folder / "model.pnml", d)
+    net = front.load(folder / "model.pnml", d, compute=compute)
     unfolding = None if net is None else unfold(net, d)
     if unfolding is None:
         stop(d, Format.FULL)

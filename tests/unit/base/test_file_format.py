@@ -426,7 +426,7 @@ def test_colour_sets_of_every_kind(tmp_path: Path) -> None:
         "<color id='7'><id>II</id><intinf/></color><color id='8'><id>R</id><real/></color>"
         "<color id='9'><id>RW</id><real><with><ml>0.0</ml><ml>1.0</ml></with></real></color>"
         "<color id='10'><id>S</id><string/></color>"
-        "<color id='11'><id>SW</id><string><with><ml>#&quot;a&quot;</ml><ml>#&quot;z&quot;</ml>"
+        "<color id='11'><id>SW</id><string><with><ml>&quot;a&quot;</ml><ml>&quot;z&quot;</ml>"
         "<and><ml>1</ml><ml>3</ml></and></with></string></color>"
         "<color id='12'><id>E</id><enum><id>red</id><id>green</id></enum></color>"
         "<color id='13'><id>X</id><index><ml>1</ml><ml>3</ml><id>x</id></index></color>"

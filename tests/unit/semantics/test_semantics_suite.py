@@ -16,6 +16,7 @@ from pn2code.net.check import _Checker
 from pn2code.net.front import load
 from pn2code.net.link import link
 from pn2code.reading.cpn import read
+from pn2code.semantics.evaluation.constants import compute
 from pn2code.semantics.evaluation.evaluate import Evaluator
 from pn2code.semantics.game.graph import state_space
 from pn2code.semantics.game.token_game import Game, GameError
@@ -79,7 +80,7 @@ def test_expressions(shared: Path) -> None:
     assert document is not None
     net = link(document, d)
     assert net is not None
-    elaborator = _Checker(net, d, {}).elaborator
+    elaborator = _Checker(net, d, {}, 31, compute).elaborator
     # its colour set SUB is rejected, by the real engine as well
     assert [e.code for e in d.errors] == ["subset-bare-fn"], report(d)
     evaluator = Evaluator(elaborator.program())
