@@ -6,6 +6,9 @@ premises.of_check("non-blocking", "yes")    # ("nobody owes an answer for longer
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import OwnerKind, Partition
@@ -16,6 +19,8 @@ from pn2code.verify.controller.replies import Replies
 _DURATIONS = (
     "it can happen for some durations of commands; known durations are not compared with timers"
 )
+
+NOTHING_GIVEN: Mapping[int, str] = MappingProxyType({})
 
 _SENSORS = "each possible value of a sensor occurs from time to time"
 
@@ -37,15 +42,19 @@ class Premises:
     sensors: bool = False
 
     @staticmethod
-    def of(partition: Partition, config: CellConfig) -> Premises:
-        """Those of a cell."""
+    def of(
+        partition: Partition, config: CellConfig, given: Mapping[int, str] = NOTHING_GIVEN
+    ) -> Premises:
+        """Those of a cell; `given`: by place, a clause that says which token a file gave it."""
         states: list[str] = []
         measured = _measured(partition, config)
         if measured:
             names = ", ".join(f"`{name}`" for name in measured)
             states.append(f"a measurement gives the result of {names} in the net")
-        if partition.inputs:
-            names = ", ".join(f"`{i.name}`" for i in partition.inputs)
+        states += [given[i.place] for i in partition.inputs if i.place in given]
+        assumed = [i for i in partition.inputs if i.place not in given]
+        if assumed:
+            names = ", ".join(f"`{i.name}`" for i in assumed)
             states.append(f"{names} begins with the tokens of the net, not with those of its file")
         replies = Replies.of(partition, config)
         return Premises(replies, tuple(states), partition.net.timed, bool(config.sensors))
