@@ -14,6 +14,7 @@ from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.cell.reach import Reach
 from pn2code.properties import meaning as m
+from pn2code.tdl.interpret import MOST_AT_ONCE
 from pn2code.verify.controller.replies import Replies
 
 _DURATIONS = (
@@ -21,6 +22,11 @@ _DURATIONS = (
 )
 
 NOTHING_GIVEN: Mapping[int, str] = MappingProxyType({})
+
+_INSTANTS = (
+    f"in lock-step no more than {MOST_AT_ONCE:,} messages are exchanged, or commands carried out, "
+    "without time passing"
+)
 
 _SENSORS = "each possible value of a sensor occurs from time to time"
 
@@ -34,12 +40,14 @@ class Premises:
         states: premises of whatever rests on the states of the cell.
         durations: whether timers and what programs do go on side by side.
         sensors: whether programs ask sensors.
+        instants: whether there are so many states that a run in lock-step may do too much in one moment.
     """
 
     replies: Replies = Replies()
     states: tuple[str, ...] = ()
     durations: bool = False
     sensors: bool = False
+    instants: bool = False
 
     @staticmethod
     def of(
@@ -67,6 +75,7 @@ class Premises:
         if name == "non-blocking":
             found += [self.replies.premise] if self.replies.premise else []
             found += [_SENSORS] if self.sensors else []
+            found += [_INSTANTS] if self.instants else []
         return tuple(found)
 
     def of_property(self, asked: m.Asked, answer: str, *, kept: bool) -> tuple[str, ...]:
@@ -76,6 +85,7 @@ class Premises:
         found = list(self.states)
         if not kept and self.replies.premise:
             found.append(self.replies.premise)
+        found += [_INSTANTS] if self.instants and not kept else []
         if self.durations and _is_possibility(asked):
             found.append(_DURATIONS)
         return tuple(found)
