@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import subprocess
 from pathlib import Path
@@ -77,8 +78,10 @@ def test_what_is_proved_is_of_the_cell_with_its_file(tmp_path: Path) -> None:
     again = pn2code("replay", run, folder)
     assert again.returncode == 0, again.stdout + again.stderr
     (folder / "pieces.txt").write_text("2\n")
-    done = pn2code("verify", folder, "--no-medium", "--json")
+    page = tmp_path / "report.html"
+    done = pn2code("verify", folder, "--no-medium", "--json", "--report", page)
     assert done.returncode == 0, done.stderr
+    assert hashlib.sha256(b"2\n").hexdigest() in page.read_text()
 
 
 def test_a_file_that_is_not_there_yet(tmp_path: Path) -> None:
