@@ -137,6 +137,15 @@ def in_folder(name: str) -> Callable[[Desk], None]:
     return go
 
 
+def with_input(desk: Desk) -> None:
+    """DIR is an input of the Model Checking Contest: a net and formulas."""
+    folder = desk.project / "DIR"
+    shutil.copy(desk.project / "net.pnml", folder / "model.pnml")
+    (folder / "ReachabilityFireability.xml").write_text(
+        '<property-set xmlns="http://mcc.lip6.fr/"/>'
+    )
+
+
 def with_properties(desk: Desk) -> None:
     """net.cpn has files with properties beside it."""
     for name in ("net.properties.toml", "other.toml"):
@@ -144,6 +153,7 @@ def with_properties(desk: Desk) -> None:
 
 
 PLACES: dict[str, Callable[[Desk], None]] = {
+    "docs/contest.md": with_input,
     "docs/execution.md": in_folder("generated/riveting"),
     "docs/properties.md": with_properties,
     "examples/philosophers/README.md": in_folder("examples/philosophers"),

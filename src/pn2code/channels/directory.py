@@ -293,8 +293,9 @@ class SharedDirectory:
             return NotWritten(spec.name, spec.file, "channel-overrun", text)
         message = compose(spec, scalars, seq=state.sent + 1, session=self.session or "-")
         if message is None:
+            shown = ", ".join(quote(repr(s)) for s in scalars)
             why = f"no token of its colour set, not finite, or more than {MAX_PAYLOAD} bytes"
-            text = f"{quote(repr(scalars))} cannot be written to {spec.file}: {why}"
+            text = f"{shown} cannot be written to {spec.file}: {why}"
             return NotWritten(spec.name, spec.file, "channel-value", text)
         self._publish(spec.file, message)
         state.sent += 1

@@ -40,6 +40,12 @@ EPILOG = """Examples:
 """
 
 
+_EDITED = (
+    "              (this script is not the one that is generated: what it does in states that were not reached here "
+    "was not compared)"
+)
+
+
 def conform(
     net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
     most: Annotated[
@@ -109,8 +115,9 @@ def _lines(found: Conformance) -> list[str]:
     lines.append(_core(found.core))
     if found.supervisor is not None:
         lines += _supervisor(found.supervisor)
+    edited = () if found.folder is None else found.folder.edited
     for robot in found.robots:
-        lines += _robot(robot)
+        lines += _robot(robot, f"{robot.robot}.tdl" in edited)
     return lines
 
 
@@ -170,7 +177,7 @@ def _supervisor(report: Report) -> list[str]:
     return lines
 
 
-def _robot(report: RobotReport) -> list[str]:
+def _robot(report: RobotReport, is_edited: bool) -> list[str]:
     name = f"{report.robot:<13}"
     if report.deviation is not None:
         return [f"{name} DIFFERS from its page: {report.deviation}", *_way(report.way)]
@@ -178,7 +185,8 @@ def _robot(report: RobotReport) -> list[str]:
     return [
         f"{name} agrees with its page in {some} {report.states:,} states: {report.marks:,} firings of "
         f"{report.transitions} of its {report.all_transitions} transitions, "
-        f"{report.commands:,} commands"
+        f"{report.commands:,} commands",
+        *([_EDITED] if is_edited else []),
     ]
 
 

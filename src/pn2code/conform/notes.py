@@ -22,6 +22,8 @@ from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.trace.parties import RUN
 
 _Action = tuple[str, float]
+_ROUNDING_S = 0.01
+"""Times in a trace are rounded; a robot's own notes and steps are by one clock."""
 
 
 class RunNotes:
@@ -38,6 +40,7 @@ class RunNotes:
         self._owner = partition.transition_owner
         self._names = [o.name for o in partition.owners]
         self._actions: dict[str, list[_Action]] = {name: [] for name in self._names[1:]}
+        self._busy_until = dict.fromkeys(self._names[1:], 0.0)
         self._said: dict[str, dict[str, Any]] = {name: {} for name in self._names[1:]}
         self._calls = Calls()
         self._listener: Listener | None = None
@@ -55,7 +58,11 @@ class RunNotes:
         if robot not in self._actions:
             return f"there is no robot or device `{robot}`"
         if line["event"] == "tool":
-            self._actions[robot].append((str(line.get("action")), float(line["duration"])))
+            begun, duration = float(line["t"]), float(line["duration"])
+            if begun < self._busy_until[robot] - _ROUNDING_S:
+                return f"`{robot}` is still at its tool's action before, until {self._busy_until[robot]:g} s"
+            self._busy_until[robot] = begun + duration
+            self._actions[robot].append((str(line.get("action")), duration))
             return None
         variable = self._variables.get(str(line.get("sensor")))
         if variable is None:
@@ -85,6 +92,11 @@ class RunNotes:
         noted, self._actions[robot] = self._actions[robot], []
         if noted != ordered:
             return f"the net makes `{robot}` do {_text(ordered)}, the notes before it say {_text(noted)}"
+        if ordered and line["t"] < self._busy_until[robot] - _ROUNDING_S:
+            return (
+                f"it ends at {line['t']:g} s, but the last action of the tool of `{robot}` in it only at "
+                f"{self._busy_until[robot]:g} s"
+            )
         said, self._said[robot] = self._said[robot], {}
         binding = line["binding"]
         chosen = {s.symbol.name for s in t.plan if isinstance(s, BindAll | BindRandom)}

@@ -139,7 +139,7 @@ _NO_END = "a state can be reached from which the cell cannot come to its end"
 def shown(a: Answer) -> str:
     """What goes wrong, by the runs of an answer that is no."""
     found = [_NO_END if e.fault is None else SAYS[e.fault] for e in a.evidence]
-    return "; ".join(dict.fromkeys(found)) or f"it is not true that {a.says}"
+    return "; ".join(dict.fromkeys(found)) or f"this does not hold: {a.says}"
 
 
 def _run(e: Evidence) -> str:

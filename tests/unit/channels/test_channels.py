@@ -253,6 +253,9 @@ def test_what_does_not_fit_is_not_written(parties: tuple[SharedDirectory, Shared
         result = a.write("pose1", values)
         assert isinstance(result, NotWritten)
         assert result.code == "channel-value"
+    refused = a.write("pose1", (float("inf"),))
+    assert isinstance(refused, NotWritten)
+    assert "(inf" not in refused.text and "inf" in refused.text  # no tuple of Python
     assert b.read("pose1") is None
 
 

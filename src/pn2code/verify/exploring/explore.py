@@ -32,6 +32,7 @@ from pn2code.verify.codes import (
     TIME_OVER,
 )
 from pn2code.verify.exploring import nondeterminism, programs
+from pn2code.verify.exploring.grace import Grace, processor_time
 from pn2code.verify.exploring.limits import Limits, default_memory
 from pn2code.verify.exploring.programs import Sizes
 from pn2code.verify.exploring.reductions import OF_ELEMENTS, Chosen, possible, refuse
@@ -340,6 +341,7 @@ def _run(
     for listener in listeners:
         listener.start()
     told = is_late = False
+    grace = Grace(deadline, lambda: processor_time(process.pid))
     try:
         while True:
             with suppress(subprocess.TimeoutExpired):
@@ -348,7 +350,7 @@ def _run(
             if not told and wishes.interrupted():
                 told = True
                 process.send_signal(signal.SIGINT)
-            if deadline.is_long_over():  # in an inscription that takes too long, or for ever
+            if grace.is_over():  # in an inscription that takes too long, or for ever
                 is_late = True
                 process.kill()
     except BaseException:
