@@ -69,7 +69,7 @@ def prepare(folder: Path, d: Diagnostics) -> Built | None:
         return None
     out = folder / "program"
     write(out, generated.files)
-    program = build.build(out, generated.files, d)
+    program = build.build(out, generated.files, d, target="supervisor.traced")
     return None if program is None else Built(generated, scripts, program, robot_cell, folder)
 
 
