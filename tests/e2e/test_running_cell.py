@@ -808,6 +808,10 @@ def test_what_no_state_shows_is_assumed(root: Path) -> None:
     assert measured == "a measurement gives the result of `measure` in the net"
     assert given == "`coordenadas` begins with the tokens of the net, not with those of its file"
     assert premises.of_check("messages", "yes") == premises.states
+    read = {i.place: f"`{i.name}` begins with 5" for i in partition.inputs}
+    assert Premises.of(partition, opened.config, read).states[1:] == (
+        "`coordenadas` begins with 5",
+    )
     assert premises.of_check("ownership", "yes") == premises.of_check("messages", "no") == ()
     late, sensors = premises.of_check("non-blocking", "yes")[2:]
     assert "moves and measurements take is not known" in late and "sensor" in sensors

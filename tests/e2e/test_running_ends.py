@@ -219,6 +219,37 @@ def test_an_exception_in_what_a_script_waits_for(tmp_path: Path) -> None:
     assert found["cell"]["complete"] and found["properties"][0]["answer"] == "yes"
 
 
+def test_the_doubt_leaves_a_timed_script_where_it_is(tmp_path: Path) -> None:
+    """The step that marks it takes the token of the script's place and puts it back, with the time of now."""
+    found = []
+    for name, place in (("plain", "place Waiting = 1"), ("timed", "place Waiting : TU = 1`()")):
+        ending = UNDIVIDED.replace("if m = 1 then 1`() else empty", "()")
+        head, page = ending.split("  page PB\n")
+        text = head + "  page PB\n" + page.replace("place Waiting = 1", place, 1)
+        found.append(said(write(tmp_path / name, text, toml(["A"], OF_B)), "--no-medium"))
+    plain, timed = found
+    assert (blocking(timed)["answer"], blocking(timed)["why"]) == ("unknown", "error")
+    assert timed["cell"] == plain["cell"] and timed["cell"]["complete"]
+    answers = [{c["check"]: c["answer"] for c in each["controller"]} for each in found]
+    assert answers[0] == answers[1]
+
+
+def test_a_script_that_stops_beside_a_supervisor_that_never_rests(tmp_path: Path) -> None:
+    """The supervisor does not come to look at its robots, so the stop is no step; nothing is promised for that."""
+    turning = """    place Turns = 1
+    trans Turn
+      in Turns : ()
+      out Turns : ()
+"""
+    text = UNKNOWN.replace("  page PA\n", turning + "  page PA\n", 1)
+    assert text != UNKNOWN
+    holds = ("ctl AF tokens(Finished) = 1", "ctl AG EF tokens(Finished) = 1")
+    found = said(write(tmp_path / "cell", text, toml(["A", "B"])), "--no-medium", holds=holds)
+    answers = {c["check"]: c["answer"] for c in found["controller"]}
+    assert answers["finite-response"] == "no" and answers["non-blocking"] != "yes"
+    assert all(p["answer"] != "yes" for p in found["properties"])
+
+
 def test_a_deadlock_beside_an_exception_of_the_model_alone(tmp_path: Path) -> None:
     """Where nothing is left the supervisor never finishes, whatever B does."""
     folder = write(tmp_path / "cell", UNDIVIDED, toml(["A"], OF_B))

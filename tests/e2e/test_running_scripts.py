@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from e2e.test_running_cell import ACT, ECHO, ONE, SLOW, TOOL, examined, net, ran, steps, toml, write
+from pn2code.api import load
 from pn2code.cell.divide import divide
 from pn2code.cli.nets import open_net
 from pn2code.diagnostics import Diagnostics
@@ -310,6 +312,79 @@ def test_a_script_that_repeats_commands_of_no_time_ends_a_run(tmp_path: Path) ->
     assert end["why"] == "failed"
     assert "B carried out 10,000 commands at" in end["reason"]
     assert "without time passing" in end["reason"]
+
+
+def checks(folder: Path) -> dict[str, dict[str, Any]]:
+    """All checks of a cell, by name."""
+    return {c["check"]: c for c in load(folder).verify().report["controller"]}
+
+
+def counting(action: str, rounds: int) -> str:
+    """A device that repeats something before it answers."""
+    return f"""    place Waiting = 1
+    place Turning : INT
+    place Done
+    trans Accept
+      in Waiting : ()
+      in ask : k
+      out Turning : 0
+    trans Turn guard [n < {rounds}] code action {action}
+      in Turning : n
+      out Turning : n + 1
+    trans Enough guard [n >= {rounds}]
+      in Turning : n
+      out Done : ()
+    trans Answer
+      in Done : ()
+      out Waiting : ()
+      out say : 1
+"""
+
+
+@pytest.mark.parametrize(
+    ("code", "rounds", "answer"), [("act ()", 6000, "yes"), ("(act (); act ())", 6000, "unknown")]
+)
+def test_commands_of_one_transition_that_take_no_time(
+    code: str, rounds: int, answer: str, tmp_path: Path
+) -> None:
+    """Lock-step carries out 10,000 commands in one moment, and no more."""
+    text = net(ONE, {"A": counting(code, rounds)}, ACT + N)
+    check = checks(write(tmp_path / "cell", text, toml(["A"], TIMELESS)))["non-blocking"]
+    assert (check["answer"], check["why"]) == (answer, None if answer == "yes" else "commands")
+    end = ran(tmp_path / "cell")[-1]
+    assert end["why"] == ("finished" if answer == "yes" else "failed"), end
+
+
+def test_what_does_much_in_one_moment_says_what_it_assumes(tmp_path: Path) -> None:
+    few = "    place Start : INT = 1`0\n    place Heard : INT\n    place Finished\n"
+    rounds = 3400  # of three states and more each
+    text = net(
+        few
+        + f"""    trans Ask guard [n < {rounds}]
+      in Start : n
+      out toA : 1
+      out Heard : n
+    trans End guard [n >= {rounds}]
+      in Start : n
+      out Finished : ()
+    trans Hear
+      in Heard : n
+      in fromA : k
+      out Start : n + 1
+""",
+        {"A": ECHO},
+        N,
+    )
+    large = checks(write(tmp_path / "cell", text, toml(["A"])))
+    assert large["non-blocking"]["answer"] == "yes" and large["non-blocking"]["value"] >= 10_000
+    assert [name for name, c in large.items() if is_said(c)] == ["non-blocking"]
+    small = checks(write(tmp_path / "less", text.replace(str(rounds), "3"), toml(["A"])))
+    assert small["non-blocking"]["answer"] == "yes"
+    assert not any(map(is_said, small.values()))
+
+
+def is_said(check: dict[str, Any]) -> bool:
+    return "without time passing" in " ".join(check["assumes"])
 
 
 def test_a_script_that_waits_for_no_time_does_not_stop_the_cell(tmp_path: Path) -> None:

@@ -30,7 +30,7 @@ def test_a_cell(tmp_path: Path) -> None:
     assert "Controller checks: 8 of 8 are as they should be." in page
     assert "Properties: 1 of 1 are as they should be." in page
     assert "Medium" not in page and "File system" not in page
-    assert "without the tokens of an [[input]] file" in page
+    assert "places of [[input]] begin with the tokens that their files held" in page
     done = pn2code("generate", cell, "-o", tmp_path / "out")
     assert done.returncode == 0, done.stderr
     for name in ("net.c", "cell_config.c", "robot1.tdl", "manifest.json"):
@@ -45,7 +45,7 @@ def test_a_cell_that_is_refused(tmp_path: Path) -> None:
     page = page_of(cell, tmp_path, "--no-medium")
     assert "Controller checks: 7 of 8 are as they should be, 1 is not." in page
     assert "`generate` refuses the cell: non-blocking: there is a deadlock" in page
-    assert "net.c</th>" not in page  # there are no files
+    assert "net.c</th>" not in page
 
 
 def test_a_part_of_a_cell(tmp_path: Path) -> None:

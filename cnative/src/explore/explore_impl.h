@@ -55,6 +55,7 @@ typedef struct ex_options {
     uint64_t write_limit;    /* most nodes of a graph that is written */
     double progress_every;   /* seconds between lines */
     const char *trace_to;    /* what the names of traces to dead markings begin with; NULL: none */
+    const char *initial; /* JSON: initial markings that a trace names, because the file of the net has others; NULL */
     uint64_t dead_limit;
     uint64_t traces;            /* most traces in trace_to */
     const char *queries;        /* file of questions; NULL: none */

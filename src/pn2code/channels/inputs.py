@@ -1,7 +1,8 @@
 """Input files: one token of a place, as `cnative/src/supervisor/supervisor_input.c` reads it when the supervisor
 starts.
 
-problem("5\\n1 2 x\\n", lines_of(colset))      # Mistake(2, 5, "`x` is not a number (...)"); None: the file is right
+read("5\\n1 2 3\\n", lines_of(colset))      # (5, 1.0, 2.0, 3.0)
+read("5\\n1 2 x\\n", lines_of(colset))      # Mistake(2, 5, "`x` is not a number (...)")
 """
 
 from __future__ import annotations
@@ -10,7 +11,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from pn2code.cell.scalars import Scalar
-from pn2code.channels.scalars import Malformed, parse_scalars
+from pn2code.channels.scalars import Malformed, ScalarValue, parse_scalars
+
+MOST_BYTES = 65_535
+"""Of an input file: what the supervisor has room for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,14 +26,17 @@ class Mistake:
     what: str
 
 
-def problem(text: str, wanted: Sequence[Sequence[Scalar]]) -> Mistake | None:
-    """What is wrong with an input file.
+def read(text: str, wanted: Sequence[Sequence[Scalar]]) -> tuple[ScalarValue, ...] | Mistake:
+    """The scalars of the token in an input file, or what is wrong with the file.
 
     Args:
         text: of the file, a character a byte.
         wanted: what each line holds (`cell.scalars.lines_of` the place's colour set).
     """
+    if len(text) > MOST_BYTES:
+        return Mistake(1, 1, f"the file is longer than the {MOST_BYTES:,} bytes that are possible")
     found = list(_filled(text))
+    scalars_read: list[ScalarValue] = []
     for number, scalars in enumerate(wanted):
         if number == len(found):
             labels = " ".join(f"`{s.label}`" for s in scalars)
@@ -40,10 +47,11 @@ def problem(text: str, wanted: Sequence[Sequence[Scalar]]) -> Mistake | None:
         values = parse_scalars(scalars, line)
         if isinstance(values, Malformed):
             return Mistake(at, values.column, values.text)
+        scalars_read += values
     if len(found) > len(wanted):
         at, line = found[len(wanted)]
         return Mistake(at, 1, f"found `{line.strip()[:60]}` after what belongs here")
-    return None
+    return tuple(scalars_read)
 
 
 def _filled(text: str) -> Iterator[tuple[int, str]]:

@@ -34,6 +34,7 @@ from pn2code.cli.subject import Subject
 from pn2code.cli.verify_screen import closing, full, screen
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.verdict import channel_model, properties
+from pn2code.verdict.input_files import with_inputs
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.whole import (
     MOST_COLOURS,
@@ -257,6 +258,7 @@ def verify(
         with deadline.enforced():
             opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
             refuse_wide(opened.config, int_bits)
+            opened = with_inputs(opened, d)
             asked = question(opened, texts, file, d, found=found_properties)
     except TimeIsOverError:
         _stop_unread(net, d, as_json, form)

@@ -37,7 +37,7 @@ DEFAULT_STEP_LIMIT: Final = 100_000
 MOST_OCCURRENCES: Final = 100_000
 """Transitions in a row for which a script neither waits, nor acts, nor takes a message."""
 MOST_AT_ONCE: Final = 10_000
-"""Commands of a cell in lock-step without time passing, or messages; more means that it goes on so without end."""
+"""Commands of a cell in lock-step without time passing, or messages; more are taken for an endless repetition."""
 
 Scalar = int | float | bool | str
 

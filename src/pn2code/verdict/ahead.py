@@ -7,17 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
-from pathlib import Path
 
-from pn2code.base.os_reason import os_reason
-from pn2code.cell.codes import CELL_FILE, CELL_MISSING, CELL_VALUE
-from pn2code.cell.config import CellConfig, InputConfig
+from pn2code.cell.codes import CELL_MISSING
+from pn2code.cell.config import CellConfig
 from pn2code.cell.load import load as load_cell
 from pn2code.cell.partition import Partition
-from pn2code.cell.scalars import lines_of
-from pn2code.channels import inputs
-from pn2code.diagnostics import Diagnostics, Note, Origin
-from pn2code.ml.core.colsets import Colset
+from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.robot import codes, scene
 from pn2code.robot.backend import BackendUnavailableError
 from pn2code.robot.choose_backend import open_backend
@@ -31,6 +26,7 @@ from pn2code.run.sensors import load as load_sensors
 from pn2code.tdl import tree as t
 from pn2code.tdl.evaluate import ScriptError, ScriptPose, ScriptValue, evaluate
 from pn2code.tdl.interpret import to_si
+from pn2code.verdict.input_files import tokens
 
 
 def look_ahead(
@@ -44,18 +40,15 @@ def look_ahead(
         programs: of its robots and devices.
         d: gets the errors.
     """
-    places = {i.file: partition.net.places[i.place] for i in partition.inputs}
     for entry in config.inputs:
-        path = config.folder / entry.file
-        if path.is_file():
-            _input(path, places[entry.file].colset, entry, d)
-        else:
+        if not (config.folder / entry.file).is_file():
             d.error(
                 CELL_MISSING,
                 f"input: there is no file `{entry.file}` beside {config.path.name}",
                 entry.origin,
                 hint="write it, or correct `file`; the supervisor reads it when it starts",
             )
+    tokens(partition.net, config, d)
     load_sensors(config, partition.net, (config.folder,), None, d)
     poses = {ir.name: list(_constant_poses(ir)) for ir in programs}
     for layout in config.layouts or {"": ""}:
@@ -68,23 +61,6 @@ def look_ahead(
         _home(cell, chosen, where, d)
         for robot in cell.robots:
             _reach(cell, robot.name, poses.get(robot.name, []), where, d)
-
-
-def _input(path: Path, colset: Colset, entry: InputConfig, d: Diagnostics) -> None:
-    """An input file that the supervisor would not take."""
-    try:
-        wrong = inputs.problem(path.read_bytes().decode("latin-1"), lines_of(colset))
-    except OSError as problem:
-        d.error(CELL_FILE, f"cannot read `{path}`: {os_reason(problem)}", entry.origin)
-        return
-    if wrong is not None:
-        d.error(
-            CELL_VALUE,
-            wrong.what,
-            Origin(str(path), wrong.line, wrong.column),
-            notes=[Note(f"the marking of `{entry.place}` comes from this file", entry.origin)],
-            hint=f"write one token of colour set `{colset.name}`",
-        )
 
 
 def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> None:

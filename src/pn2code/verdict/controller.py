@@ -64,7 +64,7 @@ def look(
         properties=asked,
         evidence=wishes.evidence,
         wishes=replace(wishes, quick=found.nodes <= QUICK_STATES),
-        premises=Premises.of(partition, config),
+        premises=Premises.of(partition, config, {g.place: g.says for g in opened.given}),
     )
     looked = control.examine(partition, plan, replace(limits, traces=0), d, found)
     if looked is not None:

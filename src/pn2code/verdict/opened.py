@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,17 +18,43 @@ from pn2code.semantics.game.token_game import Game
 
 
 @dataclass(frozen=True, slots=True)
+class Given:
+    """The marking that a file gives a place at the start of a run (`verdict.input_files`).
+
+    Args:
+        place, name: index and name of the place.
+        marking: in the form of traces, as JSON.
+        says: a clause for people, with the file and the token.
+    """
+
+    place: int
+    name: str
+    marking: str
+    says: str
+
+
+@dataclass(frozen=True, slots=True)
 class OpenNet:
-    """A net, the cell beside it, if there is one, and what the front end knows of it."""
+    """A net, the cell beside it, if there is one, and what the front end knows of it.
+
+    `given`: the markings that files gave; they are the initial markings of `flat`.
+    """
 
     flat: FlatNet
     config: CellConfig | None
     examined: front.Examined
+    given: tuple[Given, ...] = ()
 
     @property
     def storage(self) -> Mapping[str, str]:
         """How colour sets of reals are stored: name -> "float32"."""
         return self.config.storage if self.config else {}
+
+    @property
+    def initial(self) -> str | None:
+        """The markings that files gave, as the header of a trace has them; None: there are none."""
+        rows = (f"{json.dumps(g.name)}: {g.marking}" for g in self.given)
+        return f"{{{', '.join(rows)}}}" if self.given else None
 
     def game(self, *, seed: int, files: Path | None) -> Game:
         """The net at its start.

@@ -158,6 +158,8 @@ def look(
     Raises:
         GameError: a declaration or an initial marking raises an exception.
     """
+    wishes = replace(wishes, initial=opened.initial)
+    own_wishes = None if own_wishes is None else replace(own_wishes, initial=opened.initial)
     # What the places hold is worked out once for all explorations of the net.
     with suppress(TimeIsOverError), limits.deadline.enforced():
         sizes = Sizes.start(opened.flat, opened.storage)

@@ -6,7 +6,7 @@ import pytest
 
 from helpers.netbuilder import cpn
 from pn2code.cell.scalars import lines_of
-from pn2code.channels.inputs import problem
+from pn2code.channels.inputs import MOST_BYTES, Mistake, read
 from pn2code.diagnostics import Diagnostics
 from pn2code.ml.core.colsets import Colset
 from pn2code.net.front import load
@@ -53,5 +53,15 @@ def colsets(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Colset]:
 def test_what_is_wrong_and_where(
     colsets: dict[str, Colset], colset: str, text: str, where: tuple[int, int] | None
 ) -> None:
-    found = problem(text, lines_of(colsets[colset]))
-    assert (None if found is None else (found.line, found.column)) == where
+    found = read(text, lines_of(colsets[colset]))
+    assert ((found.line, found.column) if isinstance(found, Mistake) else None) == where
+
+
+def test_the_values_in_their_order(colsets: dict[str, Colset]) -> None:
+    assert read("5\n1 -2\n# second\n3 4e1", lines_of(colsets["PLAN"])) == (5, 1.0, -2.0, 3.0, 40.0)
+
+
+def test_a_file_that_the_supervisor_has_no_room_for(colsets: dict[str, Colset]) -> None:
+    lines = lines_of(colsets["INT"])
+    assert read("5".ljust(MOST_BYTES), lines) == (5,)
+    assert isinstance(read("5".ljust(MOST_BYTES + 1), lines), Mistake)

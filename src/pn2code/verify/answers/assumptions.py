@@ -16,7 +16,8 @@ NET: Final = (
 )
 TIME: Final = "In the closed net time advances only where nothing is enabled; in the cell it may advance at any moment."
 CONTROL: Final = (
-    "Controller checks: the net starts with its own initial marking, without the tokens of an `[[input]]` file.",
+    "Controller checks: places of `[[input]]` begin with the tokens that their files held; where a file was not there, "
+    "with those of the net.",
     "Controller checks and properties are about the cell as it runs. Each program knows its own priorities and the "
     "messages that it has seen. The supervisor works in cycles. Of the transitions that are enabled, each program "
     "takes the first one in the documented order.",

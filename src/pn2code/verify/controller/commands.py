@@ -3,6 +3,7 @@
 commands = Commands(partition)
 commands.must_come(action)      # whatever the values are, a primitive is called
 commands.may_come(action)       # one is called somewhere, perhaps on a branch
+commands.at_once(action)        # so many at most that may take no time
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 from pn2code.cell.config import Primitive
 from pn2code.cell.partition import Partition
 from pn2code.cell.reach import Reach
+from pn2code.lowering.expressions.values import children
 from pn2code.ml.core import terms as core
 
 
@@ -49,6 +51,36 @@ class Commands:
                 return any(map(self.must_come, [*values, body]))
             case _:
                 return False
+
+    def at_once(self, e: core.Exp) -> int:
+        """The most tools and waits of one evaluation that may take no time; moves count as in `must_come`."""
+        self._reach.add_locals(e)
+        return self._at_once(e, frozenset())
+
+    def _at_once(self, e: core.Exp, inside: frozenset[int]) -> int:
+        match e:
+            case core.Apply(core.Var(symbol), argument) if symbol.uid in self._primitives:
+                primitive = self._primitives[symbol.uid]
+                own = 0 if _takes_time(primitive, argument) else 1
+                return own + self._at_once(argument, inside)
+            case core.Var(symbol) if symbol.uid in self._primitives:
+                return 0 if _takes_time(self._primitives[symbol.uid], None) else 1
+            case core.Var(symbol):
+                body = self._reach.body(symbol)
+                if not isinstance(body, core.Lambda) or symbol.uid in inside:
+                    return 0
+                return self._at_once(body, inside | {symbol.uid})
+            case core.If(condition, then, otherwise):
+                chosen = max(self._at_once(then, inside), self._at_once(otherwise, inside))
+                return self._at_once(condition, inside) + chosen
+            case core.Case(scrutinee, rules):
+                chosen = max((self._at_once(r.body, inside) for r in rules), default=0)
+                return self._at_once(scrutinee, inside) + chosen
+            case core.Let(declarations, body):
+                values = [d.value for d in declarations if isinstance(d, core.ValBind)]
+                return sum(self._at_once(x, inside) for x in [*values, body])
+            case _:
+                return sum(self._at_once(x, inside) for x in children(e))
 
     def _applies(self, function: core.Exp, argument: core.Exp | None = None) -> bool:
         """Whether applying a function calls a primitive in each of its rules."""

@@ -119,7 +119,7 @@ def of_orders(running: Running, firings: int = MAX_FIRINGS) -> str:
         f"? bounded-response {firings}",
         "? confluence 0",
         "? confluence 1",
-        f"? restless {MOST_AT_ONCE - 1}",
+        f"? restless {MOST_AT_ONCE // running.at_once - 1}",
     ]
     return "".join(f"{line}\n" for line in lines)
 
@@ -199,8 +199,11 @@ def examine(
         if nondeterminism.draws(partition.net):
             checks = tuple(drawn(c) for c in checks)
         late = plan.premises.replies.late or silent(running, said)
+        premises = plan.premises
+        if found.nodes * running.at_once >= MOST_AT_ONCE:
+            premises = replace(premises, instants=True)
         control = Control(checks, found, running, answers=found.answers[:count], closed=closed)
-        return settled(replace(control, late=late, doubt=doubt, premises=plan.premises))
+        return settled(replace(control, late=late, doubt=doubt, premises=premises))
 
 
 # --- the net itself ------------------------------------------------------------------------------

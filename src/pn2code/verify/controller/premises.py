@@ -6,15 +6,26 @@ premises.of_check("non-blocking", "yes")    # ("nobody owes an answer for longer
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
+
 from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.cell.reach import Reach
 from pn2code.properties import meaning as m
+from pn2code.tdl.interpret import MOST_AT_ONCE
 from pn2code.verify.controller.replies import Replies
 
 _DURATIONS = (
     "it can happen for some durations of commands; known durations are not compared with timers"
+)
+
+NOTHING_GIVEN: Mapping[int, str] = MappingProxyType({})
+
+_INSTANTS = (
+    f"in lock-step no more than {MOST_AT_ONCE:,} messages are exchanged, or commands carried out, "
+    "without time passing"
 )
 
 _SENSORS = "each possible value of a sensor occurs from time to time"
@@ -29,23 +40,29 @@ class Premises:
         states: premises of whatever rests on the states of the cell.
         durations: whether timers and what programs do go on side by side.
         sensors: whether programs ask sensors.
+        instants: whether there are so many states that a run in lock-step may do too much in one moment.
     """
 
     replies: Replies = Replies()
     states: tuple[str, ...] = ()
     durations: bool = False
     sensors: bool = False
+    instants: bool = False
 
     @staticmethod
-    def of(partition: Partition, config: CellConfig) -> Premises:
-        """Those of a cell."""
+    def of(
+        partition: Partition, config: CellConfig, given: Mapping[int, str] = NOTHING_GIVEN
+    ) -> Premises:
+        """Those of a cell; `given`: by place, a clause that says which token a file gave it."""
         states: list[str] = []
         measured = _measured(partition, config)
         if measured:
             names = ", ".join(f"`{name}`" for name in measured)
             states.append(f"a measurement gives the result of {names} in the net")
-        if partition.inputs:
-            names = ", ".join(f"`{i.name}`" for i in partition.inputs)
+        states += [given[i.place] for i in partition.inputs if i.place in given]
+        assumed = [i for i in partition.inputs if i.place not in given]
+        if assumed:
+            names = ", ".join(f"`{i.name}`" for i in assumed)
             states.append(f"{names} begins with the tokens of the net, not with those of its file")
         replies = Replies.of(partition, config)
         return Premises(replies, tuple(states), partition.net.timed, bool(config.sensors))
@@ -58,6 +75,7 @@ class Premises:
         if name == "non-blocking":
             found += [self.replies.premise] if self.replies.premise else []
             found += [_SENSORS] if self.sensors else []
+            found += [_INSTANTS] if self.instants else []
         return tuple(found)
 
     def of_property(self, asked: m.Asked, answer: str, *, kept: bool) -> tuple[str, ...]:
@@ -67,6 +85,7 @@ class Premises:
         found = list(self.states)
         if not kept and self.replies.premise:
             found.append(self.replies.premise)
+        found += [_INSTANTS] if self.instants and not kept else []
         if self.durations and _is_possibility(asked):
             found.append(_DURATIONS)
         return tuple(found)

@@ -113,6 +113,8 @@ class Running:
     resting: int
     """the place of a supervisor that rests"""
     silences: tuple[Silence, ...] = ()
+    at_once: int = 1
+    """the most commands and waits for no time that belong to one transition of a robot"""
     unsure: int | None = None
     """the place that is marked where a condition of a script that waits has raised an exception; None: none can"""
 
@@ -333,6 +335,7 @@ class _Composer:
             names=frozenset(t.name for t in self.partition.net.transitions),
             resting=self.idle,
             silences=tuple(self._silences()),
+            at_once=_at_once(self.partition, self.machines.values()),
             unsure=self.unsure,
         )
 
@@ -568,6 +571,18 @@ def _instant(partition: Partition, machines: Iterable[Machine], *, surely: bool)
             )
             if not (waits_for or acts or (surely and _may_pause(step))):
                 yield t.index
+
+
+def _at_once(partition: Partition, machines: Iterable[Machine]) -> int:
+    """The most commands and waits of one transition that may take no time; 1 where it has none."""
+    commands = Commands(partition)
+    most = 1
+    for program in machines:
+        for step in program.steps:
+            code = step.transition.code
+            own = 0 if code is None else commands.at_once(code.action)
+            most = max(most, own + _may_pause(step))
+    return most
 
 
 def _may_pause(step: Step) -> bool:

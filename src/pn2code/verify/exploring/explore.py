@@ -63,6 +63,7 @@ class ExploreOptions:
     Args:
         traces: a folder for the traces to dead markings and to an exception; None: none are wanted.
         stem: what the names of their files begin with.
+        initial: what their headers say of initial markings that are not those of the net's file, as JSON.
         graph: a file for the whole graph, marking by marking; None: not wanted. It is not written when the
             exploration is not complete, or has more than `graph_limit` nodes.
         colours: of each multi-set bound at most so many colours are told; None: all. `whole`: places of which all are.
@@ -76,6 +77,7 @@ class ExploreOptions:
 
     traces: Path | None = None
     stem: str = "net"
+    initial: str | None = None
     graph: Path | None = None
     graph_limit: int | None = None
     colours: int | None = None
@@ -248,6 +250,7 @@ def _options(limits: Limits, chosen: Chosen, sizes: Sizes, wishes: ExploreOption
         ("--traces", limits.traces if wishes.traces else None),
         ("--error-trace-to", wishes.traces and wishes.traces / f"{wishes.stem}.error-"),
         ("--query-trace-to", wishes.evidence and wishes.evidence / f"{wishes.stem}.query-"),
+        ("--initial", wishes.initial),
         ("--write-graph", wishes.graph),
         ("--write-limit", wishes.graph_limit),
         ("--multiset-limit", wishes.colours),
