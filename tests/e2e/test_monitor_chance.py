@@ -54,6 +54,8 @@ def test_no_false_alarm(tmp_path: Path) -> None:
             check=False,
         )
         assert done.returncode == 0, done.stderr
-    plain, monitored = ((tmp_path / n).read_text() for n in ("supervisor.traced", "supervisor.monitor"))
+    plain, monitored = (
+        (tmp_path / n).read_text() for n in ("supervisor.traced", "supervisor.monitor")
+    )
     assert plain == monitored
     assert plain.count("Top.T") > 2 and plain.count("Top.U") > 2
