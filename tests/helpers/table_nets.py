@@ -19,6 +19,7 @@ from typing import Any
 
 from helpers.explored import Explorers
 from pn2code.base.resources import cnative_folder
+from pn2code.emission import c_flags
 from pn2code.unfold.net import UnfoldedTransition
 from pn2code.verify.exploring.irrelevant_elements import useless
 
@@ -268,7 +269,13 @@ class TableExplorer:
         folder.mkdir(exist_ok=True)
         made = folder / "explore"
         objects = sorted(explorers.host.glob("*.o"))
-        command = [explorers.compiler, "-std=c11", "-pthread", *explorers.flags]
+        command = [
+            explorers.compiler,
+            c_flags.STANDARD,
+            *c_flags.FLOATS,
+            "-pthread",
+            *explorers.flags,
+        ]
         command += [f"-I{cnative_folder() / 'include'}", str(SOURCE), *map(str, objects)]
         done = subprocess.run(
             [*command, "-lm", "-o", str(made)], capture_output=True, text=True, check=False
