@@ -17,10 +17,11 @@ typedef uint32_t tb_count_t; /* tokens in a place */
 
 #define TB_MOST_TOKENS ((tb_count_t)1 << 30U)
 
-/* One arc, from the side of a place or of a transition. */
+/* One arc, from the side of a place or of a transition, or how much a transition changes a place (put minus taken,
+ * never 0). */
 typedef struct tb_arc {
     uint32_t node; /* the other end */
-    tb_count_t weight;
+    int32_t weight;
 } tb_arc_t;
 
 /* Arcs of all nodes of a kind, one node after the other: those of node n are arc[first[n]] to arc[first[n + 1] - 1]. */
@@ -29,26 +30,15 @@ typedef struct tb_arcs {
     tb_arc_t *arc;
 } tb_arcs_t;
 
-/* A change of a place by a transition: put minus taken, never 0. */
-typedef struct tb_change {
-    uint32_t node;
-    int64_t by;
-} tb_change_t;
-
-typedef struct tb_changes {
-    uint32_t *first;
-    tb_change_t *change;
-} tb_changes_t;
-
 typedef struct tb_net {
     uint32_t places;
     uint32_t transitions;
     tb_count_t *initial;
-    tb_arcs_t takes;       /* transition -> places */
-    tb_arcs_t puts;        /* transition -> places */
-    tb_changes_t changes;  /* transition -> places */
-    tb_arcs_t takers;      /* place -> transitions that need tokens there */
-    tb_changes_t changers; /* place -> transitions that change it */
+    tb_arcs_t takes;    /* transition -> places */
+    tb_arcs_t puts;     /* transition -> places */
+    tb_arcs_t changes;  /* transition -> places */
+    tb_arcs_t takers;   /* place -> transitions that need tokens there */
+    tb_arcs_t changers; /* place -> transitions that change it */
 } tb_net_t;
 
 /* --- questions ------------------------------------------------------------------------------------------------------------------- */

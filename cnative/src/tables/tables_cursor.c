@@ -58,8 +58,8 @@ void tb_set(tb_cursor_t *c, uint32_t place, tb_count_t tokens)
     c->marking[place] = tokens;
     for (uint32_t i = takers->first[place]; i < takers->first[place + 1U]; i++) {
         const tb_arc_t *arc = &takers->arc[i];
-        const bool was = before >= arc->weight;
-        const bool is = tokens >= arc->weight;
+        const bool was = before >= (tb_count_t)arc->weight;
+        const bool is = tokens >= (tb_count_t)arc->weight;
         if (was && !is) {
             if (c->missing[arc->node] == 0U) {
                 disable(c, arc->node);
@@ -85,28 +85,28 @@ void tb_go_to(tb_cursor_t *c, const tb_count_t *marking)
 
 bool tb_fire(tb_cursor_t *c, uint32_t transition)
 {
-    const tb_changes_t *changes = &c->net->changes;
+    const tb_arcs_t *changes = &c->net->changes;
     const uint32_t first = changes->first[transition];
     const uint32_t end = changes->first[transition + 1U];
     for (uint32_t i = first; i < end; i++) {
-        const tb_change_t *change = &changes->change[i];
-        if (((int64_t)c->marking[change->node] + change->by) > (int64_t)TB_MOST_TOKENS) {
+        const tb_arc_t *change = &changes->arc[i];
+        if (((int64_t)c->marking[change->node] + change->weight) > (int64_t)TB_MOST_TOKENS) {
             return false;
         }
     }
     for (uint32_t i = first; i < end; i++) {
-        const tb_change_t *change = &changes->change[i];
-        tb_set(c, change->node, (tb_count_t)((int64_t)c->marking[change->node] + change->by));
+        const tb_arc_t *change = &changes->arc[i];
+        tb_set(c, change->node, (tb_count_t)((int64_t)c->marking[change->node] + change->weight));
     }
     return true;
 }
 
 void tb_unfire(tb_cursor_t *c, uint32_t transition)
 {
-    const tb_changes_t *changes = &c->net->changes;
+    const tb_arcs_t *changes = &c->net->changes;
     for (uint32_t i = changes->first[transition]; i < changes->first[transition + 1U]; i++) {
-        const tb_change_t *change = &changes->change[i];
-        tb_set(c, change->node, (tb_count_t)((int64_t)c->marking[change->node] - change->by));
+        const tb_arc_t *change = &changes->arc[i];
+        tb_set(c, change->node, (tb_count_t)((int64_t)c->marking[change->node] - change->weight));
     }
 }
 

@@ -11,8 +11,8 @@ static double missing_tokens(const tb_cursor_t *c, uint32_t t)
     double sum = 0.0;
     for (uint32_t i = c->net->takes.first[t]; i < c->net->takes.first[t + 1U]; i++) {
         const tb_arc_t *arc = &c->net->takes.arc[i];
-        const tb_count_t held = c->marking[arc->node];
-        sum += (held < arc->weight) ? (double)(arc->weight - held) : 0.0;
+        const int64_t lacking = (int64_t)arc->weight - (int64_t)c->marking[arc->node];
+        sum += (lacking > 0) ? (double)lacking : 0.0;
     }
     return sum;
 }

@@ -62,7 +62,7 @@ typedef struct growing {
     uint32_t room;
 } growing_t;
 
-static void append(growing_t *g, uint32_t node, tb_count_t weight)
+static void append(growing_t *g, uint32_t node, int32_t weight)
 {
     if (g->count == g->room) {
         const uint32_t room = (g->room > 0U) ? (2U * g->room) : 1024U;
@@ -79,75 +79,46 @@ static void read_arcs(reader_t *r, growing_t *g)
     const uint32_t count = (uint32_t)number(r, 0, (int64_t)r->net->places);
     for (uint32_t i = 0U; i < count; i++) {
         const uint32_t place = index_below(r, r->net->places);
-        append(g, place, (tb_count_t)number(r, 1, (int64_t)TB_MOST_TOKENS));
+        append(g, place, (int32_t)number(r, 1, (int64_t)TB_MOST_TOKENS));
     }
 }
 
-/* Arcs by their other end. */
-static void turn(const uint32_t *first, const uint32_t *node, size_t stride, uint32_t from, uint32_t to,
-                 uint32_t *turned)
+/* The arcs of `from` nodes, by their other ends, of which there are `to`. */
+static tb_arcs_t turned(const tb_arcs_t *arcs, uint32_t from, uint32_t to)
 {
-    for (uint32_t i = 0U; i < first[from]; i++) {
-        const uint32_t target = *(const uint32_t *)(const void *)((const char *)node + ((size_t)i * stride));
-        turned[target + 1U]++;
+    tb_arcs_t back = { tb_new((size_t)to + 1U, sizeof(uint32_t)), tb_new(arcs->first[from], sizeof(tb_arc_t)) };
+    uint32_t *next = tb_new((size_t)to + 1U, sizeof *next);
+    for (uint32_t i = 0U; i < arcs->first[from]; i++) {
+        back.first[arcs->arc[i].node + 1U]++;
     }
     for (uint32_t n = 0U; n < to; n++) {
-        turned[n + 1U] += turned[n];
+        back.first[n + 1U] += back.first[n];
     }
-}
-
-static void make_takers(tb_net_t *net)
-{
-    const uint32_t count = net->takes.first[net->transitions];
-    net->takers.first = tb_new((size_t)net->places + 1U, sizeof(uint32_t));
-    net->takers.arc = tb_new(count, sizeof(tb_arc_t));
-    uint32_t *next = tb_new((size_t)net->places + 1U, sizeof(uint32_t));
-    turn(net->takes.first, &net->takes.arc->node, sizeof(tb_arc_t), net->transitions, net->places, net->takers.first);
-    (void)memcpy(next, net->takers.first, ((size_t)net->places + 1U) * sizeof *next);
-    for (uint32_t t = 0U; t < net->transitions; t++) {
-        for (uint32_t i = net->takes.first[t]; i < net->takes.first[t + 1U]; i++) {
-            const tb_arc_t arc = net->takes.arc[i];
-            const tb_arc_t back = { t, arc.weight };
-            net->takers.arc[next[arc.node]] = back;
-            next[arc.node]++;
+    (void)memcpy(next, back.first, ((size_t)to + 1U) * sizeof *next);
+    for (uint32_t n = 0U; n < from; n++) {
+        for (uint32_t i = arcs->first[n]; i < arcs->first[n + 1U]; i++) {
+            const tb_arc_t arc = { n, arcs->arc[i].weight };
+            back.arc[next[arcs->arc[i].node]] = arc;
+            next[arcs->arc[i].node]++;
         }
     }
-    tb_free(next, (size_t)net->places + 1U, sizeof *next);
-}
-
-static void make_changers(tb_net_t *net)
-{
-    const uint32_t count = net->changes.first[net->transitions];
-    net->changers.first = tb_new((size_t)net->places + 1U, sizeof(uint32_t));
-    net->changers.change = tb_new(count, sizeof(tb_change_t));
-    uint32_t *next = tb_new((size_t)net->places + 1U, sizeof(uint32_t));
-    turn(net->changes.first, &net->changes.change->node, sizeof(tb_change_t), net->transitions, net->places,
-         net->changers.first);
-    (void)memcpy(next, net->changers.first, ((size_t)net->places + 1U) * sizeof *next);
-    for (uint32_t t = 0U; t < net->transitions; t++) {
-        for (uint32_t i = net->changes.first[t]; i < net->changes.first[t + 1U]; i++) {
-            const tb_change_t change = net->changes.change[i];
-            const tb_change_t back = { t, change.by };
-            net->changers.change[next[change.node]] = back;
-            next[change.node]++;
-        }
-    }
-    tb_free(next, (size_t)net->places + 1U, sizeof *next);
+    tb_free(next, (size_t)to + 1U, sizeof *next);
+    return back;
 }
 
 /* What is put minus what is taken. */
 static void make_changes(tb_net_t *net)
 {
-    int64_t *by = tb_new(net->places, sizeof *by);
+    int32_t *by = tb_new(net->places, sizeof *by);
     const uint32_t most = net->takes.first[net->transitions] + net->puts.first[net->transitions];
     net->changes.first = tb_new((size_t)net->transitions + 1U, sizeof(uint32_t));
-    net->changes.change = tb_new(most, sizeof(tb_change_t));
+    net->changes.arc = tb_new(most, sizeof(tb_arc_t));
     uint32_t made = 0U;
     for (uint32_t t = 0U; t < net->transitions; t++) {
         const tb_arcs_t *sides[2] = { &net->takes, &net->puts };
         for (uint32_t side = 0U; side < 2U; side++) {
             for (uint32_t i = sides[side]->first[t]; i < sides[side]->first[t + 1U]; i++) {
-                const int64_t weight = (int64_t)sides[side]->arc[i].weight;
+                const int32_t weight = sides[side]->arc[i].weight;
                 by[sides[side]->arc[i].node] += (side == 0U) ? -weight : weight;
             }
         }
@@ -155,8 +126,8 @@ static void make_changes(tb_net_t *net)
             for (uint32_t i = sides[side]->first[t]; i < sides[side]->first[t + 1U]; i++) {
                 const uint32_t p = sides[side]->arc[i].node;
                 if (by[p] != 0) {
-                    net->changes.change[made].node = p;
-                    net->changes.change[made].by = by[p];
+                    net->changes.arc[made].node = p;
+                    net->changes.arc[made].weight = by[p];
                     made++;
                     by[p] = 0;
                 }
@@ -178,8 +149,8 @@ static void read_net(reader_t *r)
     }
     growing_t takes = { NULL, 0U, 0U };
     growing_t puts = { NULL, 0U, 0U };
-    append(&takes, 0U, 0U); /* so that there is an array even without arcs */
-    append(&puts, 0U, 0U);
+    append(&takes, 0U, 0); /* so that there is an array even without arcs */
+    append(&puts, 0U, 0);
     takes.count = 0U;
     puts.count = 0U;
     net->takes.first = tb_new((size_t)net->transitions + 1U, sizeof(uint32_t));
@@ -192,9 +163,9 @@ static void read_net(reader_t *r)
     }
     net->takes.arc = takes.arc;
     net->puts.arc = puts.arc;
-    make_takers(net);
     make_changes(net);
-    make_changers(net);
+    net->takers = turned(&net->takes, net->transitions, net->places);
+    net->changers = turned(&net->changes, net->transitions, net->places);
 }
 
 /* --- the questions --------------------------------------------------------------------------------------------------------------- */

@@ -39,10 +39,10 @@ static void add(tb_stubborn_t *s, uint32_t t)
 /* All that change a place upwards (or downwards). */
 static void add_changers(tb_stubborn_t *s, uint32_t place, bool upwards)
 {
-    const tb_changes_t *changers = &s->net->changers;
+    const tb_arcs_t *changers = &s->net->changers;
     for (uint32_t i = changers->first[place]; i < changers->first[place + 1U]; i++) {
-        if ((changers->change[i].by > 0) == upwards) {
-            add(s, changers->change[i].node);
+        if ((changers->arc[i].weight > 0) == upwards) {
+            add(s, changers->arc[i].node);
         }
     }
 }
@@ -57,11 +57,11 @@ static void add_takers(tb_stubborn_t *s, uint32_t place)
 /* What there is to do for a place with too few tokens: transitions that are not yet in the set. */
 static uint32_t cost_of(const tb_stubborn_t *s, uint32_t place)
 {
-    const tb_changes_t *changers = &s->net->changers;
+    const tb_arcs_t *changers = &s->net->changers;
     uint32_t cost = 0U;
     for (uint32_t i = changers->first[place]; i < changers->first[place + 1U]; i++) {
-        const tb_change_t *change = &changers->change[i];
-        cost += ((change->by > 0) && (s->is_in[change->node] != s->set)) ? 1U : 0U;
+        const tb_arc_t *change = &changers->arc[i];
+        cost += ((change->weight > 0) && (s->is_in[change->node] != s->set)) ? 1U : 0U;
     }
     return cost;
 }
@@ -74,7 +74,7 @@ static void add_helpers(tb_stubborn_t *s, const tb_cursor_t *c, uint32_t t)
     uint32_t least = UINT32_MAX;
     for (uint32_t i = takes->first[t]; (i < takes->first[t + 1U]) && (least > 0U); i++) {
         const tb_arc_t *arc = &takes->arc[i];
-        if (c->marking[arc->node] < arc->weight) {
+        if (c->marking[arc->node] < (tb_count_t)arc->weight) {
             const uint32_t cost = cost_of(s, arc->node);
             if (cost < least) {
                 least = cost;
@@ -169,10 +169,10 @@ uint32_t tb_stubborn(tb_stubborn_t *s, const tb_cursor_t *c, const tb_formula_t 
         }
         fire[found] = t;
         found++;
-        const tb_changes_t *changes = &s->net->changes;
+        const tb_arcs_t *changes = &s->net->changes;
         for (uint32_t k = changes->first[t]; k < changes->first[t + 1U]; k++) {
-            if (changes->change[k].by < 0) {
-                add_takers(s, changes->change[k].node);
+            if (changes->arc[k].weight < 0) {
+                add_takers(s, changes->arc[k].node);
             }
         }
     }
