@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import pytest
@@ -9,6 +10,10 @@ from typer.testing import CliRunner
 
 from helpers.pnml_nets import arc, net, place, transition
 from pn2code.cli.main import app
+from pn2code.contest import portfolio
+from pn2code.contest.engine import Answer, Task
+from pn2code.contest.examinations import Asked, Part
+from pn2code.contest.tables import Tables
 
 FORMULAS = """<?xml version="1.0"?>
 <property-set xmlns="http://mcc.lip6.fr/">{}</property-set>
@@ -142,6 +147,35 @@ def test_a_method_alone(folder: Path) -> None:
 
 def test_no_time(folder: Path) -> None:
     assert said(folder, "StateSpace", "--max-seconds", "0") == ["CANNOT_COMPUTE"]
+
+
+def test_nets_that_the_engine_does_not_have(tmp_path: Path) -> None:
+    """Nothing is said of them but that."""
+    text = net(
+        place("p", "", "2"),
+        transition("t"),
+        arc("p", "t", kind="inhibitor"),
+        kind="ptnet",
+    )
+    (tmp_path / "model.pnml").write_text(text)
+    done = CliRunner().invoke(app, ["contest", str(tmp_path), "ReachabilityDeadlock"])
+    assert done.exit_code == 0 and done.stdout == "CANNOT_COMPUTE\n"
+    assert "inhibitor arcs" in done.stderr
+
+
+def test_methods_that_contradict_each_other(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is an error of the program, and no answer."""
+
+    def contradicting(program: Path, tasks: Sequence[Task]) -> Iterator[Answer]:
+        del program, tasks
+        yield Answer(0, True, True, "ONE")
+        yield Answer(0, False, True, "OTHER")
+
+    monkeypatch.setattr(portfolio, "ask", contradicting)
+    tables = Tables((1,), ({0: 1},), ({},), {"p": (0,)}, {"t": (0,)})
+    lines = [Asked(name, (Part("reach", "reach dead"),)) for name in "ab"]
+    with pytest.raises(RuntimeError, match="a: OTHER contradicts"):
+        list(portfolio.answers(folder, tables, lines, seconds=1.0))
 
 
 def test_wrong_inputs(folder: Path, tmp_path: Path) -> None:

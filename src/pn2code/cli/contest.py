@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import suppress
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
@@ -19,6 +20,7 @@ from pn2code.contest.tables import Tables
 from pn2code.diagnostics import Diagnostics
 from pn2code.net import front
 from pn2code.semantics.evaluation.constants import compute
+from pn2code.unfold.codes import UNFOLDING_FAULT
 from pn2code.unfold.unfold import unfold
 
 EPILOG = """Examples:
@@ -41,7 +43,7 @@ def contest(
         float, typer.Option(metavar="S", min=0.0, help="Stop after S seconds.")
     ] = 60.0,
     memory: Annotated[
-        int, typer.Option(metavar="MIB", min=16, help="The most memory for both processes.")
+        int, typer.Option(metavar="MIB", min=16, help="The most memory for all methods.")
     ] = 8192,
     only: Annotated[Method | None, typer.Option(help="Use this method alone.")] = None,
 ) -> None:
@@ -51,15 +53,17 @@ def contest(
     wrong.
     """
     deadline = Deadline.of_command(max_seconds)
+    found = None
     try:
-        with deadline.enforced():
-            tables, questions = _read(folder, examination)
-    except TimeIsOverError:
-        typer.echo(UNKNOWN)
-        return
+        with suppress(TimeIsOverError), deadline.enforced():
+            found = _read(folder, examination)
     except FormulaError as error:
         typer.echo(f"pn2code: {error}", err=True)
         raise typer.Exit(Exit.MODEL) from None
+    if found is None:
+        typer.echo(UNKNOWN)
+        return
+    tables, questions = found
     d = Diagnostics()
     with engine(d) as program:
         if program is None:
@@ -68,20 +72,29 @@ def contest(
         if examination == SPACE:
             lines = _space(space(program, tables, seconds=left, mebibytes=memory))
         else:
-            lines = _formulas(program, tables, questions, left, memory // 2, only)
+            lines = _formulas(program, tables, questions, left, memory, only)
         for line in lines:
             typer.echo(line)
 
 
-def _read(folder: Path, examination: Examination) -> tuple[Tables, list[Asked]]:
-    """The net and what is asked of it; leaves with a report when it is wrong."""
+def _read(folder: Path, examination: Examination) -> tuple[Tables, list[Asked]] | None:
+    """The net and what is asked of it; None, with the reason on the standard error, if it cannot be unfolded.
+
+    It leaves with a report when the net is wrong.
+    """
     d = Diagnostics()
     net = front.load(folder / "model.pnml", d, compute=compute)
-    unfolding = None if net is None else unfold(net, d)
-    if unfolding is None:
+    if net is None:
         stop(d, Format.FULL)
+    unfolding = unfold(net, d)
     print_diagnostics(d.sorted(), Format.FULL)
-    tables = Tables.of(unfolding)
+    if unfolding is None or any(x.code == UNFOLDING_FAULT for x in d):
+        return None
+    try:
+        tables = Tables.of(unfolding)
+    except ValueError as error:
+        typer.echo(f"pn2code: {error}", err=True)
+        return None
     return tables, [] if examination == SPACE else asked(tables, examination, folder)
 
 

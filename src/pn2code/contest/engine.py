@@ -12,6 +12,7 @@ from __future__ import annotations
 import subprocess
 import tempfile
 import threading
+import time
 from collections.abc import Iterator, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import dataclass
@@ -22,12 +23,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.toolchain import programs
 from pn2code.toolchain.programs import Host
 
-_SOURCES = (
-    "tables.c", "tables_answers.c", "tables_ctl.c", "tables_cursor.c", "tables_distance.c", "tables_explore.c",
-    "tables_graph.c", "tables_ltl.c", "tables_memory.c", "tables_reach.c", "tables_read.c", "tables_store.c",
-    "tables_stubborn.c", "tables_walk.c",
-)  # fmt: skip
-HOST = Host("tables", only=_SOURCES)
+HOST = Host("tables", only=("tables*.c",))
 _WRONG = 2
 """Exit code: the tables are wrong."""
 _GRACE_S = 1.0
@@ -104,7 +100,7 @@ def ask(program: Path, tasks: Sequence[Task]) -> Iterator[Answer | Space]:
                 reader.start()
                 running.append((process, reader))
             longest = max((t.seconds for t in tasks), default=0.0) + _GRACE_S
-            yield from _until_all_ended(said, len(running), longest)
+            yield from _until_all_ended(said, len(running), time.monotonic() + longest)
         finally:
             for process, reader in running:
                 process.kill()
@@ -150,11 +146,11 @@ def _parsed(line: str) -> Answer | Space | None:
 
 
 def _until_all_ended(
-    said: SimpleQueue[Answer | Space | str | None], running: int, longest: float
+    said: SimpleQueue[Answer | Space | str | None], running: int, ends: float
 ) -> Iterator[Answer | Space]:
     while running:
         try:
-            found = said.get(timeout=longest)
+            found = said.get(timeout=max(0.0, ends - time.monotonic()))
         except Empty:
             return
         if found is None:

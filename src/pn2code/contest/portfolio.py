@@ -2,8 +2,7 @@
 
     for name, value, techniques in answers(program, tables, asked, kinds, seconds=60.0): ...
 
-A method that cannot answer a question leaves it to the others; answers of different methods never differ, so the first
-one counts.
+A method that cannot answer a question leaves it to the others. Two that answer the same question must agree.
 """
 
 from __future__ import annotations
@@ -89,8 +88,11 @@ def answers(
         tables: the net.
         asked: the lines of the examination.
         seconds: for all of them together.
-        mebibytes: of memory for each of two processes.
+        mebibytes: of memory for all that runs side by side.
         only: a method, alone; "": all.
+
+    Raises:
+        RuntimeError: two methods contradict each other, or the engine did not understand its tables.
     """
     lines = [_Line(a) for a in asked]
     undone = sum(1 for line in lines if line.asked.parts)
@@ -118,7 +120,8 @@ def answers(
             if not found.is_final:
                 continue
             line, which, _ = place[found.number]
-            line.known.setdefault(which, found.value)
+            if line.known.setdefault(which, found.value) != found.value:
+                raise RuntimeError(f"{line.asked.name}: {found.method} contradicts another method")
             line.techniques.add(found.method)
             result = None if line.is_done else line.result()
             if result is not None:
@@ -135,17 +138,19 @@ def _tasks(
     """What runs side by side in a round: for each kind of question two methods, or one method twice."""
     kinds = {part.kind for part in open_.values()}
     pairs = [_PLANS[kind][min(number, len(_PLANS[kind]) - 1)] for kind in sorted(kinds)]
-    tasks = []
+    chosen: list[tuple[str, str]] = []
     for which in range(2):
-        for method in dict.fromkeys(pair[which] for pair in pairs):
-            chosen = only or method
-            mine = [n for n, part in open_.items() if part.kind in METHODS[chosen]]
+        for method in dict.fromkeys(only or pair[which] for pair in pairs):
+            mine = [n for n, part in open_.items() if part.kind in METHODS[method]]
             if only or all(pair[0] == pair[1] for pair in pairs if method in pair):
                 mine = mine[which::2]
             if mine:
-                text = tables.text([f"{n} {open_[n].text}" for n in mine])
-                tasks.append(Task(chosen, text, seconds, mebibytes, seed=2 * number + which + 1))
-    return tasks
+                chosen.append((method, tables.text([f"{n} {open_[n].text}" for n in mine])))
+    share = mebibytes // max(1, len(chosen))
+    return [
+        Task(method, text, seconds, share, seed=len(chosen) * number + i)
+        for i, (method, text) in enumerate(chosen, 1)
+    ]
 
 
 def space(program: Path, tables: Tables, *, seconds: float, mebibytes: int) -> Space | None:

@@ -39,8 +39,10 @@ class Tables:
         """The tables of an unfolded net.
 
         Raises:
-            ValueError: it has inhibitor or reset arcs, or priorities.
+            ValueError: it has inhibitor or reset arcs, or priorities, or lacks bindings that raise exceptions.
         """
+        if unfolding.faults:
+            raise ValueError("bindings that raise exceptions are not in the tables")
         if unfolding.has_priorities or any(t.inhibitors or t.resets for t in unfolding.transitions):
             raise ValueError("inhibitor arcs, reset arcs and priorities are not in the tables")
         places = {

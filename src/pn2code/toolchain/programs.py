@@ -24,6 +24,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
+from fnmatch import fnmatch
 from functools import cache
 from pathlib import Path
 
@@ -76,7 +77,7 @@ class Host:
         whole: a source of the host that can have the net as a part of itself (PN_NET_SOURCE); "" if there is none.
         also: hosts whose sources it has, too.
         instead: names of sources that are left out, since the host has others in their place.
-        only: names of all sources that it needs, if it does without most; () for all.
+        only: patterns for the names of all sources that it needs, if it does without most; () for all.
     """
 
     name: str
@@ -96,7 +97,7 @@ class Host:
         return tuple(f for f in found if self._needs(Path(f.path).name))
 
     def _needs(self, name: str) -> bool:
-        is_wanted = not self.only or name in self.only or name.endswith(".h")
+        is_wanted = not self.only or name.endswith(".h") or any(fnmatch(name, p) for p in self.only)
         return is_wanted and name not in self.instead
 
 
