@@ -1,4 +1,4 @@
-"""The deployed supervisor breaks no required rule of MISRA C:2012 that docs/misra.md does not name (tests/misra.py)."""
+"""The deployed supervisor breaks no required rule of MISRA C:2012 that docs/misra.md does not name (tools/misra.py)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
-from tests import misra
+from tools import misra
 
 
 def test_what_is_committed(root: Path) -> None:

@@ -1,6 +1,6 @@
 """MISRA C:2012 in the deployed supervisor of the riveting cell: required rules are broken only as docs/misra.md says.
 
-    python -m tests.misra [FOLDER]         # or `make misra`
+    python -m tools.misra [FOLDER]         # or `make misra`
 
 cppcheck's addon (the wheel `cppcheck-py`) looks at the generated `net.c` and `cell_config.c`, the supervisor's own
 sources and the channels. The rows of docs/misra.md name a rule, a file and a reason; a finding without a row and a row
