@@ -117,6 +117,33 @@ def test_where_runs_go(tmp_path: Path, here: Path) -> None:
     assert list(here.iterdir()) == []
 
 
+DRAWN = """
+    net Drawn
+      standard
+      var x : REAL;
+      page Top
+        place Start : REAL = 1.0
+        place Middle : REAL
+        place End : REAL
+        trans Draw
+          in Start : x
+          out Middle : uniform (0.0, 1.0)
+        trans Take
+          in Middle : x
+          out End : x
+"""
+
+
+@pytest.mark.parametrize("option", [(), ("--full",)])
+def test_a_run_that_cannot_be_repeated(option: tuple[str, ...], tmp_path: Path, here: Path) -> None:
+    """An arc draws a number: the token game may draw another one, which is no error of the program."""
+    code, lines, _ = verify(write_net(DRAWN, tmp_path / "drawn.cpn"), *option)
+    text = "\n".join(lines)
+    assert code == 0 and "cannot be shown: line 3: Top.Take" in text
+    assert "the net draws random numbers" in text
+    assert (here / "drawn.traces").is_dir()
+
+
 @pytest.mark.parametrize(
     ("options", "words"),
     [

@@ -16,11 +16,12 @@ from pn2code.net.flat import FlatNet, FlatPlace, FlatTransition
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.marking import BindingElement, Marking, element_text
 from pn2code.semantics.game.report import element, time_text
-from pn2code.semantics.game.token_game import Game, NotEnabled
+from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.colours import TEXTS
 from pn2code.semantics.values.data import Value
 from pn2code.trace.parties import VERIFY
-from pn2code.trace.script import Trace
+from pn2code.trace.script import Trace, TraceRefusedError
+from pn2code.verify.exploring import nondeterminism
 
 MOST_SHOWN = 100
 """Characters of a multi-set."""
@@ -59,7 +60,7 @@ def steps(net: FlatNet, storage: Mapping[str, str], trace: Path, *, most: int) -
     """The first `most` steps of a trace, each checked by the token game.
 
     Raises:
-        TraceRefusedError: the file is no trace of the net.
+        TraceRefusedError: the file is no trace of the net, or one of its steps is not enabled.
         GameError: an inscription raises an exception.
         OSError: it cannot be read.
     """
@@ -92,13 +93,16 @@ def _play(net: FlatNet, game: Game, trace: Trace) -> Iterator[tuple[Step, FlatTr
         if step.time is not None and step.time > before.time:
             game.set_time(step.time)
         played = BindingElement.make(step.transition, step.bound)
-        if (
-            trace.header.by == VERIFY
-        ):  # of a cell: each of its programs knows its own priorities only
-            obstacle = game.why_disabled(game.marking, played, priorities=False)
-            if obstacle is not None:
-                raise NotEnabled(f"{element_text(game.colours, net, played)}: {obstacle}")
-        game.fire(played, checked=trace.header.by != VERIFY)
+        # Of a cell: each of its programs knows its own priorities only.
+        obstacle = game.why_disabled(game.marking, played, priorities=trace.header.by != VERIFY)
+        if obstacle is not None:
+            drawn = "; the net draws random numbers or reads files, which are others here"
+            raise TraceRefusedError(
+                f"{element_text(game.colours, net, played)} is not enabled: {obstacle}"
+                + (drawn if nondeterminism.draws(net) else ""),
+                number + 1,
+            )
+        game.fire(played, checked=False)
         time = time_text(game.marking.time) if net.timed else ""
         told = element(net, played)
         name = step.transition.name
