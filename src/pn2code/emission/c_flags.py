@@ -13,8 +13,8 @@ FLOATS = ("-ffp-contract=off", "-fno-fast-math")
 LARGE = 1_000_000
 """Characters of generated C from which compiling it for speed takes longer than is gained; some 200 transitions."""
 QUICKER = ("-O1", "-fno-inline")
-"""For large nets, after `-O2`: less than half of the compiler's time. The search through so many transitions waits for memory,
-so that the explorer is as fast (docs/benchmarks.md). No value that is computed depends on them."""
+"""For large nets, after `-O2`: less than half of the compiler's time, and the explorer of the large net that was
+measured is as fast (docs/benchmarks.md). No value that is computed depends on them."""
 
 
 def for_size(characters: int) -> tuple[str, ...]:
