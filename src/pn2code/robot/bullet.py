@@ -15,9 +15,9 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from typing import Any
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from lxml import etree
@@ -176,7 +176,7 @@ class BulletBackend:
         )
 
     def _load_body(self, body: Body, looks: bool) -> _Standing:
-        lines = [f'<robot name={quoteattr(body.name)}><link name="base">']
+        lines = [f'<robot name={_quoted(body.name)}><link name="base">']
         lines += [f"<collision>{_solid(s)}</collision>" for s in body.solids]
         if body.hull is not None and body.hull.file is not None:
             lines.append(f"<collision>{_mesh(body.hull.file, body.hull)}</collision>")
@@ -418,11 +418,16 @@ def _solid(solid: Solid) -> str:
     return f"{_origin(solid.pose)}<geometry>{shape}</geometry>"
 
 
+def _quoted(text: str) -> str:
+    """An attribute's value in XML; the standard library's own function for it loads its HTTP client."""
+    return f'"{escape(text)}"'
+
+
 def _mesh(path: Path, look: Look) -> str:
     scale = " ".join([repr(look.scale)] * 3)
-    name = quoteattr(str(path.resolve()))
+    name = _quoted(str(path.resolve()))
     return (
-        f"{_origin(look.pose)}<geometry><mesh filename={name} scale={quoteattr(scale)}/></geometry>"
+        f"{_origin(look.pose)}<geometry><mesh filename={name} scale={_quoted(scale)}/></geometry>"
     )
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -101,7 +101,8 @@ def _pedestal(robot: str, base: Pose) -> Body:
     return Body(f"{robot}_pedestal", solids, partial(looks.pedestal, half, base), None, (robot,))
 
 
-def panel_bodies(p: PanelConfig) -> list[Body]:
+@lru_cache(maxsize=4)  # layouts differ in their robots, seldom in the panel
+def panel_bodies(p: PanelConfig) -> tuple[Body, ...]:
     """Skin, ribs with stringers, and stands of a panel: "panel/skin", "panel/ribs", "panel/stand"."""
     arcs = cut(p.arc_from, p.arc_to)
     flat = tuple(_shell(p, a, b, p.x_from, p.x_to, p.radius, p.skin) for a, b in arcs)
@@ -122,7 +123,7 @@ def panel_bodies(p: PanelConfig) -> list[Body]:
         out.append(Body("panel/ribs", tuple(frames), partial(looks.ribs, p)))
     if p.stands:
         out.append(_stands(p))
-    return out
+    return tuple(out)
 
 
 def _shell(

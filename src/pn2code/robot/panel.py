@@ -35,10 +35,11 @@ def frame(p: PanelConfig, angle: float, x: float, radius: float) -> Array:
     a = p.facing + angle
     y, z = point_at(p, angle, radius)
     out = np.eye(4)
-    out[:3, 1] = (0.0, -math.sin(a), math.cos(a))
-    out[:3, 2] = (0.0, math.cos(a), math.sin(a))
+    sine, cosine = math.sin(a), math.cos(a)
+    out[:3, 1] = (0.0, -sine, cosine)
+    out[:3, 2] = (0.0, cosine, sine)
     # Right-handed: x = y cross z.
-    out[:3, 0] = np.cross(out[:3, 1], out[:3, 2])
+    out[:3, 0] = (-sine * sine - cosine * cosine, 0.0, 0.0)
     out[:3, 3] = (x, y, z)
     return out
 
