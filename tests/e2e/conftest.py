@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from helpers.explored import Explorers
+from helpers.generated import Remembered
 from helpers.session import once
 from pn2code import pipeline
 from pn2code.diagnostics import Diagnostics, render
@@ -20,6 +21,20 @@ def quick_build() -> Iterator[None]:
     """Supervisors are built without optimization, which takes a fifth of the time."""
     with pytest.MonkeyPatch.context() as changed:
         changed.setenv("CFLAGS", "-O0")
+        yield
+
+
+@pytest.fixture(scope="session")
+def remembered() -> Remembered:
+    """What `generated_once` remembers."""
+    return Remembered(pipeline.generate)
+
+
+@pytest.fixture(scope="module")
+def generated_once(remembered: Remembered) -> Iterator[None]:
+    """Runs of a cell with the same files and options share its programs: generating them takes seconds."""
+    with pytest.MonkeyPatch.context() as changed:
+        changed.setattr(pipeline, "generate", remembered)
         yield
 
 

@@ -13,7 +13,7 @@ from pn2code.net.front import load
 from pn2code.run.cell import RunOptions, RunResult, run_cell
 from pn2code.trace.replay import replay
 
-pytestmark = pytest.mark.usefixtures("quick_build")
+pytestmark = pytest.mark.usefixtures("quick_build", "generated_once")
 
 POSE = r"TCP pose \(-?[\d.]+, -?[\d.]+, -?[\d.]+ mm; -?[\d.]+, -?[\d.]+, -?[\d.]+ deg\)"
 

@@ -19,7 +19,7 @@ from pn2code.robot.transforms import Array
 from pn2code.run.cell import RunOptions, RunResult, run_cell
 from pn2code.run.engine import Engine
 
-pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build", "generated_once")]
 
 FINAL = ["Cell.Supervisor.Failed"]
 

@@ -22,7 +22,7 @@ from pn2code.run.cell import RunOptions, RunResult, run_cell
 from pn2code.run.engine import Engine
 from pn2code.trace.replay import replay
 
-pytestmark = pytest.mark.usefixtures("quick_build")
+pytestmark = pytest.mark.usefixtures("quick_build", "generated_once")
 
 TOLERANCE_MM = 1e-6
 # Condition numbers of robot 2 at the seven rivets in the paper's place for it.

@@ -22,9 +22,10 @@ from pn2code.cli.main import app
 from pn2code.cli.nets import open_net
 from pn2code.diagnostics import Diagnostics, render
 from pn2code.run.cell import RunOptions, run_cell
+from pn2code.verdict.asked import gather
 from pn2code.verdict.controller import look
 from pn2code.verdict.opened import OpenNet
-from pn2code.verdict.properties import answered, asked
+from pn2code.verdict.properties import answered
 from pn2code.verify.controller import control
 from pn2code.verify.controller.control_types import Check, Control, Plan
 from pn2code.verify.controller.premises import Premises
@@ -523,7 +524,7 @@ def test_properties_are_about_the_cell(
     folder = tmp_path_factory.mktemp("race")
     opened = open_net(write(folder, RACE, toml(["A", "B"], TOOL)), {})
     d = Diagnostics()
-    wanted = asked(opened, [holds], None, d, found=False)
+    wanted = gather(opened, [holds], None, d, found=False)
     limits, evidence = Limits(threads=2), folder / "runs"
     evidence.mkdir()
     wishes = ExploreOptions(

@@ -56,13 +56,13 @@ def stage_text(
     """The dump; None after diagnostics."""
     from pn2code.cell.dump import dump_partition
     from pn2code.cell.locate import locate
+    from pn2code.division import divided
     from pn2code.emission.tdl import emit
     from pn2code.ml.core.dump import dump_program
     from pn2code.net import front
     from pn2code.net.dump import dump_document, dump_flat, dump_net
     from pn2code.net.link import link
     from pn2code.net.source import read
-    from pn2code.pipeline import divided
     from pn2code.robot_scripts.translate import lower_robots
     from pn2code.semantics.evaluation.constants import compute
 

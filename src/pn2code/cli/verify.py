@@ -34,6 +34,7 @@ from pn2code.cli.subject import Subject
 from pn2code.cli.verify_screen import closing, full, screen
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.verdict import channel_model, properties
+from pn2code.verdict.asked import files as asked_files
 from pn2code.verdict.input_files import with_inputs
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.whole import (
@@ -309,7 +310,7 @@ def verify(
                     opened,
                     net,
                     parse_values(settings),
-                    properties.files(opened, file, found=found_properties),
+                    asked_files(opened, file, found=found_properties),
                     int_bits=int_bits,
                     complete=said.found.seen.markings or said.found.why == "decided",
                     deadline=deadline,

@@ -15,19 +15,20 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
+from html import escape
 from pathlib import Path
 from typing import Any
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from lxml import etree
-from scipy.spatial.transform import Rotation
 
 from pn2code.robot import urdf
 from pn2code.robot.backend import BackendName, Camera, Clearance, ClearanceKind, Picture
-from pn2code.robot.geometry import Body, Look, Solid, bodies
+from pn2code.robot.commands import Pose
+from pn2code.robot.geometry import Body, Solid, bodies
+from pn2code.robot.looks import Look
 from pn2code.robot.scene import CellRobot, RobotCell
-from pn2code.robot.transforms import Array, matrix_of
+from pn2code.robot.transforms import Array
 
 _SKY = (148.0, 166.0, 186.0)
 _HORIZON = (236.0, 239.0, 242.0)
@@ -150,9 +151,12 @@ class BulletBackend:
         if not looks:
             text = _without_looks(text)
         body = self._load_urdf(robot.name, text)
-        base = robot.T_world_base
+        base = robot.base
         self._p.resetBasePositionAndOrientation(
-            body, base[:3, 3].tolist(), _quaternion(base[:3, :3]), physicsClientId=self._client
+            body,
+            (base.x, base.y, base.z),
+            self._p.getQuaternionFromEuler((base.rx, base.ry, base.rz)),
+            physicsClientId=self._client,
         )
         root, links, joints, parents = tree.root, {-1: tree.root}, {}, {}
         for i in range(self._p.getNumJoints(body, physicsClientId=self._client)):
@@ -172,7 +176,7 @@ class BulletBackend:
         )
 
     def _load_body(self, body: Body, looks: bool) -> _Standing:
-        lines = [f'<robot name={quoteattr(body.name)}><link name="base">']
+        lines = [f'<robot name={_quoted(body.name)}><link name="base">']
         lines += [f"<collision>{_solid(s)}</collision>" for s in body.solids]
         if body.hull is not None and body.hull.file is not None:
             lines.append(f"<collision>{_mesh(body.hull.file, body.hull)}</collision>")
@@ -397,14 +401,11 @@ def _self_pairs(
     return sorted(out, key=lambda pair: (-pair[1], -pair[0]))
 
 
-def _quaternion(rotation: Array) -> list[float]:
-    return [float(v) for v in Rotation.from_matrix(rotation).as_quat()]
-
-
-def _origin(t: Array) -> str:
-    rpy = Rotation.from_matrix(t[:3, :3]).as_euler("xyz")
-    xyz = " ".join(repr(float(v)) for v in t[:3, 3])
-    return f'<origin xyz="{xyz}" rpy="{" ".join(repr(float(v)) for v in rpy)}"/>'
+def _origin(pose: Pose) -> str:
+    """A pose in URDF, whose `rpy` are the same angles as ours."""
+    xyz = " ".join(repr(float(v)) for v in (pose.x, pose.y, pose.z))
+    rpy = " ".join(repr(float(v)) for v in (pose.rx, pose.ry, pose.rz))
+    return f'<origin xyz="{xyz}" rpy="{rpy}"/>'
 
 
 def _solid(solid: Solid) -> str:
@@ -414,13 +415,20 @@ def _solid(solid: Solid) -> str:
         if solid.kind == "box"
         else f'<cylinder radius="{a}" length="{c}"/>'
     )
-    return f"{_origin(matrix_of(solid.pose))}<geometry>{shape}</geometry>"
+    return f"{_origin(solid.pose)}<geometry>{shape}</geometry>"
+
+
+def _quoted(text: str) -> str:
+    """An attribute's value in XML; the standard library's own function for it loads its HTTP client."""
+    return f'"{escape(text)}"'
 
 
 def _mesh(path: Path, look: Look) -> str:
     scale = " ".join([repr(look.scale)] * 3)
-    name = quoteattr(str(path.resolve()))
-    return f"{_origin(matrix_of(look.pose))}<geometry><mesh filename={name} scale={quoteattr(scale)}/></geometry>"
+    name = _quoted(str(path.resolve()))
+    return (
+        f"{_origin(look.pose)}<geometry><mesh filename={name} scale={_quoted(scale)}/></geometry>"
+    )
 
 
 def _without_looks(text: str) -> str:

@@ -8,11 +8,12 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
-from py_opw_kinematics import KinematicModel, Robot
 
 from pn2code.robot.model import AXES, Arm
+from pn2code.robot.opw import KinematicModel, Robot
 from pn2code.robot.transforms import Array, inverse, skew
 
 
@@ -94,7 +95,7 @@ class Chain:
         return np.asarray(np.arctan2(sine, np.abs((a * b).sum(1))))
 
 
-def derive(chain: Chain) -> tuple[KinematicModel, Array] | str:
+def derive(chain: Chain) -> tuple[Any, Array] | str:
     """For `py-opw-kinematics`: the parameters of its model and the constant turn of its flange, or what is wrong.
 
     The library's zero: upper arm and forearm upright, axes 1, 4, 6 along z, axes 2, 3, 5 along y;
@@ -158,11 +159,11 @@ def derive(chain: Chain) -> tuple[KinematicModel, Array] | str:
             float(h[5] @ out) < 0.0,
         ),
     )
-    robot = Robot(model, degrees=False)
+    robot = Robot(model)
     correction: Array | None = None
     # A few joint positions in general position; equality there is equality everywhere.
     for q in itertools.islice(itertools.permutations((0.0, 0.3, -0.7, 1.1, 0.5, -0.2)), 0, 720, 90):
-        theirs = robot.forward((q[0], q[1], q[2], q[3], q[4], q[5])).as_matrix()
+        theirs = robot.forward(q)
         turn = inverse(theirs) @ chain.frames(np.array([q]))[-1][0]
         if correction is None:
             correction = turn

@@ -15,16 +15,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
-from py_opw_kinematics import KinematicModel, Robot
-from scipy.spatial.transform import RigidTransform
 
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.robot import codes
 from pn2code.robot.chain import Chain, cross, derive
 from pn2code.robot.model import AXES, Arm, Tool
+from pn2code.robot.opw import Robot
 from pn2code.robot.transforms import Array, inverse
 
 TURN = 2.0 * math.pi
@@ -96,12 +96,12 @@ class Kinematics:
     """Kinematics of one arm with one tool; lengths in m, angles in rad; frames are base and tcp."""
 
     def __init__(
-        self, arm: Arm, T_flange_tcp: Array, chain: Chain, model: KinematicModel, correction: Array
+        self, arm: Arm, T_flange_tcp: Array, chain: Chain, model: Any, correction: Array
     ) -> None:
         self.arm = arm
         self.T_flange_tcp = T_flange_tcp
         self._chain = chain
-        self._robot = Robot(model, degrees=False)
+        self._robot = Robot(model)
         # The library's flange may be turned against the URDF's by a constant rotation.
         self._T_tcp_library = inverse(correction @ T_flange_tcp)
 
@@ -199,10 +199,7 @@ class Kinematics:
         return found
 
     def _closed_form(self, T_base_tcp: Array) -> Array:
-        flange = np.ascontiguousarray(T_base_tcp @ self._T_tcp_library)
-        # Not normalised: products of rotations are rotations, and checking them costs more than solving.
-        poses = RigidTransform(flange, normalize=False, copy=False)
-        return np.array(self._robot.reach(poses).joints)
+        return self._robot.branches(T_base_tcp @ self._T_tcp_library)
 
     def _refine(self, rows: Array, targets: Array) -> None:
         there = np.flatnonzero(~np.isnan(rows[:, 0]))

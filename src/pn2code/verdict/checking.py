@@ -71,7 +71,7 @@ def examine_cell(
         ahead: whether files beside the cell and the robots' places are looked at, which takes longer.
     """
     # Most nets have no cell, and these load NumPy and the like.
-    from pn2code.pipeline import check_geometry, divided
+    from pn2code.division import check_geometry, divided
     from pn2code.robot_scripts.translate import lower_robots
 
     if result.flat is None or d.has_errors:
@@ -91,7 +91,7 @@ def _properties(net: Path, config: CellConfig | None, result: Examined, d: Diagn
     beside = net.with_suffix(".properties.toml").is_file()
     if result.flat is None or not (beside or (config is not None and "property" in config.raw)):
         return
-    from pn2code.verdict import properties  # loads what verifies nets
+    from pn2code.verdict.asked import gather
     from pn2code.verdict.opened import OpenNet
 
-    properties.asked(OpenNet(result.flat, config, result), (), None, d, found=True)
+    gather(OpenNet(result.flat, config, result), (), None, d, found=True)

@@ -1,4 +1,4 @@
-"""Properties of a net or cell: gathered from where they are written, asked, and their answers shown."""
+"""The answers to what is asked about a net or cell (`asked`), each looked at again, and shown."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,15 +15,13 @@ from pn2code.cell.divide import divide
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
-from pn2code.properties import codes, sources
+from pn2code.properties import codes
 from pn2code.properties import meaning as m
-from pn2code.properties.ltl import TooLargeError
-from pn2code.properties.questions import Questions
-from pn2code.properties.split import NoSplitError, Split, groups, is_about_bindings
-from pn2code.semantics.evaluation.effects import Effect, Effects
+from pn2code.properties.split import Split, is_about_bindings
 from pn2code.semantics.game.token_game import GameError
 from pn2code.semantics.values.data import MlException, MlLimit
 from pn2code.trace.script import TraceRefusedError
+from pn2code.verdict.asked import Asked, as_text
 from pn2code.verdict.opened import OpenNet
 from pn2code.verify.answers import confirm
 from pn2code.verify.answers.lasso import write_loop
@@ -40,80 +38,6 @@ from pn2code.verify.exploring.result import Exploration
 _CALLED = {"yes": "true", "no": "false", "inconclusive": "not known"}
 _WITH_RUNS = ("complete", "decided", "states", "memory", "error")
 """Ends of an exploration after which there was time to look for the runs, and the way to each marking is known."""
-_OUTSIDE = frozenset({Effect.DRAW, Effect.LOOK, Effect.WRITE, Effect.COUNT})
-
-
-@dataclass(frozen=True, slots=True)
-class Asked:
-    """What is asked about a net; nothing, if no properties are written anywhere."""
-
-    properties: m.Properties = m.Properties()
-    questions: str = ""
-    """of all but those about bindings"""
-    splits: tuple[tuple[Split, str], ...] = ()
-    """nets for those about bindings, each with its questions"""
-
-    def __bool__(self) -> bool:
-        """Whether anything is asked."""
-        return bool(self.properties.properties)
-
-    @property
-    def plain(self) -> m.Properties:
-        """Those that are asked of the net itself."""
-        plain = (p for p in self.properties.properties if not is_about_bindings(p))
-        return replace(self.properties, properties=tuple(plain))
-
-
-def asked(
-    opened: OpenNet, texts: Sequence[str], file: Path | None, d: Diagnostics, *, found: bool
-) -> Asked:
-    """All properties of a net; what is wrong with them is reported.
-
-    Args:
-        opened: the net.
-        texts: of the command line.
-        file: a file of properties; None: the one beside the net, if there is one.
-        d: gets the errors.
-        found: whether those of the file beside the net and of the cell count.
-    """
-    written = [sources.from_option(text, i) for i, text in enumerate(texts, 1)]
-    for path in files(opened, file, found=found):
-        written += sources.from_file(path, d)
-    if found:
-        written += sources.from_cell(opened.config, d)
-    typed = opened.examined.typed
-    if not written or typed is None or typed.elaborator is None:
-        return Asked()
-    properties = sources.bind(written, opened.flat, typed.elaborator, d)
-    _check_effects(opened, properties, d)
-    try:
-        splits = tuple(Split.of(opened.flat, properties, x) for x in groups(properties))
-    except NoSplitError as problem:
-        d.error(
-            codes.FORM,
-            str(problem),
-            problem.about.origin,
-            hint="write several properties, or join conditions in CPN ML: `{ n = 3 orelse n = 5 }`",
-        )
-        return Asked(properties)
-    made = Asked(properties, splits=tuple((s, _questions(s.properties, d)) for s in splits))
-    return replace(made, questions=_questions(made.plain, d))
-
-
-def _questions(properties: m.Properties, d: Diagnostics) -> str:
-    """As the explorer reads them; formulas that are too large are reported."""
-    questions = Questions()
-    for p in properties.properties:
-        try:
-            questions.ask(p.asked)
-        except TooLargeError:
-            d.error(
-                codes.FORM,
-                "the automaton of this formula becomes too large",
-                p.origin,
-                hint="write several properties instead of one",
-            )
-    return questions.text()
 
 
 def of_bindings(
@@ -203,7 +127,7 @@ def _bindings_of_cell(
             wishes,
             traces=None,
             stem=f"cell-bindings-{number}",
-            questions="".join(f"{x}\n" for x in lines) + _questions(split.properties, d),
+            questions="".join(f"{x}\n" for x in lines) + as_text(split.properties, d),
             predicates=split.properties.predicates,
             sizes=Sizes.start(split.net, opened.storage),
             quick=True,
@@ -224,30 +148,6 @@ def _bindings_of_cell(
 def divided(opened: OpenNet, d: Diagnostics) -> Partition | None:
     """The owners of a cell; None: it is none, or an error was reported."""
     return None if opened.config is None else divide(opened.flat, opened.config, d)
-
-
-def files(opened: OpenNet, file: Path | None, *, found: bool) -> tuple[Path, ...]:
-    """The files of properties that are read: that one, or the one beside the net."""
-    beside = sources.beside(Path(opened.flat.file))
-    if file is not None:
-        return (file,)
-    return (beside,) if found and beside.is_file() else ()
-
-
-def _check_effects(opened: OpenNet, properties: m.Properties, d: Diagnostics) -> None:
-    """Conditions follow from the state: the marking, and what references hold."""
-    effects = Effects(opened.flat.program)
-    conditions = [p.exp for p in properties.predicates] + [s.exp for s in properties.steps]
-    for exp in conditions:
-        own = effects.of(exp)
-        wrong = [e for e in Effect if e in own and e in _OUTSIDE]
-        if wrong:
-            d.error(
-                codes.OUTSIDE,
-                f"this condition {wrong[0].value}",
-                exp.span,
-                hint="write it about the contents of places and references: nothing else is determined by the state",
-            )
 
 
 @contextmanager

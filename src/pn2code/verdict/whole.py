@@ -9,15 +9,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from pn2code import pipeline
 from pn2code.base.deadline import NEVER, Deadline, TimeIsOverError
 from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.division import divided
 from pn2code.net.flat import FlatNet
 from pn2code.robot_scripts.translate import lower_robots
 from pn2code.verdict import channel_model as medium
 from pn2code.verdict import controller, properties
+from pn2code.verdict.asked import Asked, gather
 from pn2code.verdict.opened import OpenNet
-from pn2code.verdict.properties import Asked
 from pn2code.verify.answers.properties import Answer, Verdict, verdict
 from pn2code.verify.answers.reasons import raised
 from pn2code.verify.codes import STATE_ERROR, TRACE_UNWRITABLE
@@ -124,11 +124,11 @@ def question(
         d: gets the errors and warnings.
         found: whether those of the file beside the net and of the cell count.
     """
-    partition = pipeline.divided(opened.flat, opened.config, d)
+    partition = divided(opened.flat, opened.config, d)
     if partition is not None and opened.config is not None:
         # What is said of a cell is said of its programs: without them there is nothing to say.
         lower_robots(partition, opened.config, d)
-    asked = properties.asked(opened, texts, file, d, found=found)
+    asked = gather(opened, texts, file, d, found=found)
     nondeterminism.warn(opened.flat, d)
     return asked
 

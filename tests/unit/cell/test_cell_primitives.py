@@ -9,8 +9,8 @@ import pytest
 from helpers.small_cell import NET, TOML, write
 from pn2code.cell.load import load
 from pn2code.diagnostics import Diagnostic, Diagnostics, Severity
+from pn2code.division import divided
 from pn2code.net import front
-from pn2code.pipeline import divided
 
 
 def said(folder: Path, net: str = NET, toml: str = TOML) -> list[Diagnostic]:

@@ -9,7 +9,8 @@ from helpers.robot_cells import EXAMPLE, geometry, nowhere, riveting_cell
 from pn2code.diagnostics import Diagnostics
 from pn2code.robot.backend import BackendUnavailableError
 from pn2code.robot.choose_backend import open_backend
-from pn2code.robot.geometry import bodies, panel_bodies, point_at
+from pn2code.robot.geometry import bodies, panel_bodies
+from pn2code.robot.panel import point_at
 from pn2code.robot.scene import load
 
 

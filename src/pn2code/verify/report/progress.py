@@ -1,11 +1,11 @@
-"""One line on a terminal that tells how an exploration goes on."""
+"""How an exploration goes on."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import Any
 
-from pn2code.simulate.progress import Line
+from pn2code.base.progress_line import Line
 
 _PHASES = {
     "explore": "exploring",

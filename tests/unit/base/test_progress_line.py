@@ -1,0 +1,67 @@
+"""The line that tells how something goes on."""
+
+from __future__ import annotations
+
+import io
+
+import pytest
+from rich.console import Console
+
+from pn2code.base.progress_line import Line
+from pn2code.run.progress import Progress
+from pn2code.simulate import progress as simulation
+from pn2code.verify.report import progress as exploration
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def test_the_last_text_stands_alone_and_is_gone_at_the_end() -> None:
+    stream = Terminal()
+    with Line(stream=stream, first="compiling ...") as line:
+        line.say("one")
+        line.say("two")
+        assert stream.getvalue().rpartition("\x1b[K")[2] == "two"
+    assert stream.getvalue().endswith("\r\x1b[K")
+
+
+def test_nothing_is_written_where_nobody_looks() -> None:
+    hidden, pipe = Terminal(), io.StringIO()
+    for line in (Line(shown=False, stream=hidden), Line(stream=pipe)):
+        with line:
+            line.say("one")
+    assert hidden.getvalue() == pipe.getvalue() == ""
+
+
+def test_a_text_never_goes_on_in_a_second_row(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "20")
+    stream = Terminal()
+    with Line(stream=stream, first="") as line:
+        line.say("x" * 50)
+    assert "x" * 19 in stream.getvalue()
+    assert "x" * 20 not in stream.getvalue()
+
+
+def test_simulations_explorations_and_runs_have_the_same_line() -> None:
+    assert issubclass(simulation.ProgressLine, Line)
+    assert issubclass(exploration.ProgressLine, Line)
+    assert issubclass(Progress, Line)
+
+
+def test_what_a_run_prints_does_not_mix_with_its_line() -> None:
+    class Robot:
+        name, motion = "arm", None
+
+    class Engine:
+        activity, now, robots = "drills", 1.5, (Robot(),)
+
+    stream = Terminal()
+    console = Console(file=stream, force_terminal=True, color_system=None, width=80)
+    with Progress(console) as progress:
+        progress.say("generating and building")
+        progress.advanced(Engine())  # type: ignore[arg-type]
+    shown = stream.getvalue()
+    assert "\r\x1b[K    1.50 s  drills\n" in shown
+    assert shown.endswith("\r\x1b[K   1.50 s   arm: waits\r\x1b[K")

@@ -1,0 +1,67 @@
+"""What tests share when they run the same cell: nothing that another file or option would change."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from helpers.generated import Remembered
+from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.pipeline import generate
+
+
+@pytest.fixture
+def cell(root: Path, tmp_path: Path) -> Path:
+    return Path(shutil.copytree(root / "examples" / "sorting", tmp_path / "cell"))
+
+
+@pytest.fixture
+def calls() -> list[dict[str, Any]]:
+    return []
+
+
+@pytest.fixture
+def remembered(calls: list[dict[str, Any]]) -> Remembered:
+    def counted(path: Path, d: Diagnostics, **options: Any) -> Any:
+        calls.append(options)
+        return generate(path, d, checked=False)
+
+    return Remembered(counted)
+
+
+def test_the_same_cell_is_generated_once(
+    cell: Path, remembered: Remembered, calls: list[dict[str, Any]]
+) -> None:
+    first, second = Diagnostics(), Diagnostics()
+    assert remembered(cell, first, layout=None) is remembered(cell, second, layout=None)
+    assert second.items == first.items
+    assert len(calls) == 1
+
+
+def test_other_files_and_options_are_generated_anew(
+    cell: Path, remembered: Remembered, calls: list[dict[str, Any]]
+) -> None:
+    remembered(cell, Diagnostics(), layout=None)
+    remembered(cell, Diagnostics(), layout="other")
+    toml = cell / "cell.toml"
+    toml.write_text(toml.read_text() + "\n# changed\n")
+    remembered(cell, Diagnostics(), layout=None)
+    assert len(calls) == 3
+
+
+def test_what_fails_or_comes_with_errors_is_not_remembered(
+    cell: Path, remembered: Remembered, calls: list[dict[str, Any]]
+) -> None:
+    for _ in range(2):
+        d = Diagnostics()
+        d.error("cell-value", "something else", Origin("elsewhere"))
+        remembered(cell, d, layout=None)
+    (cell / "cell.toml").write_text("[nothing]\n")
+    for _ in range(2):
+        d = Diagnostics()
+        assert remembered(cell, d, layout=None) is None
+        assert d.has_errors
+    assert len(calls) == 4
