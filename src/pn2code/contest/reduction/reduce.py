@@ -1,0 +1,131 @@
+"""Structural reductions to a fixed point, for one question.
+
+    reduced = reduced_for(tables, condition, until=deadline)
+    reduced.tables, reduced.condition      # a smaller net, and the question in its places
+
+Which rules apply depends on what the question needs: each rule of the table says what it keeps, and where it is from.
+The net need not be reduced to the end: after each rule it is equivalent to the one before.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from pn2code.contest import conditions
+from pn2code.contest.conditions import AtMost, Condition, Dead
+from pn2code.contest.reduction import agglomerations, places, transitions
+from pn2code.contest.reduction.net import Goal, Net
+from pn2code.contest.tables import Tables
+
+BOTH = (Goal.REACHABILITY, Goal.DEADLOCK)
+REACHABILITY = (Goal.REACHABILITY,)
+BERTHELOT = "Berthelot 1987, Transformations and decompositions of nets"
+THIERRY_MIEG = "Thierry-Mieg 2020, Structural reductions revisited"
+SLICING = "Rakow 2012, Safety slicing Petri nets"
+COLOM_SILVA = "Colom, Silva 1991, Improving the linearly based characterization of P/T nets"
+MURATA = "Murata 1989, Petri nets: properties, analysis and applications"
+
+
+@dataclass(frozen=True, slots=True)
+class Rule:
+    """A reduction.
+
+    Args:
+        apply: changes the net; how often it has.
+        keeps: for which goals it may be used.
+        source: where it is from.
+    """
+
+    apply: Callable[[Net], int]
+    keeps: tuple[Goal, ...]
+    source: str
+
+    @property
+    def name(self) -> str:
+        """The name of the rule."""
+        return self.apply.__name__
+
+
+RULES = (
+    Rule(transitions.dead_transitions, BOTH, MURATA),
+    Rule(places.constant_places, BOTH, THIERRY_MIEG),
+    Rule(transitions.irrelevant_parts, REACHABILITY, SLICING),
+    Rule(places.sink_places, BOTH, THIERRY_MIEG),
+    Rule(transitions.idle_transitions, REACHABILITY, BERTHELOT),
+    Rule(transitions.losing_transitions, REACHABILITY, THIERRY_MIEG),
+    Rule(transitions.identical_transitions, BOTH, BERTHELOT),
+    Rule(places.proportional_places, BOTH, COLOM_SILVA),
+    Rule(places.implied_places, BOTH, COLOM_SILVA),
+    Rule(places.common_weights, BOTH, THIERRY_MIEG),
+    Rule(agglomerations.free_moves, BOTH, THIERRY_MIEG),
+    Rule(agglomerations.post_agglomeration, BOTH, BERTHELOT),
+    Rule(agglomerations.pre_agglomeration, BOTH, BERTHELOT),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Reduced:
+    """A smaller net.
+
+    Args:
+        tables: the net; no ids lead to its places and transitions.
+        conditions: the questions in its places.
+    """
+
+    tables: Tables
+    conditions: tuple[Condition, ...]
+
+
+def reduced_for(
+    tables: Tables, asked: Sequence[Condition], *, until: float, rules: Sequence[Rule] = RULES
+) -> Reduced:
+    """The net reduced for some questions together.
+
+    Args:
+        tables: the net.
+        asked: conditions whose reachability is asked (or whose sum is to be largest); or `Dead` alone.
+        until: when to stop, on the monotonic clock.
+        rules: to be used.
+    """
+    assert Dead() not in asked or len(asked) == 1
+    goal = Goal.DEADLOCK if asked == [Dead()] else Goal.REACHABILITY
+    net = Net(tables, set().union(*map(conditions.places, asked)), goal)
+    apply_all(net, [r for r in rules if goal in r.keeps], until)
+    numbers = {p: i for i, p in enumerate(net.marking)}
+    return Reduced(_tables(net, numbers), tuple(_renamed(net, numbers, c) for c in asked))
+
+
+def apply_all(net: Net, rules: Sequence[Rule], until: float) -> None:
+    """Rule after rule, until none changes anything or the time is over."""
+    since = 0
+    while since < len(rules):
+        for rule in rules:
+            since = 0 if rule.apply(net) else since + 1
+            if since >= len(rules) or time.monotonic() > until:
+                return
+
+
+def _tables(net: Net, numbers: dict[int, int]) -> Tables:
+    return Tables(
+        tuple(net.marking.values()),
+        tuple({numbers[p]: n for p, n in arcs.items()} for arcs in net.pre.values()),
+        tuple({numbers[p]: n for p, n in net.post[t].items()} for t in net.pre),
+        {},
+        {},
+    )
+
+
+def _renamed(net: Net, numbers: dict[int, int], condition: Condition) -> Condition:
+    def in_kept_places(c: AtMost) -> Condition:
+        factors: dict[int, int] = {}
+        limit = c.limit
+        for p, n in c.factors:
+            value = net.value(p)
+            limit -= n * value.constant
+            for q, m in value.factors.items():
+                factors[numbers[q]] = factors.get(numbers[q], 0) + n * m
+        return conditions.at_most(factors, limit)
+
+    return conditions.mapped(condition, in_kept_places)
