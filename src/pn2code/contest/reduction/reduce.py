@@ -1,7 +1,7 @@
 """Structural reductions to a fixed point, for one question.
 
-    reduced = reduced_for(tables, condition, until=deadline)
-    reduced.tables, reduced.condition      # a smaller net, and the question in its places
+    reduced = reduced_for(tables, [condition], until=deadline)
+    reduced.tables, reduced.condition(condition)      # a smaller net, and the question in its places
 
 Which rules apply depends on what the question needs: each rule of the table says what it keeps, and where it is from.
 The net need not be reduced to the end: after each rule it is equivalent to the one before.
@@ -65,17 +65,40 @@ RULES = (
 )
 
 
-@dataclass(frozen=True, slots=True)
 class Reduced:
     """A smaller net.
 
     Args:
+        net: as the rules have left it.
+
+    Attributes:
         tables: the net; no ids lead to its places and transitions.
-        conditions: the questions in its places.
     """
 
-    tables: Tables
-    conditions: tuple[Condition, ...]
+    def __init__(self, net: Net) -> None:
+        self._net = net
+        self._numbers = {p: i for i, p in enumerate(net.marking)}
+        self.tables = _tables(net, self._numbers)
+
+    def condition(self, c: Condition) -> Condition:
+        """A question that the net was reduced for, in its places."""
+        return conditions.mapped(c, lambda a: conditions.at_most(*self._moved(a)))
+
+    def sum(self, c: AtMost) -> tuple[AtMost, int]:
+        """A sum in places of the net, without its limit, and the constant that has to be added to it."""
+        factors, limit = self._moved(AtMost(c.factors, 0))
+        return AtMost(tuple(sorted((p, n) for p, n in factors.items() if n)), 0), -limit
+
+    def _moved(self, c: AtMost) -> tuple[dict[int, int], int]:
+        factors: dict[int, int] = {}
+        limit = c.limit
+        for p, n in c.factors:
+            value = self._net.value(p)
+            limit -= n * value.constant
+            for q, m in value.factors.items():
+                at = self._numbers[q]
+                factors[at] = factors.get(at, 0) + n * m
+        return factors, limit
 
 
 def reduced_for(
@@ -85,16 +108,16 @@ def reduced_for(
 
     Args:
         tables: the net.
-        asked: conditions whose reachability is asked (or whose sum is to be largest); or `Dead` alone.
+        asked: conditions whose reachability is asked, sums that are to be largest; or `Dead` alone.
         until: when to stop, on the monotonic clock.
         rules: to be used.
     """
-    assert Dead() not in asked or len(asked) == 1
-    goal = Goal.DEADLOCK if asked == [Dead()] else Goal.REACHABILITY
+    is_dead = any(isinstance(c, Dead) for c in asked)
+    assert not is_dead or len(asked) == 1
+    goal = Goal.DEADLOCK if is_dead else Goal.REACHABILITY
     net = Net(tables, set().union(*map(conditions.places, asked)), goal)
     apply_all(net, [r for r in rules if goal in r.keeps], until)
-    numbers = {p: i for i, p in enumerate(net.marking)}
-    return Reduced(_tables(net, numbers), tuple(_renamed(net, numbers, c) for c in asked))
+    return Reduced(net)
 
 
 def apply_all(net: Net, rules: Sequence[Rule], until: float) -> None:
@@ -115,17 +138,3 @@ def _tables(net: Net, numbers: dict[int, int]) -> Tables:
         {},
         {},
     )
-
-
-def _renamed(net: Net, numbers: dict[int, int], condition: Condition) -> Condition:
-    def in_kept_places(c: AtMost) -> Condition:
-        factors: dict[int, int] = {}
-        limit = c.limit
-        for p, n in c.factors:
-            value = net.value(p)
-            limit -= n * value.constant
-            for q, m in value.factors.items():
-                factors[numbers[q]] = factors.get(numbers[q], 0) + n * m
-        return conditions.at_most(factors, limit)
-
-    return conditions.mapped(condition, in_kept_places)

@@ -1,0 +1,270 @@
+"""The state equation: each reachable marking is m0 + C x with x >= 0 (Murata 1989), so that what this cannot satisfy is
+not reachable.
+
+    equation = StateEquation(tables)
+    equation.excludes(condition, until)      # True: proved; False: not known
+    equation.bound(sum, until)               # an upper bound that is proved, or None
+
+A condition with `or` is split where the solution found so far does not satisfy it; tokens are integers, so that a
+fraction is split as well. A marked trap stays marked (Esparza, Melzer 2000): traps that a solution empties are added.
+Every part must be refuted by a certificate in integers (certificates.py).
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from pn2code.contest import certificates
+from pn2code.contest.conditions import AtMost, Condition, Dead, Junction, junction
+from pn2code.contest.tables import Tables
+
+_ZERO = 1e-6
+MOST_SPLITS = 40
+"""Fractions that are split one inside the other."""
+
+
+class _UnknownError(Exception):
+    """There is no proof: a solution satisfies everything, or the time is over."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Solution:
+    """What the linear program says.
+
+    Args:
+        distance: by how much the rows cannot be satisfied.
+        marking: the tokens by place.
+        duals: of the places, then of the rows.
+    """
+
+    distance: float
+    marking: Any
+    duals: Any
+
+
+@dataclass(frozen=True, slots=True)
+class _Node:
+    """A part of the search: rows that hold, conditions of which one part must hold, and how many fractions were split."""
+
+    rows: tuple[AtMost, ...]
+    choices: tuple[Junction, ...]
+    splits: int = 0
+
+
+class StateEquation:
+    """The state equation of a net.
+
+    Args:
+        tables: the net.
+    """
+
+    def __init__(self, tables: Tables) -> None:
+        self.tables = tables
+        self.effects = [_effect(a, b) for a, b in zip(tables.pre, tables.post, strict=True)]
+        self.traps: list[AtMost] = []
+        self.is_exhausted = True
+
+    @cached_property
+    def _matrix(self) -> Any:
+        """C: places by transitions."""
+        from scipy.sparse import csr_array
+
+        entries = [(p, t, n) for t, e in enumerate(self.effects) for p, n in e.items()]
+        p, t, n = zip(*entries, strict=True) if entries else ((), (), ())
+        shape = (len(self.tables.initial), len(self.effects))
+        return csr_array((np.array(n, dtype=float), (p, t)), shape=shape)
+
+    @cached_property
+    def _initial(self) -> Any:
+        return np.array(self.tables.initial, dtype=float)
+
+    def excludes(self, condition: Condition, until: float) -> bool:
+        """Whether no reachable marking satisfies a condition; False: it is not known.
+
+        `is_exhausted` says afterwards whether more time would not help.
+        """
+        self.is_exhausted = True
+        if isinstance(condition, Dead):
+            condition = _dead(self.tables)
+        waiting = [_with(_Node((), ()), condition)]
+        try:
+            while waiting:
+                node = waiting.pop()
+                if node is not None:
+                    waiting += self._split(node, until)
+        except _UnknownError:
+            return False
+        return True
+
+    def _split(self, node: _Node, until: float) -> list[_Node | None]:
+        """The parts into which a node falls; none if it is refuted."""
+        while True:
+            rows = [*node.rows, *self.traps]
+            found = self._solved(rows, until)
+            if found.distance > _ZERO:
+                if not self._is_refuted(rows, found):
+                    raise _UnknownError
+                return []
+            open_ = [c for c in node.choices if not _nearly(c, found.marking)]
+            if open_:
+                chosen = min(open_, key=lambda c: len(c.parts))
+                rest = _Node(
+                    node.rows, tuple(c for c in node.choices if c is not chosen), node.splits
+                )
+                return [_with(rest, part) for part in chosen.parts]
+            if not self._add_trap(found.marking):
+                return self._at_a_fraction(node, found.marking)
+
+    def _at_a_fraction(self, node: _Node, marking: Any) -> list[_Node | None]:
+        away = np.abs(marking - np.round(marking))
+        p = int(np.argmax(away)) if len(away) else 0
+        if not len(away) or away[p] < 1e-4 or node.splits >= MOST_SPLITS:
+            raise _UnknownError
+        below = AtMost(((p, 1),), int(np.floor(marking[p])))
+        return [
+            _Node((*node.rows, row), node.choices, node.splits + 1)
+            for row in (below, below.opposite())
+        ]
+
+    def _solved(self, rows: Sequence[AtMost], until: float) -> _Solution:
+        """The marking that is nearest to satisfying the rows: the largest distance from one of them is minimal."""
+        from scipy.sparse import csr_array, hstack, vstack
+
+        places = len(self.tables.initial)
+        entries = [(i, p, n) for i, row in enumerate(rows) for p, n in row.factors]
+        i, p, n = zip(*entries, strict=True) if entries else ((), (), ())
+        a = csr_array((np.array(n, dtype=float), (i, p)), shape=(len(rows), places))
+        limits = np.array([row.limit for row in rows], dtype=float) - a @ self._initial
+        extra = csr_array(
+            np.concatenate([np.zeros(places), -np.ones(len(rows))]).reshape(-1, 1)
+        )
+        left = hstack([vstack([-self._matrix, a @ self._matrix]), extra])
+        right = np.concatenate([self._initial, limits])
+        cost = np.zeros(left.shape[1])
+        cost[-1] = 1.0
+        result = self._solve(cost, left, right, until)
+        marking = self._initial + self._matrix @ result.x[:-1]
+        return _Solution(float(result.fun), marking, -result.ineqlin.marginals)
+
+    def _solve(self, cost: Any, left: Any, right: Any, until: float) -> Any:
+        from scipy.optimize import linprog
+
+        seconds = until - time.monotonic()
+        if seconds <= 0.0:
+            self.is_exhausted = False
+            raise _UnknownError
+        result = linprog(
+            cost, A_ub=left, b_ub=right, method="highs", options={"time_limit": seconds}
+        )
+        if result.status != 0:
+            self.is_exhausted = result.status != 1
+            raise _UnknownError
+        return result
+
+    def _is_refuted(self, rows: Sequence[AtMost], found: _Solution) -> bool:
+        places = len(self.tables.initial)
+        for numbers, _ in certificates.integers(found.duals.tolist()):
+            of_places, factors = numbers[:places], numbers[places:]
+            weight = {p: -y for p, y in enumerate(of_places) if y}
+            for row, f in zip(rows, factors, strict=True):
+                for p, n in row.factors if f else ():
+                    weight[p] = weight.get(p, 0) + f * n
+            if certificates.is_refuted(rows, factors, weight, self.tables.initial, self.effects):
+                return True
+        return False
+
+    def bound(self, factors: Mapping[int, int], until: float) -> int | None:
+        """An upper bound of a sum of tokens; None: none was found."""
+        c = np.zeros(len(self.tables.initial))
+        for p, n in factors.items():
+            c[p] = n
+        try:
+            result = self._solve(-(c @ self._matrix), -self._matrix, self._initial, until)
+        except _UnknownError:
+            return None
+        weight = (c - result.ineqlin.marginals).tolist()
+        best: int | None = None
+        for numbers, scale in certificates.integers(weight):
+            if scale:
+                of = {p: n for p, n in enumerate(numbers) if n}
+                found = certificates.bound(factors, of, scale, self.tables.initial, self.effects)
+                if found is not None and (best is None or found < best):
+                    best = found
+        return best
+
+    def _add_trap(self, marking: Any) -> bool:
+        """Add the largest trap that is marked in the beginning and empty here; False: there is none."""
+        trap = {p for p, n in enumerate(marking.tolist()) if n < _ZERO}
+        todo = list(trap)
+        while todo:
+            p = todo.pop()
+            if p in trap and not all(
+                any(q in trap for q in self.tables.post[t]) for t in self._takers[p]
+            ):
+                trap.discard(p)
+                todo += (q for t in self._putters[p] for q in self.tables.pre[t] if q in trap)
+        if not any(self.tables.initial[p] for p in trap):
+            return False
+        self.traps.append(AtMost(tuple((p, -1) for p in sorted(trap)), -1))
+        return True
+
+    @cached_property
+    def _takers(self) -> list[list[int]]:
+        return _ends(self.tables.pre, len(self.tables.initial))
+
+    @cached_property
+    def _putters(self) -> list[list[int]]:
+        return _ends(self.tables.post, len(self.tables.initial))
+
+
+def _ends(arcs: Sequence[Mapping[int, int]], places: int) -> list[list[int]]:
+    found: list[list[int]] = [[] for _ in range(places)]
+    for t, of in enumerate(arcs):
+        for p in of:
+            found[p].append(t)
+    return found
+
+
+def _effect(pre: Mapping[int, int], post: Mapping[int, int]) -> dict[int, int]:
+    found = {p: post.get(p, 0) - pre.get(p, 0) for p in pre.keys() | post.keys()}
+    return {p: n for p, n in found.items() if n}
+
+
+def _dead(tables: Tables) -> Condition:
+    """No transition is enabled, as comparisons."""
+    return junction(
+        True,
+        [
+            junction(False, [AtMost(((p, 1),), n - 1) for p, n in pre.items()])
+            for pre in tables.pre
+        ],
+    )
+
+
+def _with(node: _Node, condition: Condition) -> _Node | None:
+    """The node with a condition more; None: it is false."""
+    match condition:
+        case AtMost():
+            return _Node((*node.rows, condition), node.choices, node.splits)
+        case Junction(True, parts):
+            found: _Node | None = node
+            for part in parts:
+                found = None if found is None else _with(found, part)
+            return found
+        case Junction(False, parts):
+            return _Node(node.rows, (*node.choices, condition), node.splits) if parts else None
+    raise AssertionError(condition)
+
+
+def _nearly(c: Condition, marking: Any) -> bool:
+    """Whether a marking with fractions satisfies a condition."""
+    if isinstance(c, AtMost):
+        return bool(sum(n * marking[p] for p, n in c.factors) <= c.limit + _ZERO)
+    assert isinstance(c, Junction)
+    return (all if c.is_all else any)(_nearly(p, marking) for p in c.parts)
