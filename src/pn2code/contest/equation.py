@@ -25,6 +25,8 @@ from pn2code.contest.conditions import AtMost, Condition, Dead, Junction, juncti
 from pn2code.contest.tables import Tables
 
 _ZERO = 1e-6
+MOST_STEPS = 1_000_000
+"""Of a transition in a solution that is followed."""
 MOST_SPLITS = 40
 """Fractions that are split one inside the other."""
 
@@ -62,6 +64,10 @@ class StateEquation:
 
     Args:
         tables: the net.
+
+    Attributes:
+        is_exhausted: of the last question: more time would not help.
+        guide: of the last question that was not excluded: how often transitions occur in a solution.
     """
 
     def __init__(self, tables: Tables) -> None:
@@ -69,6 +75,7 @@ class StateEquation:
         self.effects = [_effect(a, b) for a, b in zip(tables.pre, tables.post, strict=True)]
         self.traps: list[AtMost] = []
         self.is_exhausted = True
+        self.guide: dict[int, int] = {}
 
     @cached_property
     def _matrix(self) -> Any:
@@ -90,6 +97,7 @@ class StateEquation:
         `is_exhausted` says afterwards whether more time would not help.
         """
         self.is_exhausted = True
+        self.guide = {}
         if isinstance(condition, Dead):
             condition = _dead(self.tables)
         waiting = [_with(_Node((), ()), condition)]
@@ -119,12 +127,13 @@ class StateEquation:
                 )
                 return [_with(rest, part) for part in chosen.parts]
             if not self._add_trap(found.marking):
-                return self._at_a_fraction(node, found.marking)
+                return self._at_a_fraction(node, found.marking, until)
 
-    def _at_a_fraction(self, node: _Node, marking: Any) -> list[_Node | None]:
+    def _at_a_fraction(self, node: _Node, marking: Any, until: float) -> list[_Node | None]:
         away = np.abs(marking - np.round(marking))
         p = int(np.argmax(away)) if len(away) else 0
         if not len(away) or away[p] < 1e-4 or node.splits >= MOST_SPLITS:
+            self._guess([*node.rows, *self.traps], until)
             raise _UnknownError
         below = AtMost(((p, 1),), int(np.floor(marking[p])))
         return [
@@ -132,25 +141,35 @@ class StateEquation:
             for row in (below, below.opposite())
         ]
 
+    def _guess(self, rows: Sequence[AtMost], until: float) -> None:
+        """Note a solution with as few steps as there can be."""
+        left, right = self._inequalities(rows)
+        left = left[:, :-1]
+        result = self._solve(np.ones(left.shape[1]), left, right, until)
+        steps = np.ceil(result.x - _ZERO).astype(int)
+        self.guide = {t: int(n) for t, n in enumerate(steps.tolist()) if 0 < n < MOST_STEPS}
+
     def _solved(self, rows: Sequence[AtMost], until: float) -> _Solution:
         """The marking that is nearest to satisfying the rows: the largest distance from one of them is minimal."""
-        from scipy.sparse import csr_array, hstack, vstack
+        left, right = self._inequalities(rows)
+        cost = np.zeros(left.shape[1])
+        cost[-1] = 1.0
+        result = self._solve(cost, left, right, until)
+        marking = self._initial + self._matrix @ result.x[:-1]
+        return _Solution(float(result.fun), marking, -result.ineqlin.marginals)
+
+    def _inequalities(self, rows: Sequence[AtMost]) -> tuple[Any, Any]:
+        """Of the number of steps of each transition, and of the distance from the rows: tokens are not negative."""
+        from scipy.sparse import csc_array, csr_array, hstack, vstack
 
         places = len(self.tables.initial)
         entries = [(i, p, n) for i, row in enumerate(rows) for p, n in row.factors]
         i, p, n = zip(*entries, strict=True) if entries else ((), (), ())
         a = csr_array((np.array(n, dtype=float), (i, p)), shape=(len(rows), places))
         limits = np.array([row.limit for row in rows], dtype=float) - a @ self._initial
-        extra = csr_array(
-            np.concatenate([np.zeros(places), -np.ones(len(rows))]).reshape(-1, 1)
-        )
-        left = hstack([vstack([-self._matrix, a @ self._matrix]), extra])
-        right = np.concatenate([self._initial, limits])
-        cost = np.zeros(left.shape[1])
-        cost[-1] = 1.0
-        result = self._solve(cost, left, right, until)
-        marking = self._initial + self._matrix @ result.x[:-1]
-        return _Solution(float(result.fun), marking, -result.ineqlin.marginals)
+        extra = np.concatenate([np.zeros(places), -np.ones(len(rows))]).reshape(-1, 1)
+        left = hstack([vstack([-self._matrix, a @ self._matrix]), csr_array(extra)])
+        return csc_array(left), np.concatenate([self._initial, limits])
 
     def _solve(self, cost: Any, left: Any, right: Any, until: float) -> Any:
         from scipy.optimize import linprog

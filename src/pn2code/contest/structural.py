@@ -40,16 +40,25 @@ class Smaller:
         tables: the net.
         condition: the question; of a bound its sum.
         added: of a bound: what is added to it.
+        equation: of the net, once it was asked.
+        guide: how often transitions may occur on the way to the condition; {}: there is no guess.
+        tried: of a bound: the number that the equation could not prove.
     """
 
     tables: Tables
     condition: Condition
     added: int = 0
     equation: StateEquation | None = None
+    guide: dict[int, int] = field(default_factory=dict)
+    tried: int | None = None
 
     def text(self, kind: str) -> str:
         """The question in the engine's own words, without its number."""
-        return f"{kind} {conditions.text(self.condition)}"
+        text = f"{kind} {conditions.text(self.condition)}"
+        if not self.guide:
+            return text
+        steps = " ".join(f"{t} {n}" for t, n in self.guide.items())
+        return f"guided {len(self.guide)} {steps} {text}"
 
 
 @dataclass(slots=True)
@@ -230,6 +239,7 @@ class Structural(threading.Thread):
             return self._bounded(q, smaller, equation, until)
         if equation.excludes(smaller.condition, until) and not q.is_done:
             self._say(q, False, EQUATION)
+        smaller.guide = equation.guide or smaller.guide
         return q.is_done or equation.is_exhausted
 
     def _bounded(
@@ -242,13 +252,15 @@ class Structural(threading.Thread):
             if most is None:
                 return False
             self._learn(q, most + smaller.added)
-        if not q.is_done and q.least is not None:
-            least = q.least
-            more = conditions.at_most(
-                {p: -n for p, n in sum_.factors}, -(least - smaller.added + 1)
-            )
-            if equation.excludes(more, until):
-                self._learn(q, least)
+        least = q.least
+        if q.is_done or least is None or least == smaller.tried:
+            return q.is_done
+        more = conditions.at_most({p: -n for p, n in sum_.factors}, -(least - smaller.added + 1))
+        if equation.excludes(more, until):
+            self._learn(q, least)
+        elif equation.is_exhausted:
+            smaller.tried = least
+        smaller.guide = equation.guide or smaller.guide
         return q.is_done
 
     def _learn(self, q: Question, most: int) -> None:
