@@ -1,7 +1,8 @@
 """Proofs from the state equation, checked in integers.
 
 A linear program is solved in floating point, and nothing that it says is believed: its dual solution is rounded to
-integers, and these must prove the claim by themselves.
+integers, and these must prove the claim by themselves. If it cannot be rounded, the equations that it satisfies nearly
+are solved exactly.
 
     with a weight w of the places that no transition can lower (w * effect >= 0 for each), w * m >= w * m0 always:
     is_refuted    rows a * m <= b, added with factors f >= 0, say f * a * m <= f * b; if w <= f * a everywhere and
@@ -21,6 +22,8 @@ _SCALES = (1, 2, 3, 4, 5, 6, 8, 10, 12, 24, 60, 120, 360, 840, 2520, 27720, 7207
 _NEAR = 1e-4
 _LARGEST_DENOMINATOR = 10_000
 _LARGEST_COMMON = 10**15
+_MOST_UNKNOWNS = 300
+_MOST_EQUATIONS = 1500
 
 Effects = Sequence[Mapping[int, int]]
 """By transition: how much it changes each place."""
@@ -85,3 +88,49 @@ def integers(values: Sequence[float]) -> Iterator[tuple[list[int], int]]:
         if common > _LARGEST_COMMON:
             return
     yield [int(f * common) for f in fractions], common
+
+
+def solution(
+    equations: Sequence[tuple[Mapping[int, int], int]], near: Mapping[int, float]
+) -> dict[int, Fraction] | None:
+    """The exact solution of linear equations that is near to one in floating point.
+
+    Args:
+        equations: factors of the unknowns, and what their sum is.
+        near: the unknowns, nearly; where the equations leave a choice, it is made by them.
+
+    Returns:
+        None: there are too many of them, or no solution.
+    """
+    from flint import fmpq, fmpq_mat
+
+    columns = {v: i for i, v in enumerate(near)}
+    wanted = {(tuple(sorted(f.items())), r) for f, r in equations if f or r}
+    if len(columns) > _MOST_UNKNOWNS or len(wanted) > _MOST_EQUATIONS or not wanted:
+        return None
+    matrix = fmpq_mat(len(wanted), len(columns) + 1)
+    for i, (factors, right) in enumerate(sorted(wanted)):
+        for v, n in factors:
+            matrix[i, columns[v]] = n
+        matrix[i, len(columns)] = right
+    reduced, rank = matrix.rref()
+    found = {v: Fraction(x).limit_denominator(_LARGEST_DENOMINATOR) for v, x in near.items()}
+    names = list(near)
+    for i in range(rank):
+        row = {j: reduced[i, j] for j in range(len(columns) + 1) if reduced[i, j] != 0}
+        pivot = min(row)
+        if pivot == len(columns):
+            return None
+        value = row.get(len(columns), fmpq(0))
+        for j, n in row.items():
+            if pivot < j < len(columns):
+                f = found[names[j]]
+                value -= n * fmpq(f.numerator, f.denominator)
+        found[names[pivot]] = Fraction(int(value.p), int(value.q))
+    return found
+
+
+def whole(values: Mapping[int, Fraction]) -> tuple[dict[int, int], int]:
+    """The values as integers, with the multiple that they are."""
+    scale = lcm(1, *(f.denominator for f in values.values()))
+    return {v: int(f * scale) for v, f in values.items()}, scale

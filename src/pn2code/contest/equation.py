@@ -25,6 +25,7 @@ from pn2code.contest.conditions import AtMost, Condition, Dead, Junction, juncti
 from pn2code.contest.tables import Tables
 
 _ZERO = 1e-6
+_SMALL = 1e-9
 MOST_STEPS = 1_000_000
 """Of a transition in a solution that is followed."""
 MOST_SPLITS = 40
@@ -196,7 +197,54 @@ class StateEquation:
                     weight[p] = weight.get(p, 0) + f * n
             if certificates.is_refuted(rows, factors, weight, self.tables.initial, self.effects):
                 return True
-        return False
+        return self._is_refuted_exactly(rows, found.duals)
+
+    def _is_refuted_exactly(self, rows: Sequence[AtMost], duals: Any) -> bool:
+        """The same with the exact solution: transitions that keep the weight in floating point must keep it."""
+        places = len(self.tables.initial)
+        near = {i: float(v) for i, v in enumerate(duals.tolist()) if v > _SMALL}
+        columns = {i: {i: -1} if i < places else dict(rows[i - places].factors) for i in near}
+        equations = [(dict.fromkeys((i for i in near if i >= places), 1), 1)]
+        equations += self._kept(columns, near, {})
+        values = certificates.solution(equations, near)
+        if values is None:
+            return False
+        numbers, _ = certificates.whole(values)
+        weight: dict[int, int] = {}
+        for i, f in numbers.items():
+            for p, n in columns[i].items():
+                weight[p] = weight.get(p, 0) + f * n
+        factors = [numbers.get(places + j, 0) for j in range(len(rows))]
+        return certificates.is_refuted(rows, factors, weight, self.tables.initial, self.effects)
+
+    def _kept(
+        self,
+        columns: Mapping[int, Mapping[int, int]],
+        near: Mapping[int, float],
+        fixed: Mapping[int, int],
+    ) -> list[tuple[dict[int, int], int]]:
+        """That the transitions change nothing that, in floating point, do not change it.
+
+        Args:
+            columns: unknown -> the weight of places in it.
+            near: the unknowns, nearly.
+            fixed: the weight of places that is known.
+        """
+        of_place: dict[int, list[tuple[int, int]]] = {}
+        for i, column in columns.items():
+            for p, n in column.items():
+                of_place.setdefault(p, []).append((i, n))
+        found = []
+        for effect in self.effects:
+            factors: dict[int, int] = {}
+            constant = 0
+            for p, change in effect.items():
+                constant += fixed.get(p, 0) * change
+                for i, n in of_place.get(p, ()):
+                    factors[i] = factors.get(i, 0) + n * change
+            if abs(constant + sum(n * near[i] for i, n in factors.items())) < _SMALL:
+                found.append(({i: n for i, n in factors.items() if n}, -constant))
+        return found
 
     def bound(self, factors: Mapping[int, int], until: float) -> int | None:
         """An upper bound of a sum of tokens; None: none was found."""
@@ -215,7 +263,19 @@ class StateEquation:
                 found = certificates.bound(factors, of, scale, self.tables.initial, self.effects)
                 if found is not None and (best is None or found < best):
                     best = found
-        return best
+        return self._bound_exactly(factors, weight) if best is None else best
+
+    def _bound_exactly(self, factors: Mapping[int, int], weight: Sequence[float]) -> int | None:
+        near = {
+            p: w for p, w in enumerate(weight) if abs(w - factors.get(p, 0)) > _SMALL
+        }
+        fixed = {p: n for p, n in factors.items() if p not in near}
+        values = certificates.solution(self._kept({p: {p: 1} for p in near}, near, fixed), near)
+        if values is None:
+            return None
+        numbers, scale = certificates.whole(values)
+        numbers |= {p: n * scale for p, n in fixed.items()}
+        return certificates.bound(factors, numbers, scale, self.tables.initial, self.effects)
 
     def _add_trap(self, marking: Any) -> bool:
         """Add the largest trap that is marked in the beginning and empty here; False: there is none."""

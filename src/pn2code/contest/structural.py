@@ -185,6 +185,8 @@ class Structural(threading.Thread):
         for q in others:
             self._note(q, shared, q.condition)
         still = [q for q in self._open() if not isinstance(q.condition, Dead)]
+        if took * len(still) > 1.0:
+            self._pass(_PASSES_S[0], set())
         if len(still) > _FEW and took * len(still) > self._left() / 3:
             return
         for i, q in enumerate(still):
@@ -199,6 +201,8 @@ class Structural(threading.Thread):
     def _note(self, q: Question, reduced: Reduced, condition: Condition) -> None:
         """Keep the reduced net, or answer if nothing is left to ask."""
         tables = reduced.tables
+        if q.is_done:
+            return
         if q.kind == "bound":
             assert isinstance(condition, AtMost)
             before = 0 if q.smaller is None else q.smaller.added
@@ -221,12 +225,15 @@ class Structural(threading.Thread):
     def _equations(self) -> None:
         exhausted: set[int] = set()
         for seconds in _PASSES_S:
-            for q in self._open():
-                if q.is_done or q.number in exhausted or q.smaller is None:
-                    continue
-                until = time.monotonic() + min(seconds, self._left())
-                if self._is_exhausted(q, q.smaller, until):
-                    exhausted.add(q.number)
+            self._pass(seconds, exhausted)
+
+    def _pass(self, seconds: float, exhausted: set[int]) -> None:
+        for q in self._open():
+            if q.is_done or q.number in exhausted or q.smaller is None:
+                continue
+            until = time.monotonic() + min(seconds, self._left())
+            if self._is_exhausted(q, q.smaller, until):
+                exhausted.add(q.number)
 
     def _is_exhausted(self, q: Question, smaller: Smaller, until: float) -> bool:
         """Ask the state equation; whether more time would not help."""
