@@ -60,6 +60,8 @@ def test_bounds() -> None:
             assert found is None or found >= most, tables
             asked += 1
             exact += found == most
+        for p, most in equation.most.items():
+            assert most >= max(m[p] for m in graph.markings), tables
     assert exact > 0.6 * asked
 
 
@@ -91,16 +93,16 @@ def test_certificates_that_prove_nothing_are_refused() -> None:
             wanted = {p: draw.choice((0, 1)) for p in places}
             claimed = certificates.bound(wanted, weight, 1, tables.initial, effects)
             if claimed is not None:
-                assert all(sum(n * m[p] for p, n in wanted.items()) <= claimed for m in graph.markings)
+                assert all(
+                    sum(n * m[p] for p, n in wanted.items()) <= claimed for m in graph.markings
+                )
     assert passed > 20
 
 
 def test_a_certificate_that_cannot_be_rounded_is_solved_exactly() -> None:
     """The weights of the places have denominators that no rounding finds."""
     p, q = 7919, 7907
-    tables = Tables(
-        (p * q - 1, 0, 0), ({0: p}, {1: q}), ({1: q + 2}, {2: p + 8}), {}, {}
-    )
+    tables = Tables((p * q - 1, 0, 0), ({0: p}, {1: q}), ({1: q + 2}, {2: p + 8}), {}, {})
     most = (p * q - 1) * (q + 2) * (p + 8) // (p * q)
     equation = StateEquation(tables)
     assert equation.bound({2: 1}, later()) == most

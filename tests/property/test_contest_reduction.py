@@ -9,9 +9,9 @@ from collections import Counter
 import pytest
 
 from helpers.random_tables import Graph
+from pn2code.contest.conditions import AtMost, Dead
 from pn2code.contest.reduction.net import Goal, Net
 from pn2code.contest.reduction.reduce import RULES, Rule, apply_all, reduced_for
-from pn2code.contest.conditions import AtMost, Dead
 from pn2code.contest.tables import Tables
 
 NETS = 1500

@@ -66,9 +66,7 @@ def test_the_structure_alone(program: Path) -> None:
 
 def test_all_methods_together(program: Path) -> None:
     for tables, asked, wanted in nets(range(300, 360)):
-        found = {
-            r.name: r.value for r in answers(program, tables, asked, seconds=SECONDS)
-        }
+        found = {r.name: r.value for r in answers(program, tables, asked, seconds=SECONDS)}
         assert found == wanted, tables
 
 
@@ -78,7 +76,11 @@ def test_a_hint_decides(program: Path) -> None:
     open_ = (Part("other", "none"),)
     asked = [
         Asked("a", open_, decides=False, value=False, hints=((Part("reach", "reach dead"), True),)),
-        Asked("b", open_, decides=False, value=False, hints=((Part("reach", "reach dead"), False),)),
+        Asked(
+            "b", open_, decides=False, value=False, hints=((Part("reach", "reach dead"), False),)
+        ),
     ]
-    found = {r.name: r.value for r in answers(program, tables, asked, seconds=2.0, only="structure")}
+    found = {
+        r.name: r.value for r in answers(program, tables, asked, seconds=2.0, only="structure")
+    }
     assert found == {"a": False}

@@ -121,11 +121,11 @@ def solution(
         pivot = min(row)
         if pivot == len(columns):
             return None
-        value = row.get(len(columns), fmpq(0))
-        for j, n in row.items():
+        value = fmpq(row.get(len(columns), 0))
+        for j, entry in row.items():
             if pivot < j < len(columns):
                 f = found[names[j]]
-                value -= n * fmpq(f.numerator, f.denominator)
+                value -= entry * fmpq(f.numerator, f.denominator)
         found[names[pivot]] = Fraction(int(value.p), int(value.q))
     return found
 

@@ -135,6 +135,7 @@ class _Lane(threading.Thread):
         self.is_over = False
 
     def run(self) -> None:
+        """All tasks."""
         try:
             with tempfile.TemporaryDirectory(prefix="pn2code-") as folder:
                 for task in self.tasks:

@@ -53,7 +53,7 @@ class _Solution:
 
 @dataclass(frozen=True, slots=True)
 class _Node:
-    """A part of the search: rows that hold, conditions of which one part must hold, and how many fractions were split."""
+    """A part of the search: rows that hold, choices of which one part must, and how many fractions were split."""
 
     rows: tuple[AtMost, ...]
     choices: tuple[Junction, ...]
@@ -69,6 +69,7 @@ class StateEquation:
     Attributes:
         is_exhausted: of the last question: more time would not help.
         guide: of the last question that was not excluded: how often transitions occur in a solution.
+        most: place -> tokens that it never exceeds, where that was proved.
     """
 
     def __init__(self, tables: Tables) -> None:
@@ -77,6 +78,7 @@ class StateEquation:
         self.traps: list[AtMost] = []
         self.is_exhausted = True
         self.guide: dict[int, int] = {}
+        self.most: dict[int, int] = {}
 
     @cached_property
     def _matrix(self) -> Any:
@@ -105,11 +107,30 @@ class StateEquation:
         try:
             while waiting:
                 node = waiting.pop()
-                if node is not None:
+                if node is not None and not self._is_impossible(node, until):
                     waiting += self._split(node, until)
         except _UnknownError:
             return False
         return True
+
+    def _is_impossible(self, node: _Node, until: float) -> bool:
+        """Whether a row exceeds what is proved of single places; one proof is often of many places."""
+        if any(self._is_too_much(row) for row in node.rows):
+            return True
+        if len(node.rows) == 1 and not node.choices:
+            (row,) = node.rows
+            most = self.bound({p: -n for p, n in row.factors}, until)
+            return most is not None and most < -row.limit
+        return False
+
+    def _is_too_much(self, row: AtMost) -> bool:
+        least = 0
+        for p, n in row.factors:
+            if n < 0:
+                if p not in self.most:
+                    return False
+                least += n * self.most[p]
+        return least > row.limit
 
     def _split(self, node: _Node, until: float) -> list[_Node | None]:
         """The parts into which a node falls; none if it is refuted."""
@@ -260,22 +281,33 @@ class StateEquation:
         for numbers, scale in certificates.integers(weight):
             if scale:
                 of = {p: n for p, n in enumerate(numbers) if n}
-                found = certificates.bound(factors, of, scale, self.tables.initial, self.effects)
+                found = self._proved(factors, of, scale)
                 if found is not None and (best is None or found < best):
                     best = found
         return self._bound_exactly(factors, weight) if best is None else best
 
     def _bound_exactly(self, factors: Mapping[int, int], weight: Sequence[float]) -> int | None:
-        near = {
-            p: w for p, w in enumerate(weight) if abs(w - factors.get(p, 0)) > _SMALL
-        }
+        near = {p: w for p, w in enumerate(weight) if abs(w - factors.get(p, 0)) > _SMALL}
         fixed = {p: n for p, n in factors.items() if p not in near}
         values = certificates.solution(self._kept({p: {p: 1} for p in near}, near, fixed), near)
         if values is None:
             return None
         numbers, scale = certificates.whole(values)
         numbers |= {p: n * scale for p, n in fixed.items()}
-        return certificates.bound(factors, numbers, scale, self.tables.initial, self.effects)
+        return self._proved(factors, numbers, scale)
+
+    def _proved(
+        self, factors: Mapping[int, int], weight: Mapping[int, int], scale: int
+    ) -> int | None:
+        """The bound that a weight proves; the same weight bounds each of its places."""
+        initial = self.tables.initial
+        found = certificates.bound(factors, weight, scale, initial, self.effects)
+        if found is not None:
+            total = sum(w * initial[p] for p, w in weight.items())
+            for p, w in weight.items():
+                if w > 0:
+                    self.most[p] = min(total // w, self.most.get(p, total // w))
+        return found
 
     def _add_trap(self, marking: Any) -> bool:
         """Add the largest trap that is marked in the beginning and empty here; False: there is none."""
@@ -319,10 +351,7 @@ def _dead(tables: Tables) -> Condition:
     """No transition is enabled, as comparisons."""
     return junction(
         True,
-        [
-            junction(False, [AtMost(((p, 1),), n - 1) for p, n in pre.items()])
-            for pre in tables.pre
-        ],
+        [junction(False, [AtMost(((p, 1),), n - 1) for p, n in pre.items()]) for pre in tables.pre],
     )
 
 

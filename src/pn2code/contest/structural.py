@@ -141,6 +141,7 @@ class Structural(threading.Thread):
         self.equations: dict[int, StateEquation] = {}
 
     def run(self) -> None:
+        """All steps, until the time is over."""
         try:
             self._reduce_all()
             self._equations()

@@ -106,7 +106,9 @@ def _joined(net: Net, p: int) -> None:
     net.remove_place(p)
 
 
-def _sum(a: dict[int, int], times_a: int, b: dict[int, int], times_b: int, but: int) -> dict[int, int]:
+def _sum(
+    a: dict[int, int], times_a: int, b: dict[int, int], times_b: int, but: int
+) -> dict[int, int]:
     """Both together, without one place."""
     found = {p: n * times_a for p, n in a.items() if p != but}
     for p, n in b.items():

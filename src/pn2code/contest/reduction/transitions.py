@@ -68,7 +68,9 @@ def _needs_less(net: Net, u: int, t: int) -> bool:
 
 def losing_transitions(net: Net) -> int:
     """A transition that only takes, from places at which nobody looks: without it there is more to go on with."""
-    found = [t for t in net.pre if net.is_invisible(t) and max(net.effect(t).values(), default=0) <= 0]
+    found = [
+        t for t in net.pre if net.is_invisible(t) and max(net.effect(t).values(), default=0) <= 0
+    ]
     for t in found:
         net.remove_transition(t)
     return len(found)
