@@ -74,6 +74,17 @@ def test_a_marked_trap_stays_marked() -> None:
     assert not equation.excludes(AtMost(((0, 1),), 1), later())
 
 
+def test_steps_that_cannot_begin() -> None:
+    """Two transitions that each need what the other fills: the equation alone would let them fill r."""
+    tables = Tables((0, 0, 0), ({0: 1}, {1: 1}), ({1: 1, 2: 1}, {0: 1}), {}, {})
+    equation = StateEquation(tables)
+    assert equation.bound({2: 1}, later()) is None
+    assert equation.excludes(AtMost(((2, -1),), -1), later())
+    begun = StateEquation(Tables((1, 0, 0), tables.pre, tables.post, {}, {}))
+    assert not begun.excludes(AtMost(((2, -1),), -1), later())
+    assert begun.guide == {0: 1}
+
+
 def test_certificates_that_prove_nothing_are_refused() -> None:
     """Whatever is drawn: what passes is true."""
     passed = 0

@@ -5,9 +5,14 @@ not reachable.
     equation.excludes(condition, until)      # True: proved; False: not known
     equation.bound(sum, until)               # an upper bound that is proved, or None
 
-A condition with `or` is split where the solution found so far does not satisfy it; tokens are integers, so that a
-fraction is split as well. A marked trap stays marked (Esparza, Melzer 2000): traps that a solution empties are added.
-Every part must be refuted by a certificate in integers (certificates.py).
+A condition with `or` is split where the solution found so far does not satisfy it; tokens and steps are integers, so
+that a fraction is split as well. A marked trap stays marked (Esparza, Melzer 2000): traps that a solution empties are
+added. Steps of a solution that can never begin, since no step of it fills what they need, either do not occur, or
+another one does that fills it (Fraca, Haddad 2015). Every part must be refuted by a certificate in integers
+(certificates.py).
+
+Rows may speak of steps, too: the number of steps of a transition is a place of its own, which only it fills. These places
+have the numbers after those of the net.
 """
 
 from __future__ import annotations
@@ -43,11 +48,13 @@ class _Solution:
     Args:
         distance: by how much the rows cannot be satisfied.
         marking: the tokens by place.
+        steps: how often each transition occurs.
         duals: of the places, then of the rows.
     """
 
     distance: float
     marking: Any
+    steps: Any
     duals: Any
 
 
@@ -75,6 +82,9 @@ class StateEquation:
     def __init__(self, tables: Tables) -> None:
         self.tables = tables
         self.effects = [_effect(a, b) for a, b in zip(tables.pre, tables.post, strict=True)]
+        self.places = len(tables.initial)
+        self._counted = [{**e, self.places + t: 1} for t, e in enumerate(self.effects)]
+        self._all_initial = [*tables.initial, *([0] * len(self.effects))]
         self.traps: list[AtMost] = []
         self.is_exhausted = True
         self.guide: dict[int, int] = {}
@@ -119,6 +129,8 @@ class StateEquation:
             return True
         if len(node.rows) == 1 and not node.choices:
             (row,) = node.rows
+            if any(p >= self.places for p, _ in row.factors):
+                return False
             most = self.bound({p: -n for p, n in row.factors}, until)
             return most is not None and most < -row.limit
         return False
@@ -148,27 +160,61 @@ class StateEquation:
                     node.rows, tuple(c for c in node.choices if c is not chosen), node.splits
                 )
                 return [_with(rest, part) for part in chosen.parts]
-            if not self._add_trap(found.marking):
-                return self._at_a_fraction(node, found.marking, until)
+            if self._add_trap(found.marking):
+                continue
+            self._note_guide(found.steps)
+            parts = self._without_a_beginning(found.steps) or self._at_a_fraction(found)
+            if not parts or node.splits >= MOST_SPLITS:
+                self._guess(rows, until)
+                raise _UnknownError
+            return [_Node((*node.rows, row), node.choices, node.splits + 1) for row in parts]
 
-    def _at_a_fraction(self, node: _Node, marking: Any, until: float) -> list[_Node | None]:
-        away = np.abs(marking - np.round(marking))
-        p = int(np.argmax(away)) if len(away) else 0
-        if not len(away) or away[p] < 1e-4 or node.splits >= MOST_SPLITS:
-            self._guess([*node.rows, *self.traps], until)
-            raise _UnknownError
-        below = AtMost(((p, 1),), int(np.floor(marking[p])))
-        return [
-            _Node((*node.rows, row), node.choices, node.splits + 1)
-            for row in (below, below.opposite())
+    def _without_a_beginning(self, steps: Any) -> list[AtMost]:
+        """Either steps that no other step of the solution makes possible do not occur, or one that fills more does.
+
+        The first step that fills one of the places that are still empty needs only places that can be filled before.
+        """
+        tables = self.tables
+        occurring = {t for t, n in enumerate(steps.tolist()) if n > _ZERO}
+        filled = {p for p, n in enumerate(tables.initial) if n}
+        todo = list(occurring)
+        while todo:
+            begun = [t for t in todo if tables.pre[t].keys() <= filled]
+            if not begun:
+                break
+            for t in begun:
+                filled |= tables.post[t].keys()
+            todo = [t for t in todo if not tables.pre[t].keys() <= filled]
+        if not todo:
+            return []
+        fillers = [
+            t
+            for t, pre in enumerate(tables.pre)
+            if pre.keys() <= filled and not tables.post[t].keys() <= filled
         ]
+        parts = [AtMost(tuple((self.places + t, 1) for t in sorted(todo)), 0)]
+        if fillers:
+            parts.append(AtMost(tuple((self.places + t, -1) for t in fillers), -1))
+        return parts
+
+    def _at_a_fraction(self, found: _Solution) -> list[AtMost]:
+        for first, values in ((0, found.marking), (self.places, found.steps)):
+            away = np.abs(values - np.round(values))
+            i = int(np.argmax(away)) if len(away) else 0
+            if len(away) and away[i] > 1e-4:
+                below = AtMost(((first + i, 1),), int(np.floor(values[i])))
+                return [below, below.opposite()]
+        return []
 
     def _guess(self, rows: Sequence[AtMost], until: float) -> None:
         """Note a solution with as few steps as there can be."""
         left, right = self._inequalities(rows)
         left = left[:, :-1]
         result = self._solve(np.ones(left.shape[1]), left, right, until)
-        steps = np.ceil(result.x - _ZERO).astype(int)
+        self._note_guide(result.x)
+
+    def _note_guide(self, solution: Any) -> None:
+        steps = np.ceil(solution - _ZERO).astype(int)
         self.guide = {t: int(n) for t, n in enumerate(steps.tolist()) if 0 < n < MOST_STEPS}
 
     def _solved(self, rows: Sequence[AtMost], until: float) -> _Solution:
@@ -177,20 +223,23 @@ class StateEquation:
         cost = np.zeros(left.shape[1])
         cost[-1] = 1.0
         result = self._solve(cost, left, right, until)
-        marking = self._initial + self._matrix @ result.x[:-1]
-        return _Solution(float(result.fun), marking, -result.ineqlin.marginals)
+        steps = result.x[:-1]
+        marking = self._initial + self._matrix @ steps
+        return _Solution(float(result.fun), marking, steps, -result.ineqlin.marginals)
 
     def _inequalities(self, rows: Sequence[AtMost]) -> tuple[Any, Any]:
         """Of the number of steps of each transition, and of the distance from the rows: tokens are not negative."""
-        from scipy.sparse import csc_array, csr_array, hstack, vstack
+        from scipy.sparse import csc_array, csr_array, eye_array, hstack, vstack
 
-        places = len(self.tables.initial)
+        transitions = len(self.effects)
         entries = [(i, p, n) for i, row in enumerate(rows) for p, n in row.factors]
         i, p, n = zip(*entries, strict=True) if entries else ((), (), ())
-        a = csr_array((np.array(n, dtype=float), (i, p)), shape=(len(rows), places))
-        limits = np.array([row.limit for row in rows], dtype=float) - a @ self._initial
-        extra = np.concatenate([np.zeros(places), -np.ones(len(rows))]).reshape(-1, 1)
-        left = hstack([vstack([-self._matrix, a @ self._matrix]), csr_array(extra)])
+        shape = (len(rows), self.places + transitions)
+        a = csr_array((np.array(n, dtype=float), (i, p)), shape=shape)
+        limits = np.array([row.limit for row in rows], dtype=float) - a @ self._all_initial
+        extra = np.concatenate([np.zeros(self.places), -np.ones(len(rows))]).reshape(-1, 1)
+        counted = vstack([self._matrix, eye_array(transitions)])
+        left = hstack([vstack([-self._matrix, a @ counted]), csr_array(extra)])
         return csc_array(left), np.concatenate([self._initial, limits])
 
     def _solve(self, cost: Any, left: Any, right: Any, until: float) -> Any:
@@ -209,20 +258,20 @@ class StateEquation:
         return result
 
     def _is_refuted(self, rows: Sequence[AtMost], found: _Solution) -> bool:
-        places = len(self.tables.initial)
+        places = self.places
         for numbers, _ in certificates.integers(found.duals.tolist()):
             of_places, factors = numbers[:places], numbers[places:]
             weight = {p: -y for p, y in enumerate(of_places) if y}
             for row, f in zip(rows, factors, strict=True):
                 for p, n in row.factors if f else ():
                     weight[p] = weight.get(p, 0) + f * n
-            if certificates.is_refuted(rows, factors, weight, self.tables.initial, self.effects):
+            if certificates.is_refuted(rows, factors, weight, self._all_initial, self._counted):
                 return True
         return self._is_refuted_exactly(rows, found.duals)
 
     def _is_refuted_exactly(self, rows: Sequence[AtMost], duals: Any) -> bool:
         """The same with the exact solution: transitions that keep the weight in floating point must keep it."""
-        places = len(self.tables.initial)
+        places = self.places
         near = {i: float(v) for i, v in enumerate(duals.tolist()) if v > _SMALL}
         columns = {i: {i: -1} if i < places else dict(rows[i - places].factors) for i in near}
         equations = [(dict.fromkeys((i for i in near if i >= places), 1), 1)]
@@ -236,7 +285,7 @@ class StateEquation:
             for p, n in columns[i].items():
                 weight[p] = weight.get(p, 0) + f * n
         factors = [numbers.get(places + j, 0) for j in range(len(rows))]
-        return certificates.is_refuted(rows, factors, weight, self.tables.initial, self.effects)
+        return certificates.is_refuted(rows, factors, weight, self._all_initial, self._counted)
 
     def _kept(
         self,
@@ -256,7 +305,7 @@ class StateEquation:
             for p, n in column.items():
                 of_place.setdefault(p, []).append((i, n))
         found = []
-        for effect in self.effects:
+        for effect in self._counted:
             factors: dict[int, int] = {}
             constant = 0
             for p, change in effect.items():
