@@ -86,6 +86,7 @@ class StateEquation:
         self._counted = [{**e, self.places + t: 1} for t, e in enumerate(self.effects)]
         self._all_initial = [*tables.initial, *([0] * len(self.effects))]
         self.traps: list[AtMost] = []
+        self._contradictions: list[frozenset[AtMost]] = []
         self.is_exhausted = True
         self.guide: dict[int, int] = {}
         self.most: dict[int, int] = {}
@@ -124,7 +125,10 @@ class StateEquation:
         return True
 
     def _is_impossible(self, node: _Node, until: float) -> bool:
-        """Whether a row exceeds what is proved of single places; one proof is often of many places."""
+        """Whether what was proved before shows it: rows that contradict each other, bounds of single places."""
+        rows = frozenset(node.rows)
+        if any(c <= rows for c in self._contradictions):
+            return True
         if any(self._is_too_much(row) for row in node.rows):
             return True
         if len(node.rows) == 1 and not node.choices:
@@ -265,9 +269,19 @@ class StateEquation:
             for row, f in zip(rows, factors, strict=True):
                 for p, n in row.factors if f else ():
                     weight[p] = weight.get(p, 0) + f * n
-            if certificates.is_refuted(rows, factors, weight, self._all_initial, self._counted):
+            if self._is_certain(rows, factors, weight):
                 return True
         return self._is_refuted_exactly(rows, found.duals)
+
+    def _is_certain(
+        self, rows: Sequence[AtMost], factors: Sequence[int], weight: Mapping[int, int]
+    ) -> bool:
+        """Check a certificate; the rows that it needs contradict each other wherever they meet again."""
+        if not certificates.is_refuted(rows, factors, weight, self._all_initial, self._counted):
+            return False
+        used = {row for row, f in zip(rows, factors, strict=True) if f}
+        self._contradictions.append(frozenset(used.difference(self.traps)))
+        return True
 
     def _is_refuted_exactly(self, rows: Sequence[AtMost], duals: Any) -> bool:
         """The same with the exact solution: transitions that keep the weight in floating point must keep it."""
@@ -285,7 +299,7 @@ class StateEquation:
             for p, n in columns[i].items():
                 weight[p] = weight.get(p, 0) + f * n
         factors = [numbers.get(places + j, 0) for j in range(len(rows))]
-        return certificates.is_refuted(rows, factors, weight, self._all_initial, self._counted)
+        return self._is_certain(rows, factors, weight)
 
     def _kept(
         self,
