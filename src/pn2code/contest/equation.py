@@ -11,8 +11,8 @@ added. Steps of a solution that can never begin, since no step of it fills what 
 another one does that fills it (Fraca, Haddad 2015). Every part must be refuted by a certificate in integers
 (certificates.py).
 
-Rows may speak of steps, too: the number of steps of a transition is a place of its own, which only it fills. These places
-have the numbers after those of the net.
+Rows may speak of steps, too: the number of steps of a transition is a place of its own, which only it fills. These
+places have the numbers after those of the net.
 """
 
 from __future__ import annotations
