@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import random
+import threading
 import time
 from collections.abc import Iterator
+
+import pytest
+import scipy.optimize
 
 from helpers.random_tables import Graph, random_condition, random_tables
 from pn2code.contest import certificates, conditions
 from pn2code.contest.conditions import AtMost, Dead
-from pn2code.contest.equation import StateEquation
+from pn2code.contest.equation import StateEquation, wait_for_solver
 from pn2code.contest.tables import Tables
 
 NETS = 150
@@ -118,3 +122,30 @@ def test_a_certificate_that_cannot_be_rounded_is_solved_exactly() -> None:
     equation = StateEquation(tables)
     assert equation.bound({2: 1}, later()) == most
     assert equation.excludes(AtMost(((2, -1),), -most - 1), later())
+
+
+def test_the_end_waits_for_the_solver(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A program that ends while HiGHS runs is ended by it with an error; nothing new begins after the end."""
+    begun, may_go_on, done = threading.Event(), threading.Event(), threading.Event()
+    solve = scipy.optimize.linprog
+
+    def slow(*args: object, **options: object) -> object:
+        begun.set()
+        may_go_on.wait(60.0)
+        done.set()
+        return solve(*args, **options)
+
+    monkeypatch.setattr(scipy.optimize, "linprog", slow)
+    is_over = threading.Event()
+    searching = StateEquation(Tables((2,), ({0: 2},), ({0: 1},), {}, {}), is_over)
+    condition = AtMost(((0, 1),), 0)
+    thread = threading.Thread(target=searching.excludes, args=(condition, later()))
+    thread.start()
+    assert begun.wait(60.0)
+    is_over.set()
+    threading.Timer(0.05, may_go_on.set).start()
+    wait_for_solver()
+    assert done.is_set()
+    thread.join()
+    begun.clear()
+    assert not searching.excludes(condition, later()) and not begun.is_set()

@@ -17,6 +17,7 @@ places have the numbers after those of the net.
 
 from __future__ import annotations
 
+import threading
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -31,10 +32,20 @@ from pn2code.contest.tables import Tables
 
 _ZERO = 1e-6
 _SMALL = 1e-9
+LONGEST_S = 5.0
+"""For one linear program, so that the one who ends the search need not wait longer."""
+_solving = threading.Lock()
+"""Held while HiGHS runs: the program must not end meanwhile (its threads would end it with an error)."""
 MOST_STEPS = 1_000_000
 """Of a transition in a solution that is followed."""
 MOST_SPLITS = 40
 """Fractions that are split one inside the other."""
+
+
+def wait_for_solver() -> None:
+    """Until no linear program is being solved. Those who search must have been told before that it is over."""
+    with _solving:
+        return
 
 
 class _UnknownError(Exception):
@@ -72,6 +83,7 @@ class StateEquation:
 
     Args:
         tables: the net.
+        is_over: set when nobody waits for an answer any more.
 
     Attributes:
         is_exhausted: of the last question: more time would not help.
@@ -79,8 +91,9 @@ class StateEquation:
         most: place -> tokens that it never exceeds, where that was proved.
     """
 
-    def __init__(self, tables: Tables) -> None:
+    def __init__(self, tables: Tables, is_over: threading.Event | None = None) -> None:
         self.tables = tables
+        self.is_over = threading.Event() if is_over is None else is_over
         self.effects = [_effect(a, b) for a, b in zip(tables.pre, tables.post, strict=True)]
         self.places = len(tables.initial)
         self._counted = [{**e, self.places + t: 1} for t, e in enumerate(self.effects)]
@@ -249,13 +262,13 @@ class StateEquation:
     def _solve(self, cost: Any, left: Any, right: Any, until: float) -> Any:
         from scipy.optimize import linprog
 
-        seconds = until - time.monotonic()
-        if seconds <= 0.0:
-            self.is_exhausted = False
-            raise _UnknownError
-        result = linprog(
-            cost, A_ub=left, b_ub=right, method="highs", options={"time_limit": seconds}
-        )
+        with _solving:
+            seconds = min(LONGEST_S, until - time.monotonic())
+            if seconds <= 0.0 or self.is_over.is_set():
+                self.is_exhausted = False
+                raise _UnknownError
+            limits = {"time_limit": seconds}
+            result = linprog(cost, A_ub=left, b_ub=right, method="highs", options=limits)
         if result.status != 0:
             self.is_exhausted = result.status != 1
             raise _UnknownError

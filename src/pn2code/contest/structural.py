@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 from pn2code.contest import conditions
 from pn2code.contest.conditions import FALSE, TRUE, AtMost, Condition, Dead, TooLargeError
 from pn2code.contest.engine import Answer, Said
-from pn2code.contest.equation import StateEquation
+from pn2code.contest.equation import StateEquation, wait_for_solver
 from pn2code.contest.examinations import Part
 from pn2code.contest.reduction.reduce import Reduced, reduced_for
 from pn2code.contest.tables import Tables
@@ -137,7 +137,7 @@ class Structural(threading.Thread):
         self.questions = questions
         self.said = said
         self.ends = ends
-        self.is_over = False
+        self.is_over = threading.Event()
         self.equations: dict[int, StateEquation] = {}
 
     def run(self) -> None:
@@ -151,12 +151,13 @@ class Structural(threading.Thread):
             self.said.put(error)
 
     def end(self) -> None:
-        """Stop at the next step."""
-        self.is_over = True
+        """Stop at the next step; no linear program is being solved afterwards."""
+        self.is_over.set()
+        wait_for_solver()
 
     def _left(self) -> float:
         left = self.ends - time.monotonic()
-        if self.is_over or left < _LEAST_S:
+        if self.is_over.is_set() or left < _LEAST_S:
             raise _OverError
         return left
 
@@ -240,7 +241,7 @@ class Structural(threading.Thread):
         """Ask the state equation; whether more time would not help."""
         if smaller.equation is None:
             smaller.equation = self.equations.setdefault(
-                id(smaller.tables), StateEquation(smaller.tables)
+                id(smaller.tables), StateEquation(smaller.tables, self.is_over)
             )
         equation = smaller.equation
         if q.kind == "bound":
