@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from helpers.pnml_nets import arc, net, place, transition
 from pn2code.cli.main import app
 from pn2code.contest import portfolio
-from pn2code.contest.engine import Answer, Task
+from pn2code.contest.engine import Answer
 from pn2code.contest.examinations import Asked, Part
 from pn2code.contest.tables import Tables
 
@@ -140,7 +140,7 @@ def test_a_method_alone(folder: Path) -> None:
     assert said(folder, "ReachabilityDeadlock", "--only", "reach") == [
         "FORMULA ReachabilityDeadlock TRUE TECHNIQUES STUBBORN_SETS"
     ]
-    assert said(folder, "Liveness", "--only", "walk", "--max-seconds", "5") == [
+    assert said(folder, "Liveness", "--only", "ltl", "--max-seconds", "5") == [
         "FORMULA Liveness CANNOT_COMPUTE"
     ]
 
@@ -166,8 +166,8 @@ def test_nets_that_the_engine_does_not_have(tmp_path: Path) -> None:
 def test_methods_that_contradict_each_other(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It is an error of the program, and no answer."""
 
-    def contradicting(program: Path, tasks: Sequence[Task]) -> Iterator[Answer]:
-        del program, tasks
+    def contradicting(program: Path, lanes: object, said: object) -> Iterator[Answer]:
+        del program, lanes, said
         yield Answer(0, True, True, "ONE")
         yield Answer(0, False, True, "OTHER")
 
@@ -175,7 +175,7 @@ def test_methods_that_contradict_each_other(folder: Path, monkeypatch: pytest.Mo
     tables = Tables((1,), ({0: 1},), ({},), {"p": (0,)}, {"t": (0,)})
     lines = [Asked(name, (Part("reach", "reach dead"),)) for name in "ab"]
     with pytest.raises(RuntimeError, match="a: OTHER contradicts"):
-        list(portfolio.answers(folder, tables, lines, seconds=1.0))
+        list(portfolio.answers(folder, tables, lines, seconds=1.0, only="walk"))
 
 
 def test_wrong_inputs(folder: Path, tmp_path: Path) -> None:

@@ -114,7 +114,8 @@ typedef struct tb_question {
     tb_automaton_t automaton; /* LTL */
     uint32_t formulas;        /* numbers given in `formula` */
     tb_answer_t answer;
-    int64_t least; /* BOUND: seen */
+    int64_t least;   /* BOUND: seen */
+    uint32_t *guide; /* transition -> how often it may occur on the way; NULL: nobody has a guess */
 } tb_question_t;
 
 typedef struct tb_job {

@@ -7,6 +7,7 @@
  *     questions
  *     for each question: its number, and
  *         reach FORMULA | bound SUM | ctl FORMULA | ltl AUTOMATON
+ *         guided N (transition times).. and one of them: a guess how the formula may become true, for walks
  *
  *     FORMULA    true | false | dead | not F | and N F.. | or N F.. | sum N (place factor).. limit | enabled N
  * transition.. EX F | AX F | EF F | AF F | EG F | AG F | EU F F | AU F F AUTOMATON  atoms FORMULA.. states, for each
@@ -280,10 +281,24 @@ static void read_automaton(reader_t *r, tb_question_t *q)
     }
 }
 
+static void read_guide(reader_t *r, tb_question_t *q)
+{
+    const uint32_t count = (uint32_t)number(r, 0, (int64_t)r->net->transitions);
+    q->guide = tb_new(r->net->transitions, sizeof *q->guide);
+    for (uint32_t i = 0U; i < count; i++) {
+        const uint32_t t = index_below(r, r->net->transitions);
+        q->guide[t] = (uint32_t)number(r, 1, (int64_t)TB_MOST_TOKENS);
+    }
+}
+
 static void read_question(reader_t *r, tb_question_t *q)
 {
     q->number = (uint32_t)number(r, 0, INT32_MAX);
     const char *word = next_word(r);
+    if (strcmp(word, "guided") == 0) {
+        read_guide(r, q);
+        word = next_word(r);
+    }
     if (strcmp(word, "ltl") == 0) {
         q->kind = TB_LTL;
         read_automaton(r, q);

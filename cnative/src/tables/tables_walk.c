@@ -2,14 +2,18 @@
  * tables_walk.c - random walks, which find quickly what is found in many places.
  *
  * Every other walk is drawn towards one of the open questions: among a few enabled transitions the one is taken that
- * brings its formula nearest (tables_distance.c).
+ * brings its formula nearest (tables_distance.c). If there is a guess which transitions have to occur how often, such
+ * as a solution of the state equation, half of these walks follow it as far as they can.
  */
 #include "tables.h"
+
+#include <string.h>
 
 enum {
     LENGTH = 20000, /* steps of a walk at most */
     CANDIDATES = 6,
-    PLAIN_STEPS = 4 /* one in so many steps of a drawn walk is random */
+    PLAIN_STEPS = 4,  /* one in so many steps of a drawn walk is random */
+    GUIDED_STEPS = 40 /* one in so many steps of a guided walk is not guided */
 };
 
 static uint64_t state = 1U;
@@ -74,6 +78,34 @@ static uint32_t chosen(tb_cursor_t *c, const tb_question_t *goal)
     return (best == UINT32_MAX) ? c->enabled[drawn(c->enabled_count)] : best;
 }
 
+/* One that is enabled and that the guess still has, or UINT32_MAX. */
+static uint32_t guided(const tb_cursor_t *c, const uint32_t *left)
+{
+    uint32_t found = UINT32_MAX;
+    uint32_t seen = 0U;
+    for (uint32_t i = 0U; i < c->enabled_count; i++) {
+        if (left[c->enabled[i]] > 0U) {
+            seen++;
+            found = (drawn(seen) == 0U) ? c->enabled[i] : found;
+        }
+    }
+    return found;
+}
+
+/* The next step: what the guess has, now and then something else, so that no walk is like the one before. */
+static uint32_t next_step(tb_cursor_t *c, const tb_question_t *goal, uint32_t *left)
+{
+    uint32_t t = UINT32_MAX;
+    if ((left != NULL) && (drawn((uint32_t)GUIDED_STEPS) > 0U)) {
+        t = guided(c, left);
+    }
+    t = (t == UINT32_MAX) ? chosen(c, goal) : t;
+    if ((left != NULL) && (left[t] > 0U)) {
+        left[t]--;
+    }
+    return t;
+}
+
 static const tb_question_t *goal_of(const tb_job_t *job, uint64_t walk)
 {
     for (uint32_t i = 0U; i < job->questions; i++) {
@@ -92,12 +124,19 @@ void tb_walk(tb_job_t *job, uint64_t seed, double seconds)
     state = (seed * 0x9e3779b97f4a7c15U) | 1U;
     uint32_t open = look(job, &c);
     const double until = tb_elapsed() + seconds;
+    const size_t size = job->net.transitions * sizeof(uint32_t);
+    uint32_t *guess = tb_new(job->net.transitions, sizeof *guess);
     for (uint64_t walk = 0U; (open > 0U) && !tb_is_over() && (tb_elapsed() < until); walk++) {
-        const tb_question_t *goal = ((walk % 2U) == 1U) ? goal_of(job, walk / 2U) : NULL;
+        const tb_question_t *goal = ((walk % 2U) == 1U) ? goal_of(job, walk / 4U) : NULL;
         const uint32_t length = (walk < 64U) ? (uint32_t)(LENGTH / 20) : (uint32_t)LENGTH;
+        uint32_t *left = NULL;
+        if ((goal != NULL) && (goal->guide != NULL) && ((walk % 4U) == 1U)) {
+            left = guess;
+            (void)memcpy(left, goal->guide, size);
+        }
         tb_go_to(&c, job->net.initial);
         for (uint32_t step = 0U; (open > 0U) && (step < length) && (c.enabled_count > 0U) && !tb_is_over(); step++) {
-            if (!tb_fire(&c, chosen(&c, goal))) {
+            if (!tb_fire(&c, next_step(&c, goal, left))) {
                 break;
             }
             open = look(job, &c);
@@ -106,5 +145,6 @@ void tb_walk(tb_job_t *job, uint64_t seed, double seconds)
             }
         }
     }
+    tb_free(guess, job->net.transitions, sizeof *guess);
     tb_cursor_free(&c);
 }

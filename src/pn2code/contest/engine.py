@@ -5,6 +5,7 @@
             ...                                    # as soon as it is known
 
 Several methods run side by side, each in a process of its own; none of them can take the answers of another with it.
+A lane is one such place: its tasks run one after the other.
 """
 
 from __future__ import annotations
@@ -12,12 +13,11 @@ from __future__ import annotations
 import subprocess
 import tempfile
 import threading
-import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from queue import Empty, SimpleQueue
+from queue import SimpleQueue
 
 from pn2code.diagnostics import Diagnostics
 from pn2code.toolchain import programs
@@ -73,6 +73,8 @@ class Task:
         seconds: that it may take.
         mebibytes: of memory that it may use.
         seed: of what it draws.
+        added: number of a question -> what has to be added to its bound, since the net was reduced.
+        technique: put before the name of the method, if the net was reduced.
     """
 
     method: str
@@ -80,31 +82,91 @@ class Task:
     seconds: float
     mebibytes: int
     seed: int = 1
+    added: Mapping[int, int] = field(default_factory=dict)
+    technique: str = ""
 
 
-def ask(program: Path, tasks: Sequence[Task]) -> Iterator[Answer | Space]:
-    """The answers of all tasks side by side, as they come; processes end with the iteration.
+Said = SimpleQueue[Answer | Space | Exception | None]
+"""What the lanes say, in the order in which they say it; None: one has come to its end."""
+
+
+def ask(
+    program: Path, lanes: Sequence[Task | Iterable[Task]], said: Said | None = None
+) -> Iterator[Answer | Space]:
+    """The answers of all lanes side by side, as they come; processes end with the iteration.
+
+    Args:
+        program: the engine.
+        lanes: tasks, which may be made when the lane comes to them.
+        said: where others say what they know meanwhile; their answers come, too.
 
     Raises:
         RuntimeError: the engine did not understand its tables.
     """
-    said: SimpleQueue[Answer | Space | str | None] = SimpleQueue()
-    with tempfile.TemporaryDirectory(prefix="pn2code-") as folder:
-        running: list[tuple[subprocess.Popen[str], threading.Thread]] = []
+    said = SimpleQueue() if said is None else said
+    running = [_Lane(program, [x] if isinstance(x, Task) else x, said) for x in lanes]
+    try:
+        for lane in running:
+            lane.start()
+        left = len(running)
+        while left:
+            found = said.get()
+            if found is None:
+                left -= 1
+            elif isinstance(found, Exception):
+                raise RuntimeError(f"the engine for tables: {found}") from found
+            else:
+                yield found
+    finally:
+        for lane in running:
+            lane.end()
+
+
+class _Lane(threading.Thread):
+    """Tasks one after the other."""
+
+    def __init__(self, program: Path, tasks: Iterable[Task], said: Said) -> None:
+        super().__init__(daemon=True)
+        self.program = program
+        self.tasks = tasks
+        self.said = said
+        self.process: subprocess.Popen[str] | None = None
+        self.lock = threading.Lock()
+        self.is_over = False
+
+    def run(self) -> None:
+        """All tasks."""
         try:
-            for n, task in enumerate(tasks):
-                path = Path(folder) / f"{n}.tables"
-                path.write_text(task.text, encoding="ascii")
-                process = _started(program, path, task)
-                reader = threading.Thread(target=_read, args=(process, said), daemon=True)
-                reader.start()
-                running.append((process, reader))
-            longest = max((t.seconds for t in tasks), default=0.0) + _GRACE_S
-            yield from _until_all_ended(said, len(running), time.monotonic() + longest)
+            with tempfile.TemporaryDirectory(prefix="pn2code-") as folder:
+                for task in self.tasks:
+                    if self.is_over:
+                        return
+                    self._run(task, Path(folder) / "net.tables")
+        except Exception as error:  # it belongs to the one who waits
+            self.said.put(error)
         finally:
-            for process, reader in running:
-                process.kill()
-                reader.join()
+            self.said.put(None)
+
+    def _run(self, task: Task, path: Path) -> None:
+        path.write_text(task.text, encoding="ascii")
+        with self.lock:
+            if self.is_over:
+                return
+            self.process = _started(self.program, path, task)
+        guard = threading.Timer(task.seconds + _GRACE_S, self.process.kill)
+        guard.start()
+        try:
+            _read(self.process, task, self.said)
+        finally:
+            guard.cancel()
+
+    def end(self) -> None:
+        """Stop at once."""
+        with self.lock:
+            self.is_over = True
+            if self.process is not None:
+                self.process.kill()
+        self.join()
 
 
 def _started(program: Path, path: Path, task: Task) -> subprocess.Popen[str]:
@@ -120,17 +182,21 @@ def _started(program: Path, path: Path, task: Task) -> subprocess.Popen[str]:
     )
 
 
-def _read(process: subprocess.Popen[str], said: SimpleQueue[Answer | Space | str | None]) -> None:
+def _read(process: subprocess.Popen[str], task: Task, said: Said) -> None:
     with process:
         assert process.stdout is not None and process.stderr is not None
         for line in process.stdout:
             found = _parsed(line)
+            if isinstance(found, Answer):
+                more = task.added.get(found.number, 0)
+                value = found.value + more if more else found.value
+                method = f"{task.technique} {found.method}".strip()
+                found = replace(found, value=value, method=method)
             if found is not None:
                 said.put(found)
         errors = process.stderr.read()
     if process.returncode == _WRONG:
-        said.put(errors.strip())
-    said.put(None)
+        raise RuntimeError(errors.strip())
 
 
 def _parsed(line: str) -> Answer | Space | None:
@@ -143,19 +209,3 @@ def _parsed(line: str) -> Answer | Space | None:
         case ["space", *sizes]:
             return Space(*map(int, sizes))
     return None
-
-
-def _until_all_ended(
-    said: SimpleQueue[Answer | Space | str | None], running: int, ends: float
-) -> Iterator[Answer | Space]:
-    while running:
-        try:
-            found = said.get(timeout=max(0.0, ends - time.monotonic()))
-        except Empty:
-            return
-        if found is None:
-            running -= 1
-        elif isinstance(found, str):
-            raise RuntimeError(f"the engine for tables: {found}")
-        else:
-            yield found

@@ -49,6 +49,7 @@ class Asked:
         decides: the answer of a part that decides at once; None: the answer is that of the only part.
         value: the value of the whole when a part decides; else it is the opposite.
         is_turned: with one part: whether the whole is the opposite of it.
+        hints: questions with an answer each that decides at once, as `decides` does; another answer says nothing.
         why_not: it cannot be asked; why.
     """
 
@@ -57,6 +58,7 @@ class Asked:
     decides: bool | None = None
     value: bool = True
     is_turned: bool = False
+    hints: tuple[tuple[Part, bool], ...] = ()
     why_not: str = ""
 
 
@@ -131,9 +133,12 @@ def _quasi_live(tables: Tables) -> Asked:
 
 
 def _live(tables: Tables) -> Asked:
-    """Each transition can occur again and again."""
-    parts = tuple(Part("ctl", f"ctl AG EF {_enabled(t)}") for t in tables.transitions.values())
-    return Asked("Liveness", parts, decides=False, value=False)
+    """Each transition can occur again and again: there is no deadlock, and each can occur at all."""
+    enabled = [_enabled(t) for t in tables.transitions.values()]
+    parts = tuple(Part("ctl", f"ctl AG EF {e}") for e in enabled)
+    hints = [(Part("reach", "reach dead"), True)] if enabled else []
+    hints += [(Part("reach", f"reach {e}"), False) for e in enabled]
+    return Asked("Liveness", parts, decides=False, value=False, hints=tuple(hints))
 
 
 def _stable(tables: Tables) -> Asked:

@@ -1,8 +1,9 @@
 """Several methods side by side, in rounds that get longer: each is given what is still open.
 
-    for name, value, techniques in answers(program, tables, asked, kinds, seconds=60.0): ...
+    for result in answers(program, tables, asked, seconds=60.0): ...
 
-A method that cannot answer a question leaves it to the others. Two that answer the same question must agree.
+A method that cannot answer a question leaves it to the others. Two that answer the same question must agree. The
+structural methods (structural.py) run beside the rounds; what they have reduced, the engine is asked about.
 """
 
 from __future__ import annotations
@@ -11,29 +12,30 @@ import time
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from queue import Empty, SimpleQueue
 
-from pn2code.contest.engine import Answer, Space, Task, ask
+from pn2code.contest.engine import Answer, Said, Space, Task, ask
 from pn2code.contest.examinations import Asked, Part
+from pn2code.contest.structural import REDUCTION, Question, Structural, question
 from pn2code.contest.tables import Tables
 
 METHODS = {
+    "structure": ("reach", "bound"),
     "walk": ("reach", "bound"),
     "explore": ("reach", "bound"),
     "reach": ("reach", "bound"),
     "ctl": ("ctl",),
     "ltl": ("ltl",),
 }
-"""Method of the engine -> the kinds of questions that it can answer."""
-_PLANS = {
-    "reach": (("walk", "reach"), ("explore", "reach"), ("walk", "reach")),
-    "bound": (("walk", "reach"), ("explore", "reach"), ("walk", "reach")),
-    "ctl": (("ctl", "ctl"),),
-    "ltl": (("ltl", "ltl"),),
-}
-"""By kind the pairs of methods of the rounds; the last one is repeated. Twice the same method: each gets a half."""
+"""Method -> the kinds of questions that it can answer. All but `structure` are those of the engine."""
+_PAIRS = (("walk", "reach"), ("walk", "reach"), ("explore", "reach"), ("walk", "reach"))
+"""For reachability and bounds the methods of the two lanes, by round; the last but one is repeated at the end."""
 _ROUNDS_S = (1.0, 3.0, 8.0, 20.0)
 _LEAST_S = 0.2
 """With less time left nothing is begun."""
+_POLL_S = 0.05
+_LEAST_SLICE_S = 0.25
+"""With less for each of the questions they are asked together."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,13 +54,16 @@ class _Line:
     asked: Asked
     known: dict[int, bool | int] = field(default_factory=dict)
     techniques: set[str] = field(default_factory=set)
+    hinted: bool = False
     is_done: bool = False
 
     def result(self) -> Result | None:
         """The answer, once it is known."""
         a = self.asked
         value: bool | int
-        if a.decides is None:
+        if self.hinted:
+            value = a.value
+        elif a.decides is None:
             if not self.known:
                 return None
             value = next(iter(self.known.values()))
@@ -70,6 +75,23 @@ class _Line:
         else:
             return None
         return Result(a.name, value, " ".join(sorted(self.techniques)))
+
+
+@dataclass(slots=True)
+class _Place:
+    """Where a question belongs: the part of a line, or a hint with the answer that decides."""
+
+    line: _Line
+    part: Part
+    which: int
+    hint: bool | None = None
+    question: Question | None = None
+    value: bool | int | None = None
+
+    @property
+    def is_open(self) -> bool:
+        """Whether an answer would still be of use."""
+        return self.value is None and not self.line.is_done
 
 
 def answers(
@@ -94,63 +116,194 @@ def answers(
     Raises:
         RuntimeError: two methods contradict each other, or the engine did not understand its tables.
     """
-    lines = [_Line(a) for a in asked]
-    undone = sum(1 for line in lines if line.asked.parts)
-    ends = time.monotonic() + seconds
-    place: dict[int, tuple[_Line, int, Part]] = {}
-    for line in lines:
-        for i, part in enumerate(line.asked.parts):
-            place[len(place)] = (line, i, part)
-    for line in lines:  # without places or transitions nothing has to be asked
-        result = line.result()
-        if result is not None:
-            line.is_done = True
-            yield result
-    for number in range(len(_ROUNDS_S) + 1):
-        left = ends - time.monotonic()
-        open_ = {
-            n: p for n, (line, i, p) in place.items() if not line.is_done and i not in line.known
-        }
-        if not open_ or left < _LEAST_S:
-            return
-        length = min(left, _ROUNDS_S[number]) if number < len(_ROUNDS_S) else left
-        tasks = _tasks(tables, open_, number, length, mebibytes, only)
-        for found in ask(program, tasks):
-            assert isinstance(found, Answer)
-            if not found.is_final:
-                continue
-            line, which, _ = place[found.number]
-            if line.known.setdefault(which, found.value) != found.value:
-                raise RuntimeError(f"{line.asked.name}: {found.method} contradicts another method")
-            line.techniques.add(found.method)
-            result = None if line.is_done else line.result()
+    portfolio = _Portfolio(program, tables, asked, time.monotonic() + seconds, mebibytes, only)
+    yield from portfolio.at_once()
+    try:
+        yield from portfolio.rounds()
+    finally:
+        portfolio.end()
+
+
+class _Portfolio:
+    def __init__(
+        self,
+        program: Path,
+        tables: Tables,
+        asked: Sequence[Asked],
+        ends: float,
+        mebibytes: int,
+        only: str,
+    ) -> None:
+        self.program = program
+        self.tables = tables
+        self.ends = ends
+        self.mebibytes = mebibytes
+        self.only = only
+        self.said: Said = SimpleQueue()
+        self.lines = [_Line(a) for a in asked]
+        self.places: list[_Place] = []
+        for line in self.lines:
+            parts: list[tuple[Part, bool | None]] = [(p, None) for p in line.asked.parts]
+            for which, (part, hint) in enumerate([*parts, *line.asked.hints]):
+                self.places.append(_Place(line, part, which, hint))
+        self.structural: Structural | None = None
+        if only in ("", "structure"):
+            self._start_structural()
+
+    def _start_structural(self) -> None:
+        for number, place in enumerate(self.places):
+            place.question = question(number, place.part, self.tables)
+        found = [p.question for p in self.places if p.question is not None]
+        if found:
+            self.structural = Structural(self.tables, found, self.said, self.ends)
+            self.structural.start()
+
+    def end(self) -> None:
+        """Nothing is to be asked any more."""
+        if self.structural is not None:
+            self.structural.end()
+
+    def at_once(self) -> Iterator[Result]:
+        """Without places or transitions nothing has to be asked."""
+        for line in self.lines:
+            result = line.result()
             if result is not None:
                 line.is_done = True
                 yield result
-                undone -= 1
-                if not undone:
+
+    def rounds(self) -> Iterator[Result]:
+        """Until all is known or the time is over."""
+        for number in range(len(_ROUNDS_S) + 1):
+            left = self.ends - time.monotonic()
+            open_ = [n for n, p in enumerate(self.places) if p.is_open]
+            if not open_ or left < _LEAST_S or self.only == "structure":
+                break
+            length = min(left, _ROUNDS_S[number]) if number < len(_ROUNDS_S) else left
+            for answer in ask(self.program, self._lanes(open_, number, length), self.said):
+                assert isinstance(answer, Answer)
+                yield from self._noted(answer)
+                if all(line.is_done for line in self.lines):
                     return
+        for answer in self._structural_alone():
+            yield from self._noted(answer)
+            if all(line.is_done for line in self.lines):
+                return
 
+    def _structural_alone(self) -> Iterator[Answer]:
+        while self.structural is not None and time.monotonic() < self.ends:
+            is_running = self.structural.is_alive()
+            try:
+                found = self.said.get(timeout=_POLL_S)
+            except Empty:
+                if not is_running:
+                    return
+                continue
+            if isinstance(found, Exception):
+                raise RuntimeError(str(found)) from found
+            if isinstance(found, Answer):
+                yield found
 
-def _tasks(
-    tables: Tables, open_: dict[int, Part], number: int, seconds: float, mebibytes: int, only: str
-) -> list[Task]:
-    """What runs side by side in a round: for each kind of question two methods, or one method twice."""
-    kinds = {part.kind for part in open_.values()}
-    pairs = [_PLANS[kind][min(number, len(_PLANS[kind]) - 1)] for kind in sorted(kinds)]
-    chosen: list[tuple[str, str]] = []
-    for which in range(2):
-        for method in dict.fromkeys(only or pair[which] for pair in pairs):
-            mine = [n for n, part in open_.items() if part.kind in METHODS[method]]
-            if only or all(pair[0] == pair[1] for pair in pairs if method in pair):
-                mine = mine[which::2]
-            if mine:
-                chosen.append((method, tables.text([f"{n} {open_[n].text}" for n in mine])))
-    share = mebibytes // max(1, len(chosen))
-    return [
-        Task(method, text, seconds, share, seed=len(chosen) * number + i)
-        for i, (method, text) in enumerate(chosen, 1)
-    ]
+    def _noted(self, answer: Answer) -> Iterator[Result]:
+        place = self.places[answer.number]
+        line = place.line
+        value = answer.value
+        if not answer.is_final:
+            known = None if place.question is None else place.question.learn(least=int(value))
+            if known is None:
+                return
+            value = known
+        if place.value is not None:
+            if place.value != value:
+                raise RuntimeError(f"{line.asked.name}: {answer.method} contradicts another method")
+            return
+        place.value = value
+        if place.question is not None:
+            place.question.is_done = True
+        if place.hint is None:
+            line.known[place.which] = value
+        elif place.hint == value:
+            line.hinted = True
+        else:
+            return
+        line.techniques.update(answer.method.split())
+        result = None if line.is_done else line.result()
+        if result is not None:
+            line.is_done = True
+            for p in self.places:
+                if p.line is line and p.question is not None:
+                    p.question.is_done = True
+            yield result
+
+    # --- what the engine is asked ----------------------------------------------------------------
+
+    def _lanes(self, open_: list[int], number: int, length: float) -> list[Iterator[Task]]:
+        """Two lanes: each with tasks for all kinds of questions."""
+        ends = time.monotonic() + length
+        kinds = sorted({self.places[n].part.kind for n in open_})
+        found = []
+        for which in range(2):
+            tasks: list[tuple[str, list[int]]] = []
+            for method in self._methods(kinds, number, which):
+                mine = [n for n in open_ if self.places[n].part.kind in METHODS[method]]
+                if self.only or method in ("ctl", "ltl"):
+                    mine = mine[which::2]
+                if mine:
+                    tasks.append((method, mine))
+            if tasks:
+                found.append(self._lane(tasks, number, which, ends))
+        return found
+
+    def _methods(self, kinds: list[str], number: int, which: int) -> list[str]:
+        if self.only:
+            return [self.only]
+        pair = _PAIRS[number] if number < len(_PAIRS) else _PAIRS[-2]
+        return list(dict.fromkeys(pair[which] if k in ("reach", "bound") else k for k in kinds))
+
+    def _lane(
+        self, tasks: list[tuple[str, list[int]]], number: int, which: int, ends: float
+    ) -> Iterator[Task]:
+        """The tasks of a lane, made when it comes to them."""
+        seed = 2 * number + which + 1
+        for i, (method, numbers) in enumerate(tasks):
+            now = time.monotonic()
+            until = now + (ends - now) / (len(tasks) - i)
+            groups = self._groups([n for n in numbers if self.places[n].is_open])
+            if number == 0 or (until - now) < _LEAST_SLICE_S * len(groups):
+                groups = [numbers]
+            for k, group in enumerate(groups):
+                left = (until - time.monotonic()) / (len(groups) - k)
+                still = [n for n in group if self.places[n].is_open]
+                if still and left >= _LEAST_SLICE_S / 5:
+                    yield self._task(method, still, left, seed, is_first=number == 0)
+
+    def _groups(self, numbers: list[int]) -> list[list[int]]:
+        """The questions that have the same net."""
+        found: dict[int, list[int]] = {}
+        for n in numbers:
+            asked = self.places[n].question
+            smaller = None if asked is None else asked.smaller
+            found.setdefault(0 if smaller is None else id(smaller.tables), []).append(n)
+        return list(found.values())
+
+    def _task(
+        self, method: str, numbers: list[int], seconds: float, seed: int, *, is_first: bool
+    ) -> Task:
+        """Some questions about the net that they share; in the beginning about the net as it is."""
+        smaller = {}
+        for n in numbers if not is_first else ():
+            asked = self.places[n].question
+            if asked is not None and asked.smaller is not None:
+                smaller[n] = (asked.kind, asked.smaller)
+        nets = {id(s.tables): s.tables for _, s in smaller.values()}
+        if len(smaller) < len(numbers) or len(nets) != 1:
+            texts = [f"{n} {self.places[n].part.text}" for n in numbers]
+            return Task(method, self.tables.text(texts), seconds, self.mebibytes // 2, seed)
+        texts = [f"{n} {s.text(kind)}" for n, (kind, s) in smaller.items()]
+        (tables,) = nets.values()
+        added = {n: s.added for n, (_, s) in smaller.items()}
+        return Task(
+            method, tables.text(texts), seconds, self.mebibytes // 2, seed, added, REDUCTION
+        )
 
 
 def space(program: Path, tables: Tables, *, seconds: float, mebibytes: int) -> Space | None:

@@ -381,8 +381,9 @@ class _Checker:
         self, name: str, arcs: list[TypedArc], colsets: Mapping[str, Colset | None]
     ) -> None:
         """Of arcs whose variables CPN Tools cannot bring together."""
+        used = ((a.place, colsets[a.place]) for a in arcs)
         products = frozenset(
-            p for p, c in colsets.items() if c is not None and c.resolved.kind is Kind.PRODUCT
+            p for p, c in used if c is not None and c.resolved.kind is Kind.PRODUCT
         )
         for earlier, later, shared in clashes(arcs, products, self.planner.variables):
             self.d.warning(

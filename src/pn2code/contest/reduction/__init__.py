@@ -1,0 +1,1 @@
+"""Structural reductions of place/transition nets: smaller nets with the same answer."""

@@ -1,0 +1,304 @@
+"""Answers from the structure of the net, without its markings: reductions for each question, then the state equation.
+
+    structural = Structural(tables, questions, said)
+    structural.start()                # beside the engine, which takes the reduced nets as soon as they are there
+    structural.end()
+
+First all questions together reduce the net, then each one reduces it further. What is left is asked of the state
+equation, with more and more time.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+from pn2code.contest import conditions
+from pn2code.contest.conditions import FALSE, TRUE, AtMost, Condition, Dead, TooLargeError
+from pn2code.contest.engine import Answer, Said
+from pn2code.contest.equation import StateEquation, wait_for_solver
+from pn2code.contest.examinations import Part
+from pn2code.contest.reduction.reduce import Reduced, reduced_for
+from pn2code.contest.tables import Tables
+
+REDUCTION = "STRUCTURAL_REDUCTION"
+EQUATION = "STATE_EQUATION"
+_PASSES_S = (0.3, 1.0, 4.0, 15.0, 60.0, 600.0)
+"""Time of the state equation for a question, in one pass after the other."""
+_FEW = 40
+"""So many questions are reduced one by one even if that takes long."""
+_LEAST_S = 0.1
+
+
+@dataclass(slots=True)
+class Smaller:
+    """A question about a reduced net.
+
+    Args:
+        tables: the net.
+        condition: the question; of a bound its sum.
+        added: of a bound: what is added to it.
+        equation: of the net, once it was asked.
+        guide: how often transitions may occur on the way to the condition; {}: there is no guess.
+        tried: of a bound: the number that the equation could not prove.
+    """
+
+    tables: Tables
+    condition: Condition
+    added: int = 0
+    equation: StateEquation | None = None
+    guide: dict[int, int] = field(default_factory=dict)
+    tried: int | None = None
+
+    def text(self, kind: str) -> str:
+        """The question in the engine's own words, without its number."""
+        text = f"{kind} {conditions.text(self.condition)}"
+        if not self.guide:
+            return text
+        steps = " ".join(f"{t} {n}" for t, n in self.guide.items())
+        return f"guided {len(self.guide)} {steps} {text}"
+
+
+@dataclass(slots=True)
+class Question:
+    """A question about reachability or about a bound, with what is known.
+
+    Args:
+        number: of the question.
+        kind: "reach" or "bound".
+        condition: what is to be reached; of a bound its sum.
+        least: a number that the sum reaches.
+        most: one that it never exceeds.
+        smaller: the question about a reduced net, once there is one.
+    """
+
+    number: int
+    kind: str
+    condition: Condition
+    least: int | None = None
+    most: int | None = None
+    is_done: bool = False
+    smaller: Smaller | None = None
+    lock: threading.Lock = field(default_factory=threading.Lock)
+
+    def learn(self, least: int | None = None, most: int | None = None) -> int | None:
+        """A bound is at least or at most that; the bound, if it is known now."""
+        with self.lock:
+            if least is not None and (self.least is None or least > self.least):
+                self.least = least
+            if most is not None and (self.most is None or most < self.most):
+                self.most = most
+            if self.least is not None and self.most is not None:
+                if self.least > self.most:
+                    raise RuntimeError(f"a bound is at most {self.most} and at least {self.least}")
+                if self.least == self.most and not self.is_done:
+                    return self.least
+        return None
+
+
+def question(number: int, part: Part, tables: Tables) -> Question | None:
+    """A part as a question; None if it is of another kind or too large."""
+    if part.kind not in ("reach", "bound"):
+        return None
+    words = part.text.split(" ", 1)[1]
+    try:
+        if part.kind == "reach":
+            return Question(number, "reach", conditions.parsed(words, tables.pre))
+        sum_ = AtMost(_terms(words), 0)
+    except TooLargeError:
+        return None
+    least = sum(n * tables.initial[p] for p, n in sum_.factors)
+    return Question(number, "bound", sum_, least)
+
+
+def _terms(words: str) -> tuple[tuple[int, int], ...]:
+    """The terms of `sum N (place factor).. limit`."""
+    numbers = list(map(int, words.split()[2:-1]))
+    return tuple(zip(numbers[::2], numbers[1::2], strict=True))
+
+
+class Structural(threading.Thread):
+    """The structural methods, beside others.
+
+    Args:
+        tables: the net.
+        questions: that are asked.
+        said: where the answers go.
+        ends: when to stop, on the monotonic clock.
+    """
+
+    def __init__(
+        self, tables: Tables, questions: Sequence[Question], said: Said, ends: float
+    ) -> None:
+        super().__init__(daemon=True)
+        self.tables = tables
+        self.questions = questions
+        self.said = said
+        self.ends = ends
+        self.is_over = threading.Event()
+        self.equations: dict[int, StateEquation] = {}
+
+    def run(self) -> None:
+        """All steps, until the time is over."""
+        try:
+            self._reduce_all()
+            self._equations()
+        except _OverError:
+            return
+        except Exception as error:  # it belongs to the one who waits
+            self.said.put(error)
+
+    def end(self) -> None:
+        """Stop at the next step; no linear program is being solved afterwards."""
+        self.is_over.set()
+        wait_for_solver()
+
+    def _left(self) -> float:
+        left = self.ends - time.monotonic()
+        if self.is_over.is_set() or left < _LEAST_S:
+            raise _OverError
+        return left
+
+    def _open(self) -> list[Question]:
+        self._left()
+        return [q for q in self.questions if not q.is_done]
+
+    def _say(self, q: Question, value: bool | int, method: str) -> None:
+        q.is_done = True
+        self.said.put(Answer(q.number, value, True, method))
+
+    # --- reductions ------------------------------------------------------------------------------
+
+    def _reduce_all(self) -> None:
+        """The net for all questions, then for each of them."""
+        for q in self._open():
+            if isinstance(q.condition, Dead):
+                self._reduce(q, self.tables, q.condition, self._left() / 3)
+        others = [q for q in self._open() if not isinstance(q.condition, Dead)]
+        if not others:
+            return
+        began = time.monotonic()
+        shared = reduced_for(
+            self.tables, [q.condition for q in others], until=began + self._left() / 4
+        )
+        took = time.monotonic() - began
+        for q in others:
+            self._note(q, shared, q.condition)
+        still = [q for q in self._open() if not isinstance(q.condition, Dead)]
+        if took * len(still) > 1.0:
+            self._pass(_PASSES_S[0], set())
+        if len(still) > _FEW and took * len(still) > self._left() / 3:
+            return
+        for i, q in enumerate(still):
+            if not q.is_done and q.smaller is not None:
+                share = max(0.3, self._left() / (2 * (len(still) - i)))
+                self._reduce(q, q.smaller.tables, q.smaller.condition, share)
+
+    def _reduce(self, q: Question, tables: Tables, condition: Condition, seconds: float) -> None:
+        reduced = reduced_for(tables, [condition], until=time.monotonic() + seconds)
+        self._note(q, reduced, condition)
+
+    def _note(self, q: Question, reduced: Reduced, condition: Condition) -> None:
+        """Keep the reduced net, or answer if nothing is left to ask."""
+        tables = reduced.tables
+        if q.is_done:
+            return
+        if q.kind == "bound":
+            assert isinstance(condition, AtMost)
+            before = 0 if q.smaller is None else q.smaller.added
+            sum_, more = reduced.sum(condition)
+            q.smaller = Smaller(tables, sum_, before + more)
+            if not sum_.factors or not tables.pre:
+                self._say(q, sum_value(sum_, tables) + q.smaller.added, REDUCTION)
+            return
+        try:
+            now = reduced.condition(condition)
+        except TooLargeError:
+            return
+        q.smaller = Smaller(tables, now)
+        value = _decided(now, tables)
+        if value is not None:
+            self._say(q, value, REDUCTION)
+
+    # --- the state equation ----------------------------------------------------------------------
+
+    def _equations(self) -> None:
+        exhausted: set[int] = set()
+        for seconds in _PASSES_S:
+            self._pass(seconds, exhausted)
+
+    def _pass(self, seconds: float, exhausted: set[int]) -> None:
+        for q in self._open():
+            if q.is_done or q.number in exhausted or q.smaller is None:
+                continue
+            until = time.monotonic() + min(seconds, self._left())
+            if self._is_exhausted(q, q.smaller, until):
+                exhausted.add(q.number)
+
+    def _is_exhausted(self, q: Question, smaller: Smaller, until: float) -> bool:
+        """Ask the state equation; whether more time would not help."""
+        if smaller.equation is None:
+            smaller.equation = self.equations.setdefault(
+                id(smaller.tables), StateEquation(smaller.tables, self.is_over)
+            )
+        equation = smaller.equation
+        if q.kind == "bound":
+            return self._bounded(q, smaller, equation, until)
+        if equation.excludes(smaller.condition, until) and not q.is_done:
+            self._say(q, False, EQUATION)
+        smaller.guide = equation.guide or smaller.guide
+        return q.is_done or equation.is_exhausted
+
+    def _bounded(
+        self, q: Question, smaller: Smaller, equation: StateEquation, until: float
+    ) -> bool:
+        sum_ = smaller.condition
+        assert isinstance(sum_, AtMost)
+        if q.most is None:
+            most = equation.bound(dict(sum_.factors), until)
+            if most is None:
+                return False
+            self._learn(q, most + smaller.added)
+        least = q.least
+        if q.is_done or least is None or least == smaller.tried:
+            return q.is_done
+        more = conditions.at_most({p: -n for p, n in sum_.factors}, -(least - smaller.added + 1))
+        if equation.excludes(more, until):
+            self._learn(q, least)
+        elif equation.is_exhausted:
+            smaller.tried = least
+        smaller.guide = equation.guide or smaller.guide
+        return q.is_done
+
+    def _learn(self, q: Question, most: int) -> None:
+        value = q.learn(most=most)
+        if value is not None:
+            self._say(q, value, EQUATION)
+
+
+class _OverError(Exception):
+    """The time is over, or all is known."""
+
+
+def sum_value(sum_: AtMost, tables: Tables) -> int:
+    """A sum in the initial marking."""
+    return sum(n * tables.initial[p] for p, n in sum_.factors)
+
+
+def _decided(condition: Condition, tables: Tables) -> bool | None:
+    """The answer, if the net says it at once."""
+    if isinstance(condition, Dead):
+        if any(not pre for pre in tables.pre):
+            return False
+        return True if not any(_is_enabled(pre, tables) for pre in tables.pre) else None
+    if condition in (TRUE, FALSE):
+        return condition == TRUE
+    if conditions.holds(condition, tables.initial):
+        return True
+    return None if tables.pre else False
+
+
+def _is_enabled(pre: Mapping[int, int], tables: Tables) -> bool:
+    return all(tables.initial[p] >= n for p, n in pre.items())

@@ -1,0 +1,114 @@
+"""Structural reductions against the whole graph: what is reachable in visible places, and deadlocks, on random nets."""
+
+from __future__ import annotations
+
+import random
+import time
+from collections import Counter
+
+import pytest
+
+from helpers.random_tables import Graph
+from pn2code.contest.conditions import AtMost, Dead
+from pn2code.contest.reduction.net import Goal, Net
+from pn2code.contest.reduction.reduce import RULES, Rule, apply_all, reduced_for
+from pn2code.contest.tables import Tables
+
+NETS = 1500
+LARGEST = 1500
+
+
+def sparse_tables(draw: random.Random) -> Tables:
+    """Places in a row with some cross connections: much is there for the rules to do."""
+    places = draw.randint(2, 7)
+    pre, post = [], []
+    for _ in range(draw.randint(2, 8)):
+        weight = draw.choice((1, 1, 1, 1, 2))
+        taken = {draw.randrange(places): weight for _ in range(draw.choice((0, 1, 1, 1, 1, 2, 2)))}
+        put = {draw.randrange(places): weight for _ in range(draw.choice((0, 1, 1, 1, 2)))}
+        if draw.random() < 0.2 and taken:
+            put |= taken
+        if sum(put.values()) > sum(taken.values()) and draw.random() < 0.8:
+            put = {}
+        pre.append(taken)
+        post.append(put)
+    initial = tuple(draw.choice((0, 0, 0, 1, 2)) for _ in range(places))
+    return Tables(initial, tuple(pre), tuple(post), {}, {})
+
+
+def graph_of(tables: Tables) -> Graph | None:
+    return Graph.of(tables, LARGEST)
+
+
+def seen(net: Net, graph: Graph, visible: list[int]) -> set[tuple[int, ...]]:
+    """The reachable tokens of visible places, worked out from the reduced net."""
+    at = {p: i for i, p in enumerate(net.marking)}
+    values = [net.value(p) for p in visible]
+    return {
+        tuple(v.constant + sum(n * m[at[q]] for q, n in v.factors.items()) for v in values)
+        for m in graph.markings
+    }
+
+
+def as_tables(net: Net) -> Tables:
+    at = {p: i for i, p in enumerate(net.marking)}
+    pre = tuple({at[p]: n for p, n in arcs.items()} for arcs in net.pre.values())
+    post = tuple({at[p]: n for p, n in net.post[t].items()} for t in net.pre)
+    return Tables(tuple(net.marking.values()), pre, post, {}, {})
+
+
+def check(tables: Tables, graph: Graph, goal: Goal, visible: list[int], rules: list[Rule]) -> None:
+    net = Net(tables, visible, goal)
+    apply_all(net, rules, time.monotonic() + 60.0)
+    for ends, arcs in ((net.takers, net.pre), (net.putters, net.post)):
+        assert {(p, t) for p in ends for t in ends[p]} == {(p, t) for t in arcs for p in arcs[t]}
+    after = graph_of(as_tables(net))
+    assert after is not None, tables
+    if goal is Goal.DEADLOCK:
+        assert any(not s for s in graph.successors) == any(not s for s in after.successors), tables
+    else:
+        before = {tuple(m[p] for p in visible) for m in graph.markings}
+        assert before == seen(net, after, visible), (tables, visible)
+
+
+def random_nets(seeds: range) -> list[tuple[random.Random, Tables, Graph]]:
+    found = []
+    for seed in seeds:
+        draw = random.Random(seed)
+        tables = sparse_tables(draw)
+        graph = graph_of(tables)
+        if graph is not None and len(graph.markings) > 2:
+            found.append((draw, tables, graph))
+    return found
+
+
+def test_all_rules_together() -> None:
+    nets = random_nets(range(NETS))
+    assert len(nets) > NETS // 4
+    for draw, tables, graph in nets:
+        visible = draw.sample(range(len(tables.initial)), draw.choice((1, 1, 2)))
+        check(tables, graph, Goal.REACHABILITY, visible, list(RULES))
+        rules = [r for r in RULES if Goal.DEADLOCK in r.keeps]
+        check(tables, graph, Goal.DEADLOCK, [], rules)
+
+
+@pytest.mark.parametrize("goal", list(Goal))
+def test_each_rule_alone(goal: Goal) -> None:
+    """Each rule occurs, and keeps what it says."""
+    used: Counter[str] = Counter()
+    rules = [r for r in RULES if goal in r.keeps]
+    for draw, tables, graph in random_nets(range(NETS, 2 * NETS)):
+        visible = [draw.randrange(len(tables.initial))] if goal is Goal.REACHABILITY else []
+        for rule in rules:
+            if rule.apply(Net(tables, visible, goal)):
+                used[rule.name] += 1
+                check(tables, graph, goal, visible, [rule])
+    assert {r.name for r in rules} == used.keys()
+
+
+def test_rules_that_keep_no_deadlocks_are_not_used_for_them() -> None:
+    """A step that changes nothing is no deadlock."""
+    tables = Tables((1,), ({0: 1},), ({0: 1},), {}, {})
+    until = time.monotonic() + 60.0
+    assert len(reduced_for(tables, [Dead()], until=until).tables.pre) == 1
+    assert not reduced_for(tables, [AtMost(((0, 1),), 0)], until=until).tables.pre
