@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -67,6 +68,25 @@ def test_what_differs_in_the_closed_net_is_said(tmp_path: Path, here: Path) -> N
     code, lines, _ = verify(cell, "--no-medium", "--full", "--property", "ltl G !fires(Early)")
     (why,) = (line for line in lines if "net: yes. " in line)
     assert "In the cell the supervisor and the scripts choose in the documented order" in why
+
+
+def test_sizes_of_the_closed_net_that_are_not_those_of_the_cell(tmp_path: Path, here: Path) -> None:
+    """Both are said, apart, with the reason, on the screen, in the report and in JSON."""
+    folder = tmp_path / "race"
+    cell = write_race(folder, RACE, toml(["A", "B"], TOOL))
+    code, lines, _ = verify(cell, "--no-medium")
+    text = " ".join(" ".join(lines).split())
+    assert code == 0
+    assert "`Sup'Early 1` never occurs in the closed net, but it does in the cell." in text
+    assert "`Sup'Coins 1` holds at most 2 tokens in the cell, 1 in the closed net." in text
+    assert "Reason In the closed net priorities are global" in text
+    _, lines, _ = verify(cell, "--no-medium", "--full")
+    text = " ".join(" ".join(lines).split())
+    assert "`Sup'Early 1` never occurs in the closed net, but it does in the cell." in text
+    _, lines, _ = verify(cell, "--no-medium", "--json")
+    row = json.loads("\n".join(lines))
+    assert row["dead_transitions"] == ["Sup'Early 1"]
+    assert row["cell"]["dead_transitions"] == []
 
 
 def test_many_failures_are_still_one_screen(tmp_path: Path, here: Path) -> None:
