@@ -461,7 +461,9 @@ class _Composer:
             t = step.transition
             if sum(p in program.channels for p, *_ in step.takes) > MOST_MESSAGES:
                 raise NotModelledError(f"`{t.name}` takes more than {MOST_MESSAGES} messages")
-            for arcs, guards in waits(self.partition, t, self._is_there, self._is_missing):
+            for arcs, guards in waits(
+                self.partition, t, self._is_there, self._is_missing, self._token
+            ):
                 binding = {x.guard for x in t.plan if isinstance(x, BindEquation)}
                 bound = [t.guards[i] for i in binding]
                 asked = [g for g in guards if g not in bound]
@@ -513,6 +515,9 @@ class _Composer:
 
     def _is_there(self, place: int) -> list[Arc]:
         return [self._has(self.out[place])] if place in self.out else []
+
+    def _token(self, place: int, name: str) -> core.Exp:
+        return self.b.var(name, self.b.places[place].colset)
 
     def _is_missing(self, place: int) -> Arc:
         return self.b.absent(self.out.get(place, place))
