@@ -219,6 +219,26 @@ def test_an_exception_in_what_a_script_waits_for(tmp_path: Path) -> None:
     assert found["cell"]["complete"] and found["properties"][0]["answer"] == "yes"
 
 
+def test_an_exception_in_an_arc_of_what_a_script_waits_for(tmp_path: Path) -> None:
+    """As of a guard: the inscription of an input arc is a condition, which the model works out too early."""
+    ending = UNDIVIDED.replace("if m = 1 then 1`() else empty", "()")
+    ending = ending.replace(" guard [10 div k > 1, m > 0]", "")
+    head, page = ending.split("  page PB\n")
+    page = page.replace(
+        "    place Waiting = 1\n", "    place Waiting = 1\n    place Known : INT = 1`10\n"
+    )
+    page = page.replace(
+        "      in more : m\n", "      in more : m\n      in Known : 10 div k\n      out Known : k\n"
+    )
+    folder = write(tmp_path / "cell", head + "  page PB\n" + page, toml(["A"], OF_B))
+    found = said(folder, "--no-medium", holds=("always tokens(Finished) <= 1",))
+    row = blocking(found)
+    answers = {c["check"]: c["answer"] for c in found["controller"]}
+    assert (row["answer"], row["why"]) == ("unknown", "error")
+    assert all(answers[c] == "yes" for c in ("finite-response", "bounded-response", "channels"))
+    assert found["cell"]["complete"] and found["properties"][0]["answer"] == "yes"
+
+
 def test_the_doubt_leaves_a_timed_script_where_it_is(tmp_path: Path) -> None:
     """The step that marks it takes the token of the script's place and puts it back, with the time of now."""
     found = []

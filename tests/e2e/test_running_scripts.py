@@ -13,7 +13,7 @@ from pn2code.api import load
 from pn2code.cell.divide import divide
 from pn2code.cli.nets import open_net
 from pn2code.diagnostics import Diagnostics
-from pn2code.verify.controller import control
+from pn2code.verify.controller import control, moments
 from pn2code.verify.controller.commands import Commands
 from pn2code.verify.controller.control_types import Plan
 from pn2code.verify.exploring.explore import ExploreOptions
@@ -157,7 +157,7 @@ def test_a_script_that_goes_round_for_long(tmp_path: Path, monkeypatch: pytest.M
     """It turns 39 times and rests: the run of forty transitions and the one before it are as many as are permitted."""
     folder = write(tmp_path / "cell", LONG, toml(["A", "B"], TOOL))
     for most, answer in ((41, "yes"), (40, "no")):
-        monkeypatch.setattr(control, "MOST_OCCURRENCES", most)
+        monkeypatch.setattr(moments, "MOST_OCCURRENCES", most)
         found = examined(folder).checks["non-blocking"]
         assert found.answer == answer, found.says
     assert "loops for 40 transitions" in found.says
@@ -355,12 +355,13 @@ def test_commands_of_one_transition_that_take_no_time(
     assert end["why"] == ("finished" if answer == "yes" else "failed"), end
 
 
-def test_what_does_much_in_one_moment_says_what_it_assumes(tmp_path: Path) -> None:
-    few = "    place Start : INT = 1`0\n    place Heard : INT\n    place Finished\n"
-    rounds = 3400  # of three states and more each
-    text = net(
-        few
-        + f"""    trans Ask guard [n < {rounds}]
+def asking(rounds: int, device: str, head: str = "") -> str:
+    """A supervisor that asks so often, one question after the answer to the other."""
+    return net(
+        f"""    place Start : INT = 1`0
+    place Heard : INT
+    place Finished
+    trans Ask guard [n < {rounds}]
       in Start : n
       out toA : 1
       out Heard : n
@@ -372,15 +373,71 @@ def test_what_does_much_in_one_moment_says_what_it_assumes(tmp_path: Path) -> No
       in fromA : k
       out Start : n + 1
 """,
-        {"A": ECHO},
-        N,
+        {"A": device},
+        N + head,
     )
-    large = checks(write(tmp_path / "cell", text, toml(["A"])))
-    assert large["non-blocking"]["answer"] == "yes" and large["non-blocking"]["value"] >= 10_000
+
+
+@pytest.mark.parametrize(
+    ("device", "rounds", "answer"),
+    [(ECHO, 4990, "yes"), (ECHO, 5000, "unknown"), (SLOW, 5000, "yes")],
+    ids=["short", "long", "tool"],
+)
+def test_messages_that_are_exchanged_in_one_moment(
+    device: str, rounds: int, answer: str, tmp_path: Path
+) -> None:
+    """Two transitions of the device for each question; where a tool takes time, the moment is over."""
+    text = asking(rounds, device, ACT)
+    check = checks(write(tmp_path / "cell", text, toml(["A"], TOOL)))["non-blocking"]
+    assert (check["answer"], check["why"]) == (answer, None if answer == "yes" else "moments")
+    assert not is_said(check)
+
+
+def test_a_cell_without_an_end_that_stands_still_in_time(tmp_path: Path) -> None:
+    """In lock-step the run stops; so this is no "yes", and the run that is repeated is shown."""
+    text = asking(3, ECHO).replace("n + 1", "n")
+    folder = write(tmp_path / "cell", text, toml(["A"]).replace('final = ["Finished"]\n', ""))
+    check = checks(folder)["non-blocking"]
+    assert (check["answer"], check["why"]) == ("unknown", "moments")
+    assert check["evidence"][0]["loop"] is not None
+    end = ran(folder)[-1]
+    assert "without time passing" in end["reason"]
+
+
+HOME = '[primitives]\nact = { command = "move_home" }\n'
+
+
+def of_robot(cell: str) -> str:
+    return cell.replace("[devices.A]", "[robots.A]")
+
+
+@pytest.mark.parametrize(("rounds", "answer"), [(9_000, "yes"), (10_000, "unknown")])
+def test_moves_to_where_the_arm_already_is_take_no_time(
+    rounds: int, answer: str, tmp_path: Path
+) -> None:
+    text = net(ONE, {"A": counting("act ()", rounds)}, ACT + N)
+    folder = write(tmp_path / "cell", text, of_robot(toml(["A"], HOME)))
+    check = checks(folder)["non-blocking"]
+    assert (check["answer"], check["why"]) == (answer, None if answer == "yes" else "commands")
+
+
+def test_what_does_much_in_one_moment_says_what_it_assumes(tmp_path: Path) -> None:
+    """A robot that moves for each question: whether it moves anywhere, the net does not show."""
+    text = asking(5000, SLOW, ACT)
+    large = checks(write(tmp_path / "cell", text, of_robot(toml(["A"], HOME))))
+    assert large["non-blocking"]["answer"] == "yes"
     assert [name for name, c in large.items() if is_said(c)] == ["non-blocking"]
-    small = checks(write(tmp_path / "less", text.replace(str(rounds), "3"), toml(["A"])))
+    small = checks(write(tmp_path / "less", text.replace("5000", "3"), of_robot(toml(["A"], HOME))))
     assert small["non-blocking"]["answer"] == "yes"
     assert not any(map(is_said, small.values()))
+
+
+def test_a_tool_of_hardly_any_time_may_take_none(tmp_path: Path) -> None:
+    """What is added to the time of a run is lost if it is too short."""
+    text = net(ONE, {"A": counting("act ()", 10_000)}, ACT + N)
+    cell = toml(["A"], TOOL.replace("2.0", "1e-18"))
+    check = checks(write(tmp_path / "cell", text, cell))["non-blocking"]
+    assert (check["answer"], check["why"]) == ("unknown", "commands")
 
 
 def is_said(check: dict[str, Any]) -> bool:

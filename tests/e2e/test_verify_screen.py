@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
@@ -69,6 +70,25 @@ def test_what_differs_in_the_closed_net_is_said(tmp_path: Path, here: Path) -> N
     assert "In the cell the supervisor and the scripts choose in the documented order" in why
 
 
+def test_sizes_of_the_closed_net_that_are_not_those_of_the_cell(tmp_path: Path, here: Path) -> None:
+    """Both are said, apart, with the reason, on the screen, in the report and in JSON."""
+    folder = tmp_path / "race"
+    cell = write_race(folder, RACE, toml(["A", "B"], TOOL))
+    code, lines, _ = verify(cell, "--no-medium")
+    text = " ".join(" ".join(lines).split())
+    assert code == 0
+    assert "`Sup'Early 1` never occurs in the closed net, but it does in the cell." in text
+    assert "`Sup'Coins 1` holds at most 2 tokens in the cell, 1 in the closed net." in text
+    assert "Reason In the closed net priorities are global" in text
+    _, lines, _ = verify(cell, "--no-medium", "--full")
+    text = " ".join(" ".join(lines).split())
+    assert "`Sup'Early 1` never occurs in the closed net, but it does in the cell." in text
+    _, lines, _ = verify(cell, "--no-medium", "--json")
+    row = json.loads("\n".join(lines))
+    assert row["dead_transitions"] == ["Sup'Early 1"]
+    assert row["cell"]["dead_transitions"] == []
+
+
 def test_many_failures_are_still_one_screen(tmp_path: Path, here: Path) -> None:
     net = write_net(MUTEX, tmp_path / "mutex.cpn")
     asked = [word for n in range(2, 40) for word in ("--property", f"bound {n} <= Free <= 99")]
@@ -134,14 +154,16 @@ DRAWN = """
 """
 
 
-@pytest.mark.parametrize("option", [(), ("--full",)])
-def test_a_run_that_cannot_be_repeated(option: tuple[str, ...], tmp_path: Path, here: Path) -> None:
-    """An arc draws a number: the token game may draw another one, which is no error of the program."""
-    code, lines, _ = verify(write_net(DRAWN, tmp_path / "drawn.cpn"), *option)
+def test_a_run_with_random_numbers_is_repeated(tmp_path: Path, here: Path) -> None:
+    """The explorer's numbers do not depend on the step; the header of its trace says so."""
+    net = write_net(DRAWN, tmp_path / "drawn.cpn")
+    code, lines, _ = verify(net, "--full")
     text = "\n".join(lines)
-    assert code == 0 and "cannot be shown: line 3: Top.Take" in text
-    assert "the net draws random numbers" in text
-    assert (here / "drawn.traces").is_dir()
+    assert code == 0 and "cannot be shown" not in text and "Top.Take" in text
+    (trace,) = (here / "drawn.traces").iterdir()
+    assert json.loads(trace.read_text().split("\n")[0])["still"] is True
+    done = CliRunner().invoke(app, ["replay", str(trace), str(net)])
+    assert done.exit_code == 0, done.output
 
 
 @pytest.mark.parametrize(

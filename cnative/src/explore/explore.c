@@ -64,6 +64,7 @@ static void print_help(void)
         "  --queries FILE      questions about the states and runs; see explore_query_read.c\n"
         "  --query-trace-to NAME  runs that prove the answers, as NAMEn.trace.jsonl with the number n of the question\n"
         "  --seed N            of random numbers (default 1)\n"
+        "  --still             traces say that these are the same at each step\n"
         "  --multiset-limit N  colours of a multi-set bound that are printed (default: all)\n"
         "  --whole P,Q,..      places of which all colours are printed\n"
         "  --ends-in PHASE     for tests: the time is over when explore, graph, components, properties or questions "
@@ -193,6 +194,8 @@ static bool read_options(int argc, char **argv, ex_options_t *options)
         const char *option = argv[i];
         if (strcmp(option, "--no-graph") == 0) {
             options->has_graph = false;
+        } else if (strcmp(option, "--still") == 0) {
+            options->is_still = true;
         } else if (strcmp(option, "--no-notes") == 0) {
             options->has_notes = false;
         } else if (strcmp(option, "--progress") == 0) {

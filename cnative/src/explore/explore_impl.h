@@ -38,6 +38,7 @@ typedef struct ex_options {
     uint64_t memory;     /* bytes */
     uint64_t arena;      /* bytes of each thread, for lists and strings */
     uint64_t seed;
+    bool is_still;      /* traces say that random numbers are the same at each step */
     uint64_t lay_again; /* states after which the layout of keys is looked at once more */
     bool has_graph;     /* wanted */
     bool has_notes;     /* what transitions do is remembered (explore_local.c) */

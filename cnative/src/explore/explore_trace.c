@@ -164,7 +164,8 @@ int64_t ex_write_path(ex_run_t *run, const ex_graph_t *graph, const uint32_t *wa
         free(line);
         return -1;
     }
-    (void)snprintf(members, sizeof members, "\"seed\": %" PRIu64, run->options.seed);
+    (void)snprintf(members, sizeof members, "\"seed\": %" PRIu64 "%s", run->options.seed,
+                   run->options.is_still ? ", \"still\": true" : "");
     pn_trace_header_with(&trace, &pn_net, "simulate", run->options.initial, members);
     const bool is_symmetric = (run->reduction != NULL) && run->reduction->is_symmetric;
     if (is_symmetric) {

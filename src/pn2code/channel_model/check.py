@@ -59,7 +59,7 @@ class Answer:
         check: "medium of the cell", "exchange with robot1".
         says: the question in words.
         answer: yes (it holds), no, inconclusive.
-        why: why it is inconclusive; "" else.
+        why: why it is inconclusive, or what fails that `evidence` does not show; "" else.
         nodes, arcs, seconds: of the exploration; `places`, `transitions`: of its net.
         assumes: what the answer rests on.
     """
@@ -326,10 +326,12 @@ def _verdict(
 ) -> tuple[Verdict, str]:
     if found is None or found.error is not None:
         return "inconclusive", "it could not be explored"
-    if runs or found.fired[net.ending]:
+    if runs:
         return "no", ""
+    if found.fired[net.ending]:
+        return "no", "there is a fault of the exchange, but no run to it was kept"
     if not found.complete:
         return "inconclusive", f"the exploration is not complete: {clause(found.why)}"
     if judged and (found.dead_count or any(a["answer"] != "yes" for a in found.answers)):
-        return "no", ""
+        return "no", "an end cannot be reached from every state"
     return "yes", ""

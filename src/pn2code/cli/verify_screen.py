@@ -41,6 +41,8 @@ MOST_STEPS = 3_000
 MOST_ITEMS = 8
 """Failures and open questions that have lines of their own on one screen."""
 MOST_NAMES = 6
+MOST_DIFFERENCES = 4
+"""Of the cell as it runs from the closed net, on one screen."""
 _WIDTH = 110
 _NAME = 21
 
@@ -114,6 +116,7 @@ def screen(said: Said) -> str:
         partial = f"PARTIAL: {clause(said.found.why)}. {basis.partial(said.found)}"
         lines += [*textwrap.wrap(partial, _WIDTH), ""]
     lines += _sizes(said)
+    lines += _as_it_runs(said)
     items = tuple(_items(said))
     wrong = sorted((i for i in items if i.kind != "good"), key=lambda i: i.kind != "bad")
     if items:
@@ -168,6 +171,21 @@ def _sizes(said: Said) -> Iterator[str]:
         yield from _row("Live transitions", f"{live} of {len(net.transitions)}")
     if found.bounds is not None:
         yield from _row("Bounds", _most(net, found))
+
+
+def _as_it_runs(said: Said) -> Iterator[str]:
+    """Where the cell as it runs differs from what stands above."""
+    control = said.control
+    differing = [] if control is None else [*control_text.differences(control)]
+    if control is None or not differing:
+        return
+    yield ""
+    yield "The cell as it runs differs from the closed net:"
+    for title, what in differing[:MOST_DIFFERENCES]:
+        yield from _row(title, what)
+    if len(differing) > MOST_DIFFERENCES:
+        yield from _row("", f"and {len(differing) - MOST_DIFFERENCES} more")
+    yield from _row("Reason", control_text.why_differs(control))
 
 
 def _dead(found: Exploration) -> str:

@@ -123,6 +123,7 @@ class ReferenceRun:
                 request.storage,
                 given.header.initial if given else None,
                 seed=self.seed,
+                still=given is not None and given.header.still,
                 output=self.output.write,
                 files=Files(request.files, self.output.write),
             )

@@ -23,7 +23,7 @@ _NOTES: Mapping[str, Mapping[str, type]] = {
     "sense": {"t": float, "event": str, "robot": str, "sensor": str, "value": object},
 }
 _MORE: Mapping[str, Mapping[str, type]] = {
-    "header": {"seed": int},
+    "header": {"seed": int, "still": bool},
     "end": {"final": list, "reason": str, "loop": int},
 }
 """Members that a line may have; all others it must have."""
@@ -57,7 +57,7 @@ def form_problem(line: Mapping[str, Any], *, is_first: bool) -> str | None:
 def _is_of(value: object, wanted: type) -> bool:
     if wanted is float:
         return is_number(value)
-    return isinstance(value, wanted) and (wanted is object or not isinstance(value, bool))
+    return isinstance(value, wanted) and (wanted in (object, bool) or not isinstance(value, bool))
 
 
 def is_number(t: object) -> TypeGuard[int | float]:

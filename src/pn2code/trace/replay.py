@@ -222,7 +222,10 @@ def replay_lines(
                 _refuse(digest_problem(line, net, who) if check_digest else None)
                 initial = _initial(net, line)
                 _refuse(who.stranger(by))
-                game = Game(net, storage, initial, seed=_seed(line), limits=limits, files=files)
+                still = line.get("still") is True
+                game = Game(
+                    net, storage, initial, seed=_seed(line), still=still, limits=limits, files=files
+                )
                 rules = rules or _rules_for(by, time_unit)
                 if notes is not None:
                     notes.begin(game, by)

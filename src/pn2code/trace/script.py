@@ -104,11 +104,13 @@ class Header:
         seed: of the random numbers of the run, None if it does not say.
         initial: markings that replace initial markings, by name of the place.
         by: who wrote it.
+        still: the random numbers are the same at each step (docs/trace.md).
     """
 
     seed: int | None
     initial: Mapping[str, PlaceMarking]
     by: str
+    still: bool = False
 
 
 class Trace:
@@ -161,7 +163,7 @@ class Trace:
                 found[name] = place_from_json(places[name].colset, data)
             except JsonError as error:
                 raise TraceRefusedError(f"initial marking of `{name}`: {error}", 1) from None
-        return Header(seed, found, str(line["by"]))
+        return Header(seed, found, str(line["by"]), line.get("still") is True)
 
     def steps(self) -> Iterator[Step]:
         """The occurrences, in order; notes and the end are passed over.

@@ -93,8 +93,8 @@ def told(answers: Answers) -> str:
 
 
 def _one(a: Answer) -> list[str]:
-    why = f" ({a.why})" if a.why else ""
-    lines = [f"  {a.check}: {a.answer}{why}", f"    {a.says}"]
+    why = shown(a) if a.answer == "no" else a.why
+    lines = [f"  {a.check}: {a.answer}{f' ({why})' if why else ''}", f"    asked: {a.says}"]
     if a.nodes:
         lines.append(f"    {_counts(a)}")
     lines += (f"    {more}" for more in _rests(a))
@@ -108,7 +108,8 @@ def _one(a: Answer) -> list[str]:
 def rows(answers: Answers) -> Iterator[dict[str, object]]:
     """For the page."""
     for a in answers:
-        remarks = [f"not known: {a.why}"] if a.why else []
+        remarks = [f"not known: {a.why}"] if a.answer == "inconclusive" else []
+        remarks += [f"what fails: {shown(a)}"] if a.answer == "no" else []
         if a.nodes:
             remarks.append(_counts(a))
         yield {
@@ -137,9 +138,10 @@ _NO_END = "a state can be reached from which the cell cannot come to its end"
 
 
 def shown(a: Answer) -> str:
-    """What goes wrong, by the runs of an answer that is no."""
+    """The parts of the question that fail, where the answer is no: by its runs, or by the check that knows of it."""
     found = [_NO_END if e.fault is None else SAYS[e.fault] for e in a.evidence]
-    return "; ".join(dict.fromkeys(found)) or f"this does not hold: {a.says}"
+    found += [a.why] if a.why else []
+    return "; ".join(dict.fromkeys(found))
 
 
 def _run(e: Evidence) -> str:

@@ -11,6 +11,7 @@ import pytest
 from helpers.netbuilder import flat
 from pn2code.diagnostics import Diagnostics
 from pn2code.semantics.evaluation.evaluate import Limits
+from pn2code.semantics.game import report
 from pn2code.semantics.game.graph import state_space
 from pn2code.semantics.game.marking import BindingElement, place_from_json, place_to_json
 from pn2code.semantics.game.token_game import Game, GameError, NotEnabled
@@ -528,6 +529,28 @@ def test_what_is_not_enabled_does_not_occur() -> None:
 
 
 # --- pages, plays, spaces ------------------------------------------------------------------------
+
+
+def test_a_page_instance_has_one_name_in_what_is_enabled_and_in_markings() -> None:
+    g = game(
+        """
+      page Main
+        place A : INT = 1`1
+        place B : INT = 1`2
+        subst One = Sub (Inp -> A)
+        subst Two = Sub (Inp -> B)
+      page Sub
+        place Inp port in : INT
+        place Count : INT = 1`0
+        trans Move
+          in Inp : n
+          out Count : n
+        """
+    )
+    enabled = report.enabled_text(g.net, 0, g.enabled()).split("\n")
+    marking = report.marking_text(g.net, g.marking).split("\n")
+    assert [line for line in enabled if line.startswith("Move")] == ["Move (Sub 1)", "Move (Sub 2)"]
+    assert [line for line in marking if line and line[0] != " "] == ["Main", "Sub 1", "Sub 2"]
 
 
 def test_page_instances_have_markings_of_their_own() -> None:

@@ -6,7 +6,7 @@
  * where there is none.
  *
  *   finite response   no run of steps goes on for ever
- *   restless          the same of the steps of scripts that neither wait nor take time, and how long their runs are
+ *   restless          the same of the steps of a set (`instant`), and how many transitions of robots a run has
  *   bounded response  the longest run of steps
  *   confluence        from each node all runs of steps come to rest in the same node
  *   non-blocking      of its steps the supervisor does only the first in the documented order, all others do what they
@@ -26,17 +26,26 @@ typedef struct ex_control {
     uint32_t *length; /* by node: the longest run of steps from there; EX_NO_NODE: one without end */
     uint32_t *rest;   /* by node: where all runs of steps end; EX_NO_NODE: not in one node */
     uint64_t *left;   /* a bit for each node whose runs are known */
-    bool of_scripts;  /* steps are those of scripts that neither wait nor take time */
+    uint8_t set;      /* steps are those of this set of `instant` ones (a bit); 0: the supervisor's */
 } control_t;
 
 static bool is_supervisor(const control_t *c, uint64_t arc)
 {
     const ex_programs_t *const programs = c->queries->run->programs;
     const uint16_t transition = c->graph->label[arc];
-    if (c->of_scripts) {
-        return (programs != NULL) && programs->is_instant[transition];
+    if (c->set != 0U) {
+        return (programs != NULL) && ((programs->instant[transition] & c->set) != 0U);
     }
     return (c->queries->owner[transition] == 0U) && ((programs == NULL) || !programs->is_silent[transition]);
+}
+
+/* What a step adds to the length of a run; in a set only the transitions of robots count. */
+static uint32_t weight(const control_t *c, uint64_t arc)
+{
+    const uint16_t transition = c->graph->label[arc];
+    const bool is_other =
+        (c->set != 0U) && ((c->queries->owner[transition] == 0U) || c->queries->run->programs->is_silent[transition]);
+    return is_other ? 0U : 1U;
 }
 
 static bool is_late(const control_t *c, uint32_t node)
@@ -75,7 +84,8 @@ static void leave(control_t *c, uint32_t node)
         const bool is_known = EX_BIT(c->left, target) != 0U;
         is_endless = is_endless || !is_known || (c->length[target] == EX_NO_NODE);
         if (!is_endless) {
-            length = (length > c->length[target]) ? length : (c->length[target] + 1U);
+            const uint32_t own = c->length[target] + weight(c, arc);
+            length = (length > own) ? length : own;
             rest = (is_first || (rest == c->rest[target])) ? c->rest[target] : EX_NO_NODE;
         }
         is_first = false;
@@ -134,7 +144,7 @@ static void forget(control_t *c)
 }
 
 /* What is known of the steps. NULL: no memory, or told to stop. */
-static control_t *worked_out(ex_queries_t *queries, bool of_scripts)
+static control_t *worked_out(ex_queries_t *queries, uint8_t set)
 {
     ex_run_t *const run = queries->run;
     const uint64_t nodes = run->graph->nodes;
@@ -142,7 +152,7 @@ static control_t *worked_out(ex_queries_t *queries, bool of_scripts)
     if (c == NULL) {
         return NULL;
     }
-    *c = (control_t){ .queries = queries, .graph = run->graph, .of_scripts = of_scripts };
+    *c = (control_t){ .queries = queries, .graph = run->graph, .set = set };
     c->length = ex_table(run, nodes, sizeof *c->length);
     c->rest = ex_table(run, nodes, sizeof *c->rest);
     c->left = ex_set(queries);
@@ -166,7 +176,7 @@ static control_t *worked_out(ex_queries_t *queries, bool of_scripts)
 static const control_t *known(ex_queries_t *queries)
 {
     if (queries->control == NULL) {
-        queries->control = worked_out(queries, false);
+        queries->control = worked_out(queries, 0U);
     }
     return queries->control;
 }
@@ -354,7 +364,7 @@ static void answer_bounded(const control_t *c, ex_question_t *question)
     begin_way(c, question, node);
     while ((c->length[node] > 0U) && !question->way.is_failed) {
         uint64_t arc = first_step(c, node);
-        while ((c->length[c->graph->target[arc]] + 1U) != c->length[node]) {
+        while ((c->length[c->graph->target[arc]] + weight(c, arc)) != c->length[node]) {
             arc = next_step(c, node, arc + 1U);
         }
         node = c->graph->target[arc];
@@ -575,7 +585,7 @@ static bool answer_blocking(const control_t *c, ex_question_t *question)
 /* False: no memory, or told to stop. */
 static bool answer_restless(ex_queries_t *queries, ex_question_t *question)
 {
-    control_t *const c = worked_out(queries, true);
+    control_t *const c = worked_out(queries, (uint8_t)(1U << question->a));
     if (c == NULL) {
         return false;
     }

@@ -16,6 +16,7 @@ typedef enum ex_choice {
 } ex_choice_t;
 
 #define EX_MOST_GROUPS 256U
+#define EX_MOST_SETS   8U
 
 typedef struct ex_programs {
     uint32_t *group; /* by transition: one in which only the first is done; 0: none */
@@ -25,7 +26,7 @@ typedef struct ex_programs {
     bool *is_probe;   /* by transition: it only shows that something holds, and holds back others of its owner; it never
                          occurs */
     bool *is_silent;  /* by transition: a step that is no occurrence in the net */
-    bool *is_instant; /* by transition: its script neither waits for anything nor takes time for it */
+    uint8_t *instant; /* by transition: a bit for each set of steps that it belongs to (`? restless`) */
     bool *is_clock;   /* by transition: it occurs one unit of time later, if something is waited for; with reduced time
                          only */
     bool has_clock;

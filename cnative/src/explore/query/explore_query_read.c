@@ -24,12 +24,13 @@
  *     meek 8                          though enabled it holds no other one back
  *     probe 9                         never occurs; while it is enabled it holds others of its owner back
  *     silent 10 11                    steps that are no occurrences of the net
- *     instant 8 9                     steps of scripts that neither wait nor take time
+ *     instant 0 8 9                   steps of set 0, such as those of scripts that neither wait nor take time
  *     clock 11                        occurs a unit of time later, where something is waited for
  *     ? ends 4                        item 4 is `ef` of the ends, which are reached whoever is slow
  *                                     (explore_running.c); `-`: as below
  *     ? finite-response
- *     ? restless 100                  no run of `instant` steps goes on for ever, nor is longer than that
+ *     ? restless 0 100                no run of steps of set 0 goes on for ever, nor has more transitions of robots
+ *                                     than that
  *     ? bounded-response 100
  *     ? confluence 0                  0: with a run of the documented order, 1: with one that comes to another end
  *     ? non-blocking 3                nodes of item 3 are final; `-`: none is
@@ -285,7 +286,10 @@ static bool read_control(const ex_reader_t *r, ex_question_t *question)
     uint32_t most = 0U;
     bool is_fine = (r->queries->owner != NULL) || ex_complain(r, "the owners of transitions are not told", r->word[1]);
     if ((question->kind == EX_ASK_BOUNDED) || (question->kind == EX_ASK_RESTLESS)) {
-        is_fine = is_fine && ex_read_number(r, r->word[2], (uint64_t)UINT32_MAX, "not a number", &most);
+        const bool of_set = question->kind == EX_ASK_RESTLESS;
+        is_fine = is_fine && ex_read_number(r, r->word[of_set ? 3 : 2], (uint64_t)UINT32_MAX, "not a number", &most);
+        is_fine =
+            is_fine && (!of_set || ex_read_number(r, r->word[2], EX_MOST_SETS, "there are not so many", &question->a));
         question->has_most = true;
         question->most = (double)most;
     } else if (question->kind == EX_ASK_CONFLUENT) {
@@ -313,7 +317,7 @@ static const asking_t s_askings[] = {
     { "initially", EX_ASK_INITIALLY, 3U },
     { "bound", EX_ASK_BOUND, 5U },
     { "finite-response", EX_ASK_FINITE, 2U },
-    { "restless", EX_ASK_RESTLESS, 3U },
+    { "restless", EX_ASK_RESTLESS, 4U },
     { "bounded-response", EX_ASK_BOUNDED, 3U },
     { "confluence", EX_ASK_CONFLUENT, 3U },
     { "non-blocking", EX_ASK_BLOCKING, 3U },
@@ -455,13 +459,13 @@ static ex_programs_t *programs_of(const ex_reader_t *r)
         programs->is_meek = calloc(count, sizeof *programs->is_meek);
         programs->is_probe = calloc(count, sizeof *programs->is_probe);
         programs->is_silent = calloc(count, sizeof *programs->is_silent);
-        programs->is_instant = calloc(count, sizeof *programs->is_instant);
+        programs->instant = calloc(count, sizeof *programs->instant);
         programs->is_clock = calloc(count, sizeof *programs->is_clock);
         run->programs = programs;
     }
     const ex_programs_t *const made = run->programs;
     const bool is_made = (made->group != NULL) && (made->kin != NULL) && (made->is_meek != NULL)
-                         && (made->is_probe != NULL) && (made->is_silent != NULL) && (made->is_instant != NULL)
+                         && (made->is_probe != NULL) && (made->is_silent != NULL) && (made->instant != NULL)
                          && (made->is_clock != NULL);
     return is_made ? run->programs : NULL;
 }
@@ -488,6 +492,25 @@ static bool read_group(ex_reader_t *r, ex_choice_t choice)
     return is_fine;
 }
 
+/* `instant S T...`: steps of a set. */
+static bool read_instant(ex_reader_t *r)
+{
+    ex_programs_t *const programs = programs_of(r);
+    uint32_t set = 0U;
+    uint32_t transition = 0U;
+    if (programs == NULL) {
+        return ex_complain(r, "not enough memory", r->path);
+    }
+    bool is_fine = (r->words > 1U) && ex_read_number(r, r->word[1], EX_MOST_SETS, "there are not so many sets", &set);
+    for (uint32_t i = 2U; is_fine && (i < r->words); i++) {
+        is_fine = ex_read_transition(r, r->word[i], &transition);
+        if (is_fine) {
+            programs->instant[transition] |= (uint8_t)(1U << set);
+        }
+    }
+    return is_fine;
+}
+
 /* `meek T...` and the like. */
 static bool read_kind(ex_reader_t *r)
 {
@@ -509,8 +532,6 @@ static bool read_kind(ex_reader_t *r)
             programs->is_probe[transition] = true;
         } else if (strcmp(r->word[0], "silent") == 0) {
             programs->is_silent[transition] = true;
-        } else if (strcmp(r->word[0], "instant") == 0) {
-            programs->is_instant[transition] = true;
         } else {
             programs->is_clock[transition] = true;
             programs->has_clock = true;
@@ -523,7 +544,7 @@ static bool read_kind(ex_reader_t *r)
 static bool is_kind(const char *word)
 {
     return (strcmp(word, "probe") == 0) || (strcmp(word, "kin") == 0) || (strcmp(word, "meek") == 0)
-           || (strcmp(word, "silent") == 0) || (strcmp(word, "instant") == 0) || (strcmp(word, "clock") == 0);
+           || (strcmp(word, "silent") == 0) || (strcmp(word, "clock") == 0);
 }
 
 static bool read_lines(ex_reader_t *r)
@@ -540,6 +561,8 @@ static bool read_lines(ex_reader_t *r)
             is_fine = read_group(r, EX_FIRST_BINDING);
         } else if (strcmp(r->word[0], "choose") == 0) {
             is_fine = read_group(r, EX_FIRST_TRANSITION);
+        } else if (strcmp(r->word[0], "instant") == 0) {
+            is_fine = read_instant(r);
         } else if (is_kind(r->word[0])) {
             is_fine = read_kind(r);
         } else if ((strcmp(r->word[0], "priorities") == 0) && (r->words == 2U) && (strcmp(r->word[1], "own") == 0)) {

@@ -46,12 +46,14 @@ class RandomStream:
 
     def __init__(self, seed: int) -> None:
         self.seed = seed & _BITS
+        self.is_still = False
+        """Whether the number of the step does not count, as in a state space, whose nodes have none."""
         self._state = 0
         self.start(0, START)
 
     def start(self, step: int, purpose: int) -> None:
         """Starts anew for a piece of work."""
-        self._state = mix(mix(mix(self.seed) ^ step) ^ purpose)
+        self._state = mix(mix(mix(self.seed) ^ (0 if self.is_still else step)) ^ purpose)
 
     def next(self) -> int:
         """64 random bits."""

@@ -79,9 +79,8 @@ def marking_text(net: FlatNet, marking: Marking, *, empty: bool = False) -> str:
     for row in shown:
         if heading != (row["page"], row["instance"]):
             heading = (row["page"], row["instance"])
-            many = any(r["page"] == row["page"] and r["instance"] != 1 for r in rows)
-            number = f" {row['instance']}" if many else ""
-            lines += [*([""] if lines else []), f"{row['page']}{number}"]
+            heading_text = _page(net, str(row["page"]), int(row["instance"]))
+            lines += [*([""] if lines else []), heading_text]
         first, *others = str(row["marking"]).split("\n")
         lines.append(f"  {_name(row).ljust(width)}  {first}")
         lines += [f"  {' ' * width}  {other}" for other in others]
@@ -92,6 +91,13 @@ def marking_text(net: FlatNet, marking: Marking, *, empty: bool = False) -> str:
             f"{left} places are empty" if left > 1 else "1 place is empty",
         ]
     return "\n".join(lines)
+
+
+def _page(net: FlatNet, page: str, number: int) -> str:
+    """A page instance: with its number if there are several of its page."""
+    numbers = {t.instance_number for t in net.transitions if t.page == page}
+    numbers |= {p.number for p in net.place_instances if p.page == page}
+    return page if numbers <= {1} else f"{page} {number}"
 
 
 def _name(row: PlaceRow) -> str:
@@ -106,7 +112,7 @@ def enabled_text(net: FlatNet, time: int | float, elements: Iterable[BindingElem
         if e.transition != at:
             at = e.transition
             t = net.transitions[at]
-            where = t.page + (f" {t.instance_number}" if t.instance_number > 1 else "")
+            where = _page(net, t.page, t.instance_number)
             lines += [*([""] if lines else []), f"{t.short} ({where})"]
         values = element(net, e)["binding"]
         shown = ", ".join(f"{name} = {' '.join(text.split())}" for name, text in values.items())

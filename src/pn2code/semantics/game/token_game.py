@@ -57,6 +57,7 @@ class Game:
         storage: colour sets of reals that are stored in another way: name -> "float32".
         initial: markings that replace the initial markings of the places of these names.
         seed: of the random functions.
+        still: they give the same numbers at each step, as in a run that the explorer has found.
         limits: of each evaluation.
         output: is given what the net prints.
         files: what the net can do with files; nothing by default.
@@ -76,6 +77,7 @@ class Game:
         initial: Mapping[str, PlaceMarking] | None = None,
         *,
         seed: int = 1,
+        still: bool = False,
         limits: Limits | None = None,
         output: Callable[[str], None] = lambda text: None,
         files: Files | None = None,
@@ -103,6 +105,7 @@ class Game:
         own = Marking(self.start, tuple(map(self._initial, net.places)))
         self.own_initial_marking = self.with_references(own)
         self.marking = self._with_overrides(self.own_initial_marking, initial or {})
+        self.evaluator.random.is_still = still
         self.steps = 0
 
     # --- the current marking ---------------------------------------------------------------------

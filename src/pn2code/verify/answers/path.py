@@ -82,6 +82,7 @@ def play(
         storage,
         opened.header.initial or None,
         seed=opened.header.seed or 1,
+        still=opened.header.still,
         files=Files(None),
     )
     return game, _play(net, game, opened)

@@ -18,7 +18,9 @@ _CLAUSES = {
     "late": "an answer may be owed for longer than `reply_timeout_s`, and that stops the cell",
     "stops": "another check says that the supervisor stops",
     "commands": "a script may loop without a command or a wait that takes time: its commands and waits may be on "
-    "branches that it never takes, or may take no time",
+    "branches that it never takes, or may take no time, as a move to where the arm already is",
+    "moments": "the cell may exchange so many messages, or carry out so many commands, without time passing that a run "
+    "in lock-step stops",
     "chance": "it depends on random numbers or files, and other values than those drawn may lead to another answer",
     "compiler": "there is no C compiler",
 }

@@ -4,6 +4,9 @@ commands = Commands(partition)
 commands.must_come(action)      # whatever the values are, a primitive is called
 commands.may_come(action)       # one is called somewhere, perhaps on a branch
 commands.at_once(action)        # so many at most that may take no time
+
+A move to where the arm already is takes no time, and where the arm is the net does not show. So there are two readings:
+moves take time (`Commands(partition)`), or any of them may take none (`Commands(partition, moves=False)`).
 """
 
 from __future__ import annotations
@@ -14,11 +17,15 @@ from pn2code.cell.reach import Reach
 from pn2code.lowering.expressions.values import children
 from pn2code.ml.core import terms as core
 
+_SHORTEST = 1e-6
+"""Seconds; what takes less may be lost when it is added to the time of a long run."""
+
 
 class Commands:
-    """The primitives of a cell, and the functions that call them."""
+    """The primitives of a cell, and the functions that call them; `moves`: moves and measurements take time."""
 
-    def __init__(self, partition: Partition) -> None:
+    def __init__(self, partition: Partition, *, moves: bool = True) -> None:
+        self._moves = moves
         self._primitives = partition.primitives
         self._reach = Reach(partition.net.program)
         self._looked: dict[int, bool] = {}
@@ -31,7 +38,7 @@ class Commands:
     def must_come(self, e: core.Exp) -> bool:
         """Whether a primitive is called whatever the values are; what is not understood may do without.
 
-        What may take no time at all does not count, a tool or a wait: a script that repeats it stands still in time.
+        What may take no time at all does not count: a script that repeats it stands still in time.
         """
         match e:
             case core.If(condition, then, otherwise):
@@ -53,7 +60,7 @@ class Commands:
                 return False
 
     def at_once(self, e: core.Exp) -> int:
-        """The most tools and waits of one evaluation that may take no time; moves count as in `must_come`."""
+        """The most commands of one evaluation that may take no time."""
         self._reach.add_locals(e)
         return self._at_once(e, frozenset())
 
@@ -61,10 +68,10 @@ class Commands:
         match e:
             case core.Apply(core.Var(symbol), argument) if symbol.uid in self._primitives:
                 primitive = self._primitives[symbol.uid]
-                own = 0 if _takes_time(primitive, argument) else 1
+                own = 0 if self._takes_time(primitive, argument) else 1
                 return own + self._at_once(argument, inside)
             case core.Var(symbol) if symbol.uid in self._primitives:
-                return 0 if _takes_time(self._primitives[symbol.uid], None) else 1
+                return 0 if self._takes_time(self._primitives[symbol.uid], None) else 1
             case core.Var(symbol):
                 body = self._reach.body(symbol)
                 if not isinstance(body, core.Lambda) or symbol.uid in inside:
@@ -90,7 +97,7 @@ class Commands:
             case core.Var(symbol):
                 primitive = self._primitives.get(symbol.uid)
                 if primitive is not None:
-                    return _takes_time(primitive, argument)
+                    return self._takes_time(primitive, argument)
                 body = self._reach.body(symbol)
                 if symbol.uid not in self._looked:
                     self._looked[symbol.uid] = (
@@ -100,6 +107,12 @@ class Commands:
                 return self._looked[symbol.uid]
             case _:
                 return False
+
+    def _takes_time(self, primitive: Primitive, argument: core.Exp | None) -> bool:
+        known = lasts(primitive, argument)
+        if known is None:
+            return self._moves and primitive.command not in ("tool", "wait")
+        return known >= _SHORTEST
 
 
 def lasts(primitive: Primitive, argument: core.Exp | None) -> float | None:
@@ -125,9 +138,3 @@ def seconds(e: core.Exp) -> float | None:
     if isinstance(e, core.Lit) and isinstance(e.value, int | float):
         return float(e.value)
     return None
-
-
-def _takes_time(primitive: Primitive, argument: core.Exp | None) -> bool:
-    """Whether it surely does; moves count as if they led somewhere else."""
-    known = lasts(primitive, argument)
-    return primitive.command not in ("tool", "wait") if known is None else known > 0.0

@@ -23,8 +23,8 @@ from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import ArcKind
 from pn2code.properties.questions import Questions
-from pn2code.tdl.interpret import MOST_AT_ONCE, MOST_OCCURRENCES
 from pn2code.verify.controller.control_answers import (
+    STILL,
     Keeper,
     can_more,
     capacities_check,
@@ -32,6 +32,7 @@ from pn2code.verify.controller.control_answers import (
     channels_check,
     drawn,
     hesitating,
+    is_short,
     known,
     order_answers,
     refusal,
@@ -77,7 +78,7 @@ def of_cell(running: Running, plan: Plan) -> str:
     asked.asked += [
         f"? ends {end}",
         f"? bound {running.stopped} 0 0",
-        f"? restless {MOST_OCCURRENCES - 1}",
+        *(f"? restless {i} {steps.most}" for i, steps in enumerate(running.moments.sets())),
         *(f"? invariant {_kept_silence(asked, s, running.resting)}" for s in running.silences),
         *(f"? bound {c.place} 0 1" for c in running.partition.channels),
         *(f"? bound {place} 0 {most}" for place, most in plan.capacities.items()),
@@ -119,7 +120,6 @@ def of_orders(running: Running, firings: int = MAX_FIRINGS) -> str:
         f"? bounded-response {firings}",
         "? confluence 0",
         "? confluence 1",
-        f"? restless {MOST_AT_ONCE // running.at_once - 1}",
     ]
     return "".join(f"{line}\n" for line in lines)
 
@@ -191,8 +191,7 @@ def examine(
             memory(found),
             ownership(partition),
         )
-        if running.idle != running.instant:
-            checks = tuple(hesitating(c, orders, asked) for c in checks)
+        checks = tuple(hesitating(c, said, keep) for c in checks)
         refused = refusal(partition, found, keep)
         if refused is not None:
             checks = tuple(refused if c.name == BLOCKING else c for c in checks)
@@ -200,8 +199,7 @@ def examine(
             checks = tuple(drawn(c) for c in checks)
         late = plan.premises.replies.late or silent(running, said)
         premises = plan.premises
-        if found.nodes * running.at_once >= MOST_AT_ONCE:
-            premises = replace(premises, instants=True)
+        premises = replace(premises, moving=not is_short(said, STILL))
         control = Control(checks, found, running, answers=found.answers[:count], closed=closed)
         return settled(replace(control, late=late, doubt=doubt, premises=premises))
 

@@ -27,8 +27,12 @@ from pn2code.verify.controller.control_types import (
 from pn2code.verify.controller.running import OWING, Running
 from pn2code.verify.exploring.result import Exploration
 
-ORDERS = 5
-"""Questions about all orders; the last one is that of `hesitating`."""
+ORDERS = 4
+"""Questions about all orders."""
+SCRIPTS, ALONE, MOVING, STILL = 2, 3, 4, 5
+"""Rows of the answers about `Moments.sets`, after those about the end and about scripts that stop."""
+OTHERS = 6
+"""The row after these."""
 _WAYS = 60
 """Transitions of a run that are named."""
 
@@ -59,7 +63,7 @@ def order_answers(
     keep: Keeper,
 ) -> Iterator[Check]:
     """What the explorer's answers to `of_orders` mean; traces that are wanted are moved to where they are kept."""
-    finite, bounded, usual, other, _ = _padded(found, rows, ORDERS)
+    finite, bounded, usual, other = _padded(found, rows, ORDERS)
     yield _finite(finite, keep)
     yield _bounded(bounded, keep, plan)
     yield _confluent(usual, other, keep, plan)
@@ -76,8 +80,9 @@ def cell_answers(
     """The same of `of_cell`, without the properties."""
     channels = len(partition.channels)
     silences = len(keep.running.silences) if keep.running is not None else 0
-    count = 3 + silences + channels + len(plan.capacities)
-    ends, stops, restless, *bounds = _padded(found, rows, count)
+    count = OTHERS + silences + channels + len(plan.capacities)
+    all_rows = _padded(found, rows, count)
+    ends, stops, restless, bounds = *all_rows[: SCRIPTS + 1], all_rows[OTHERS:]
     silent_rows, bounds = bounds[:silences], bounds[silences:]
     ending = _stopping(stops, keep) or _restless(restless, keep)
     ending = ending or _blocking(ends, keep, partition)
@@ -115,7 +120,7 @@ def can_more(partition: Partition) -> bool:
 
 def silent(running: Running, rows: Sequence[Mapping[str, Any]]) -> str:
     """Why somebody may owe an answer for too long, by the answers to `of_cell`: it waits for others meanwhile."""
-    for silence, row in zip(running.silences, rows[3:], strict=False):
+    for silence, row in zip(running.silences, rows[OTHERS:], strict=False):
         if row["answer"] == "no":
             return (
                 f"{silence.who} may have to wait for others while it owes an answer, and whoever owes one for "
@@ -143,12 +148,21 @@ def drawn(check: Check) -> Check:
     return replace(unknown(check.name, {"why": "chance"}), value=check.value)
 
 
-def hesitating(check: Check, found: Exploration, rows: Sequence[Mapping[str, Any]]) -> Check:
-    """The check of the end, where a script may go round for ever beside commands that stand on branches."""
+def is_short(rows: Sequence[Mapping[str, Any]], number: int) -> bool:
+    """Whether the runs of one of `Moments.sets` are known to be short enough."""
+    return len(rows) > number and rows[number]["answer"] == "yes"
+
+
+def hesitating(check: Check, rows: Sequence[Mapping[str, Any]], keep: Keeper) -> Check:
+    """The check of the end, where a script may go round for ever, or the cell do too much in one moment."""
     if check.name != BLOCKING or check.answer != "yes":
         return check
-    *_, restless = _padded(found, rows, ORDERS)
-    return check if restless["answer"] == "yes" else unknown(BLOCKING, {"why": "commands"})
+    for number, why in ((ALONE, "commands"), (MOVING, "moments")):
+        if not is_short(rows, number):
+            open_ = unknown(BLOCKING, {"why": why})
+            row = rows[number] if len(rows) > number else {"answer": "unknown"}
+            return replace(open_, evidence=keep.all(row, BLOCKING) if row["answer"] == "no" else ())
+    return check
 
 
 def refusal(partition: Partition, found: Exploration, keep: Keeper) -> Check | None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from pn2code.net.engine_names import EngineNames
 from pn2code.properties import meaning as m
 from pn2code.verify.answers import basis
 from pn2code.verify.controller.premises import Premises
@@ -135,8 +136,8 @@ class Check:
 
 def _is_script(check: Check) -> bool:
     """Whether it says that a script stops, or that nobody knows whether one does."""
-    reason = {"no": "stopped", "unknown": "commands"}.get(check.answer)
-    return check.name == BLOCKING and reason is not None and check.why == reason
+    reasons = {"no": ("stopped",), "unknown": ("commands", "moments")}.get(check.answer, ())
+    return check.name == BLOCKING and check.why in reasons
 
 
 @dataclass(frozen=True, slots=True)
@@ -210,14 +211,28 @@ class Control:
         """Those that are not known."""
         return tuple(c for c in self.checks if c.answer == "unknown")
 
-    def other_bounds(self) -> list[tuple[str, int, int]]:
-        """Places that hold at most another number of tokens in the cell: name, that number, the one of the net."""
+    def other_bounds(self) -> list[tuple[int, int, int]]:
+        """Places that hold at most another number of tokens in the cell: place, that number, the one of the net."""
         cell, net = (x.bounds if x and x.complete else None for x in (self.found, self.closed))
         if cell is None or net is None or self.running is None:
             return []
         places = self.running.partition.net.places
-        pairs = ((p.name, cell[p.index].upper, net[p.index].upper) for p in places)
-        return [(name, own, other) for name, own, other in pairs if own != other]
+        pairs = ((p.index, cell[p.index].upper, net[p.index].upper) for p in places)
+        return [(place, own, other) for place, own, other in pairs if own != other]
+
+    def other_dead(self) -> tuple[list[int], list[int]]:
+        """Transitions that never occur in the cell, but in the closed net; and those of which the reverse is so."""
+        cell, net = (x if x and x.complete else None for x in (self.found, self.closed))
+        if cell is None or net is None or self.running is None:
+            return [], []
+        own, other = self._dead(cell), self._dead(net)
+        return sorted(own - other), sorted(other - own)
+
+    def _dead(self, found: Exploration) -> set[int]:
+        """Those of the cell's net; further ones are steps of the model."""
+        assert self.running is not None
+        count = len(self.running.partition.net.transitions)
+        return {i for i in found.dead_transitions() if i < count}
 
     def row(self) -> dict[str, Any]:
         """What was looked at, for programs."""
@@ -229,6 +244,10 @@ class Control:
                 {"place": p.name, "lower": b.lower, "upper": b.upper}
                 for p, b in zip(places, found.bounds, strict=False)
             ]
+        dead = None
+        if found is not None and found.complete and running is not None:
+            names = EngineNames(running.partition.net)
+            dead = [names.transition(i) for i in sorted(self._dead(found))]
         return {
             "modelled": running is not None,
             "why": self.why or None,
@@ -236,4 +255,5 @@ class Control:
             "states": found.nodes if found else 0,
             "arcs": found.arcs if found else 0,
             "bounds": bounds,
+            "dead_transitions": dead,
         }

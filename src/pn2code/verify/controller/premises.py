@@ -23,9 +23,9 @@ _DURATIONS = (
 
 NOTHING_GIVEN: Mapping[int, str] = MappingProxyType({})
 
-_INSTANTS = (
-    f"in lock-step no more than {MOST_AT_ONCE:,} messages are exchanged, or commands carried out, "
-    "without time passing"
+_MOVING = (
+    f"arms do not move to where they already are so often that in lock-step more than {MOST_AT_ONCE:,} messages are "
+    "exchanged, or commands carried out, without time passing"
 )
 
 _SENSORS = "each possible value of a sensor occurs from time to time"
@@ -40,14 +40,14 @@ class Premises:
         states: premises of whatever rests on the states of the cell.
         durations: whether timers and what programs do go on side by side.
         sensors: whether programs ask sensors.
-        instants: whether there are so many states that a run in lock-step may do too much in one moment.
+        moving: whether a run in lock-step might do too much in one moment if moves took no time.
     """
 
     replies: Replies = Replies()
     states: tuple[str, ...] = ()
     durations: bool = False
     sensors: bool = False
-    instants: bool = False
+    moving: bool = False
 
     @staticmethod
     def of(
@@ -75,7 +75,7 @@ class Premises:
         if name == "non-blocking":
             found += [self.replies.premise] if self.replies.premise else []
             found += [_SENSORS] if self.sensors else []
-            found += [_INSTANTS] if self.instants else []
+            found += [_MOVING] if self.moving else []
         return tuple(found)
 
     def of_property(self, asked: m.Asked, answer: str, *, kept: bool) -> tuple[str, ...]:
@@ -85,7 +85,7 @@ class Premises:
         found = list(self.states)
         if not kept and self.replies.premise:
             found.append(self.replies.premise)
-        found += [_INSTANTS] if self.instants and not kept else []
+        found += [_MOVING] if self.moving and not kept else []
         if self.durations and _is_possibility(asked):
             found.append(_DURATIONS)
         return tuple(found)

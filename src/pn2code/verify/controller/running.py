@@ -45,9 +45,8 @@ from pn2code.ml.core import terms as core
 from pn2code.net.builder import Arc, Builder
 from pn2code.net.flat import ArcKind, BindEquation, FlatArc, FlatNet, FlatTransition
 from pn2code.net.predicate import Predicate
-from pn2code.robot_scripts.machine import Machine, Step
 from pn2code.trace.parties import VERIFY
-from pn2code.verify.controller.commands import Commands, seconds
+from pn2code.verify.controller.moments import Moments
 from pn2code.verify.controller.refusals import refusing
 from pn2code.verify.controller.stops import MOST_MESSAGES, NoProgramError, machine, waits
 from pn2code.verify.controller.unsure import Conditions
@@ -93,8 +92,7 @@ class Running:
         stopped: that of robots whose scripts have stopped; the cell stops then.
         steps: by added transition, in order: whose step it is (the clock has the number after the last owner's).
         clock: which of them are steps of the clock; `probes`: which never occur, and only hold others back.
-        instant: transitions for which a script neither waits nor does anything; `idle`: for which it may not, or may do
-            so for no time.
+        moments: which steps may happen in one moment.
         meek: transitions that hold no other one of their robot back: their messages may not have come yet.
     """
 
@@ -106,15 +104,12 @@ class Running:
     clock: tuple[int, ...]
     probes: tuple[int, ...]
     meek: tuple[int, ...]
-    instant: tuple[int, ...]
-    idle: tuple[int, ...]
+    moments: Moments
     names: frozenset[str]
     """of the transitions of the cell's net"""
     resting: int
     """the place of a supervisor that rests"""
     silences: tuple[Silence, ...] = ()
-    at_once: int = 1
-    """the most commands and waits for no time that belong to one transition of a robot"""
     unsure: int | None = None
     """the place that is marked where a condition of a script that waits has raised an exception; None: none can"""
 
@@ -139,8 +134,7 @@ class Running:
         """How the programs choose.
 
         Args:
-            first: whether of the supervisor's binding elements only the first in the documented order occurs; else
-                transitions count as instant whose commands stand on branches.
+            first: whether of the supervisor's binding elements only the first in the documented order occurs.
             names: where transitions of the net were made several (`properties.split`): of each, that of the whole one.
         """
         whole = [t.name for t in self.net.transitions]
@@ -165,7 +159,8 @@ class Running:
                 lines += chunks("first 1", now(own))
         lines += [" ".join(["kin", *map(str, own)]) for own in parts.values() if len(own) > 1]
         lines += chunks("meek", now(self.meek))
-        lines += chunks("instant", now(self.instant if first else self.idle))
+        for number, steps in enumerate(self.moments.sets()):
+            lines += chunks(f"instant {number}", now(steps.transitions))
         lines += chunks("silent", now(range(count, count + len(self.steps))))
         lines += chunks("clock", now(self.clock))
         lines += chunks("probe", now(self.probes))
@@ -330,14 +325,18 @@ class _Composer:
             clock=tuple(self.clock),
             probes=tuple(self.probes),
             meek=tuple(_meek(self.partition)),
-            instant=tuple(_instant(self.partition, self.machines.values(), surely=True)),
-            idle=tuple(_instant(self.partition, self.machines.values(), surely=False)),
+            moments=Moments.of(self.partition, [*self.machines.values()], self._timeless()),
             names=frozenset(t.name for t in self.partition.net.transitions),
             resting=self.idle,
             silences=tuple(self._silences()),
-            at_once=_at_once(self.partition, self.machines.values()),
             unsure=self.unsure,
         )
+
+    def _timeless(self) -> Iterator[int]:
+        """The added steps, without those of the clock."""
+        first = len(self.partition.net.transitions)
+        steps = range(first, first + len(self.step_owner))
+        return (i for i in steps if i not in self.clock)
 
     def _step(
         self,
@@ -462,7 +461,9 @@ class _Composer:
             t = step.transition
             if sum(p in program.channels for p, *_ in step.takes) > MOST_MESSAGES:
                 raise NotModelledError(f"`{t.name}` takes more than {MOST_MESSAGES} messages")
-            for arcs, guards in waits(self.partition, t, self._is_there, self._is_missing):
+            for arcs, guards in waits(
+                self.partition, t, self._is_there, self._is_missing, self._token
+            ):
                 binding = {x.guard for x in t.plan if isinstance(x, BindEquation)}
                 bound = [t.guards[i] for i in binding]
                 asked = [g for g in guards if g not in bound]
@@ -515,6 +516,9 @@ class _Composer:
     def _is_there(self, place: int) -> list[Arc]:
         return [self._has(self.out[place])] if place in self.out else []
 
+    def _token(self, place: int, name: str) -> core.Exp:
+        return self.b.var(name, self.b.places[place].colset)
+
     def _is_missing(self, place: int) -> Arc:
         return self.b.absent(self.out.get(place, place))
 
@@ -546,50 +550,6 @@ def _staged(partition: Partition) -> Iterator[Channel]:
         if owner != SUPERVISOR and len({channels[place].reader for place in put}) > 1:
             found |= put
     return (c for c in partition.channels if c.place in found)
-
-
-def _instant(partition: Partition, machines: Iterable[Machine], *, surely: bool) -> Iterator[int]:
-    """Transitions of robots for which their scripts neither wait for a message nor carry out a command.
-
-    A delay that is not zero lets a step of the clock come before what follows. One that is zero is a wait for no time,
-    unless nothing but a zero is written there: a script that repeats it stands still in time, but does not stop.
-
-    Args:
-        partition: the cell.
-        machines: its programs.
-        surely: whether only those count of which that is certain: a command may stand on a branch, a delay may be zero.
-    """
-    channels = {c.place for c in partition.channels}
-    commands = Commands(partition)
-    for program in machines:
-        for step in program.steps:
-            t = step.transition
-            waits_for = any(a.place in channels and a.kind is not ArcKind.OUTPUT for a in t.arcs)
-            action = None if t.code is None else t.code.action
-            acts = action is not None and (
-                commands.may_come(action) if surely else commands.must_come(action)
-            )
-            if not (waits_for or acts or (surely and _may_pause(step))):
-                yield t.index
-
-
-def _at_once(partition: Partition, machines: Iterable[Machine]) -> int:
-    """The most commands and waits of one transition that may take no time; 1 where it has none."""
-    commands = Commands(partition)
-    most = 1
-    for program in machines:
-        for step in program.steps:
-            code = step.transition.code
-            own = 0 if code is None else commands.at_once(code.action)
-            most = max(most, own + _may_pause(step))
-    return most
-
-
-def _may_pause(step: Step) -> bool:
-    """Whether a delay of a robot's transition becomes a wait, for however long."""
-    delays = [e for outcome in step.outcomes for _, e in outcome.delays]
-    delays += [] if step.transition.delay is None else [step.transition.delay]
-    return any(seconds(e) != 0.0 for e in delays)
 
 
 def _meek(partition: Partition) -> Iterator[int]:

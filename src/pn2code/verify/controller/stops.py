@@ -14,10 +14,12 @@ from itertools import combinations
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.ml.core import terms as core
+from pn2code.ml.core.types import BOOL, REAL, TCon, TFun, TRecord, Type, tuple_of
 from pn2code.net.builder import Arc
-from pn2code.net.flat import ArcKind, BindEquation, FlatTransition
+from pn2code.net.flat import ArcKind, BindEquation, FlatArc, FlatTransition, Form
 from pn2code.net.uses import NetVariables
 from pn2code.robot_scripts.machine import Machine, analyse
+from pn2code.verify.controller.unsure import is_total
 
 MOST_MESSAGES = 4
 """Of one transition of a robot."""
@@ -46,6 +48,7 @@ def waits(
     t: FlatTransition,
     is_there: Callable[[int], list[Arc]],
     missing: Callable[[int], Arc],
+    token: Callable[[int, str], core.Exp],
 ) -> Iterator[tuple[list[Arc], list[core.Exp]]]:
     """Arcs and guards of the probes of a transition: for each way in which some of its messages are missing.
 
@@ -54,6 +57,7 @@ def waits(
         t: the transition.
         is_there: more arcs of a message that is there.
         missing: an arc that tests that a message is missing.
+        token: a new variable for a token of a place, with a name.
     """
     channels = {c.place for c in partition.channels}
     inputs = [a for a in t.arcs if a.kind in (ArcKind.INPUT, ArcKind.BOTH)]
@@ -63,15 +67,52 @@ def waits(
         for absent in combinations(taken, count):
             kept = [a for a in inputs if a.place not in absent]
             arcs = [missing(place) for place in absent]
-            for a in kept:
+            own = [a for a in kept if not _is_condition(a)]
+            known = _variables(uses, *(a.inscription.value for a in own if a.inscription))
+            asked: list[tuple[core.Exp, core.Exp]] = []
+            for i, a in enumerate(kept):
                 assert a.inscription is not None
-                arcs.append(Arc(ArcKind.INPUT, a.place, a.inscription.value, a.inscription.form))
+                value = a.inscription.value
+                if _is_condition(a):
+                    found = token(a.place, f"found{i}")
+                    asked.append((found, value))
+                    value = found
+                arcs.append(Arc(ArcKind.INPUT, a.place, value, a.inscription.form))
                 arcs += is_there(a.place) if a.place in channels else []
-            known = _variables(uses, *(a.inscription.value for a in kept if a.inscription))
             for step in t.plan:
                 if isinstance(step, BindEquation) and _variables(uses, step.value) <= known:
                     known |= _variables(uses, t.guards[step.guard])
-            yield arcs, [g for g in t.guards if _variables(uses, g) <= known]
+            guards = [g for g in t.guards if _variables(uses, g) <= known]
+            # What depends on a missing message is not asked before it is there.
+            of_arcs = (_equal(x, value) for x, value in asked if _variables(uses, value) <= known)
+            yield arcs, [*guards, *of_arcs]
+
+
+def _is_condition(arc: FlatArc) -> bool:
+    """Whether the inscription says which token it must be by an expression that binds nothing and may raise."""
+    inscription = arc.inscription
+    if inscription is None or inscription.form is not Form.TOKEN:
+        return False
+    (term,) = inscription.terms
+    value = inscription.value
+    # Numbers of type `real` have no equality in CPN ML.
+    return term.pattern is None and not is_total(value) and not _has_reals(value.type)
+
+
+def _has_reals(t: Type) -> bool:
+    match t:
+        case TRecord(fields):
+            return any(_has_reals(x) for _, x in fields)
+        case TCon(_, arguments):
+            return t == REAL or any(map(_has_reals, arguments))
+        case _:
+            return True
+
+
+def _equal(a: core.Exp, b: core.Exp) -> core.Apply:
+    pair = tuple_of(a.type, a.type)
+    function = core.Builtin("=", TFun(pair, BOOL), b.span)
+    return core.Apply(function, core.RecordExp((("1", a), ("2", b)), pair, b.span), BOOL, b.span)
 
 
 def _variables(uses: NetVariables, *expressions: core.Exp) -> set[int]:

@@ -156,6 +156,7 @@ def explore(
                 most = limits.max_states or programs.FIRST_STATES
                 own = replace(limits, max_states=min(most, programs.FIRST_STATES))
             options = _options(own, chosen, sizes, wishes)
+            options += ["--still"] if nondeterminism.draws(net) else []
             telling = replace(wishes, progress=_nothing) if is_first else wishes
             found = _run_with_tables(net, program, options, chosen, telling, deadline, d)
         if found is None:

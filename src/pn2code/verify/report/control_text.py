@@ -4,11 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.token_game import GameError
 from pn2code.trace.script import TraceRefusedError
 from pn2code.verify.answers import basis, properties
 from pn2code.verify.answers.path import steps
+from pn2code.verify.controller.cell_answers import reason
 from pn2code.verify.controller.control_types import (
     CONFLUENT,
     MEANINGS,
@@ -43,8 +45,39 @@ def looked_at(control: Control) -> Iterator[str]:
         yield f"Looked up: {control.why}."
     elif found is not None:
         yield f"Checked in the cell as it runs: {found.nodes:,} states, {found.arcs:,} arcs."
-    for name, own, other in control.other_bounds():
-        yield f"`{name}` holds at most {own} tokens in the cell, {other} in the closed net."
+    differing = [*differences(control)]
+    yield from (what for _, what in differing)
+    if differing:
+        yield why_differs(control)
+
+
+def differences(control: Control) -> Iterator[tuple[str, str]]:
+    """Where bounds and dead transitions of the cell as it runs are not those of the closed net: title, sentence."""
+    if control.running is None:
+        return
+    names = EngineNames(control.running.partition.net)
+    never, only = control.other_dead()
+    for where, other, indices in (
+        ("the cell", "the closed net", never),
+        ("the closed net", "the cell", only),
+    ):
+        for i in indices:
+            yield (
+                "Dead transitions",
+                f"`{names.transition(i)}` never occurs in {where}, but it does in {other}.",
+            )
+    for place, own, in_net in control.other_bounds():
+        tokens = f"{own} token{'s' * (own != 1)}"
+        yield (
+            "Bounds",
+            f"`{names.place(place)}` holds at most {tokens} in the cell, {in_net} in the closed net.",
+        )
+
+
+def why_differs(control: Control) -> str:
+    """The reason for `differences`."""
+    assert control.running is not None
+    return reason(control.running.partition)
 
 
 def heading(check: Check, run: Evidence, number: int) -> str:
