@@ -70,7 +70,8 @@ def contest(
             stop(d, Format.FULL)
         left = max(0.0, deadline.left or 0.0)
         if examination == SPACE:
-            lines = _space(space(program, tables, seconds=left, mebibytes=memory))
+            found_sizes = space(program, tables, seconds=left, mebibytes=memory, only=only or "")
+            lines = _space(found_sizes)
         else:
             lines = _formulas(program, tables, questions, left, memory, only)
         for line in lines:
@@ -129,4 +130,4 @@ def _space(found: Space | None) -> Iterator[str]:
         ("MAX_TOKEN_IN_PLACE", found.tokens_in_place),
         ("MAX_TOKEN_PER_MARKING", found.tokens_in_marking),
     ):
-        yield f"STATE_SPACE {what} {number} TECHNIQUES EXPLICIT"
+        yield f"STATE_SPACE {what} {number} TECHNIQUES {found.method}"

@@ -12,6 +12,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from pn2code.contest.diagrams import KINDS, METHOD, Diagrams
 from pn2code.contest.engine import Answer, Space, Task, ask
 from pn2code.contest.examinations import Asked, Part
 from pn2code.contest.tables import Tables
@@ -22,6 +23,7 @@ METHODS = {
     "reach": ("reach", "bound"),
     "ctl": ("ctl",),
     "ltl": ("ltl",),
+    METHOD: KINDS,
 }
 """Method of the engine -> the kinds of questions that it can answer."""
 _PLANS = {
@@ -95,6 +97,7 @@ def answers(
         RuntimeError: two methods contradict each other, or the engine did not understand its tables.
     """
     lines = [_Line(a) for a in asked]
+    diagrams = Diagrams(tables)
     undone = sum(1 for line in lines if line.asked.parts)
     ends = time.monotonic() + seconds
     place: dict[int, tuple[_Line, int, Part]] = {}
@@ -114,7 +117,7 @@ def answers(
         if not open_ or left < _LEAST_S:
             return
         length = min(left, _ROUNDS_S[number]) if number < len(_ROUNDS_S) else left
-        tasks = _tasks(tables, open_, number, length, mebibytes, only)
+        tasks = _tasks(tables, diagrams, open_, number, length, mebibytes, only)
         for found in ask(program, tasks):
             assert isinstance(found, Answer)
             if not found.is_final:
@@ -133,9 +136,18 @@ def answers(
 
 
 def _tasks(
-    tables: Tables, open_: dict[int, Part], number: int, seconds: float, mebibytes: int, only: str
+    tables: Tables,
+    diagrams: Diagrams,
+    open_: dict[int, Part],
+    number: int,
+    seconds: float,
+    mebibytes: int,
+    only: str,
 ) -> list[Task]:
-    """What runs side by side in a round: for each kind of question two methods, or one method twice."""
+    """What runs side by side in a round: for each kind of question two methods, or one method twice; diagrams."""
+    drawn = {n: part.text for n, part in open_.items() if part.kind in KINDS}
+    if only == METHOD:
+        return diagrams.tasks(drawn, range(number, number + 2), seconds, mebibytes // 2)
     kinds = {part.kind for part in open_.values()}
     pairs = [_PLANS[kind][min(number, len(_PLANS[kind]) - 1)] for kind in sorted(kinds)]
     chosen: list[tuple[str, str]] = []
@@ -146,16 +158,25 @@ def _tasks(
                 mine = mine[which::2]
             if mine:
                 chosen.append((method, tables.text([f"{n} {open_[n].text}" for n in mine])))
-    share = mebibytes // max(1, len(chosen))
-    return [
+    is_drawn = not only and number > 0
+    share = mebibytes // max(1, len(chosen) + is_drawn)
+    tasks = [
         Task(method, text, seconds, share, seed=len(chosen) * number + i)
         for i, (method, text) in enumerate(chosen, 1)
     ]
+    if is_drawn:
+        tasks += diagrams.tasks(drawn, range(number - 1, number), seconds, share)
+    return tasks
 
 
-def space(program: Path, tables: Tables, *, seconds: float, mebibytes: int) -> Space | None:
-    """The sizes of the state space, if it can be seen to its end."""
-    for found in ask(program, [Task("count", tables.text([]), seconds, mebibytes)]):
+def space(
+    program: Path, tables: Tables, *, seconds: float, mebibytes: int, only: str = ""
+) -> Space | None:
+    """The sizes of the state space, if it can be seen to its end; counted, and with diagrams."""
+    tasks = [Task("count", tables.text([]), seconds, mebibytes // 3)] if only != METHOD else []
+    if only in ("", METHOD):
+        tasks += Diagrams(tables).sizes(seconds, mebibytes // 3)
+    for found in ask(program, tasks):
         if isinstance(found, Space):
             return found
     return None
