@@ -1,8 +1,8 @@
 /* SPDX-License-Identifier: MIT
  * symbolic.c - the method `diagrams`: all reachable markings as a set, then their numbers, or the questions.
  *
- * Questions about markings come before those about time, each with its share of the time that is left. Before the set is
- * whole nothing is said: a place that fills for ever ends with time, memory or too many tokens.
+ * Questions about markings come before those about time, each with its share of the time that is left. Before the set
+ * is whole nothing is said: a place that fills for ever ends with time, memory or too many tokens.
  */
 #include "symbolic.h"
 
@@ -44,8 +44,8 @@ static void answer(run_t *r, tb_question_t *q)
         return;
     }
     const sy_node_t where = sy_where(&r->d, q->formula);
-    const bool is_so = (q->kind == TB_REACH) ? (where != (sy_node_t)SY_NONE)
-                                             : sy_contains(&r->d, where, r->job->net.initial);
+    const bool is_so =
+        (q->kind == TB_REACH) ? (where != (sy_node_t)SY_NONE) : sy_contains(&r->d, where, r->job->net.initial);
     tb_say(q, is_so ? TB_YES : TB_NO, METHOD);
 }
 

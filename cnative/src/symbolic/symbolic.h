@@ -153,8 +153,8 @@ typedef struct sy_frozen {
     uint64_t *first; /* node -> its first edge; one node more */
     tb_count_t *tokens;
     uint32_t *child;
-    uint32_t *at;      /* nodes by their levels */
-    uint32_t *levels;  /* level -> its first node in `at`; one level more */
+    uint32_t *at;     /* nodes by their levels */
+    uint32_t *levels; /* level -> its first node in `at`; one level more */
     uint64_t all_edges;
     uint64_t bits_words;
 } sy_frozen_t;

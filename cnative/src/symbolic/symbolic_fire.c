@@ -73,6 +73,15 @@ static tb_count_t after(const sy_step_t *s, tb_count_t tokens)
 static void close_here(sy_diagrams_t *d, const sy_events_t *e, uint64_t begun, uint32_t level, sy_node_t within);
 static sy_node_t closed(sy_diagrams_t *d, const sy_events_t *e, sy_node_t n, sy_node_t within);
 
+/* Whether no marking of a node has the tokens for a step, as far as that can be seen at once. */
+static bool lacks_tokens(const sy_diagrams_t *d, sy_node_t n, const sy_step_t *s)
+{
+    const uint32_t level = sy_level(d, n);
+    const bool is_here = level == s->level;
+    const tb_count_t most = is_here ? sy_tokens(d, n, sy_count(d, n) - 1U) : 0U;
+    return (is_here || (level < s->level)) && (most < s->take);
+}
+
 /* With `e` the result is closed under its events up to its level; NULL: they are not fired. */
 static sy_node_t fired(sy_diagrams_t *d, const sy_events_t *e, sy_node_t n, sy_node_t within, sy_path_t path);
 
@@ -108,6 +117,9 @@ static sy_node_t fired(sy_diagrams_t *d, const sy_events_t *e, sy_node_t n, sy_n
     if (path == (sy_path_t)SY_END) {
         const sy_node_t rest = sy_intersection(d, n, within);
         return ((e == NULL) || (within == (sy_node_t)SY_ANY)) ? rest : closed(d, e, rest, within);
+    }
+    if (lacks_tokens(d, n, &d->step[path])) {
+        return (sy_node_t)SY_NONE;
     }
     const uint32_t of_path = d->step[path].level;
     const uint32_t level = (sy_level(d, n) > of_path) ? sy_level(d, n) : of_path;

@@ -217,7 +217,7 @@ static void grow_results(sy_diagrams_t *d)
 void sy_note(sy_diagrams_t *d, uint32_t op, uint32_t a, uint32_t b, uint32_t c, sy_node_t node)
 {
     d->noted++;
-    if ((d->noted > d->results) && (d->results < (uint64_t)MOST_RESULTS)
+    if (((2U * d->noted) > d->results) && (d->results < (uint64_t)MOST_RESULTS)
         && tb_has_room(8U * d->results * sizeof *d->result)) {
         grow_results(d);
     }

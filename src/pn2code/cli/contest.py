@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from contextlib import suppress
 from enum import StrEnum
@@ -52,6 +53,7 @@ def contest(
     `CANNOT_COMPUTE` stands for what is not known when the time is over. The exit code is 0, and 1 if the input is
     wrong.
     """
+    sys.set_int_max_str_digits(0)  # numbers of markings may be longer than Python allows
     deadline = Deadline.of_command(max_seconds)
     found = None
     try:
@@ -70,8 +72,8 @@ def contest(
             stop(d, Format.FULL)
         left = max(0.0, deadline.left or 0.0)
         if examination == SPACE:
-            found_sizes = space(program, tables, seconds=left, mebibytes=memory, only=only or "")
-            lines = _space(found_sizes)
+            sizes = space(program, tables, seconds=left, mebibytes=memory, only=only or "")
+            lines = _space(sizes)
         else:
             lines = _formulas(program, tables, questions, left, memory, only)
         for line in lines:

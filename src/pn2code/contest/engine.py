@@ -147,10 +147,11 @@ def _parsed(line: str) -> Answer | Space | None:
             return Answer(int(number), value == "yes", True, method)
         case ["bound", number, value, how, method]:
             return Answer(int(number), int(value), how == "exact", method)
-        case ["space", *sizes]:
-            return Space(*map(int, sizes))
-        case ["sizes", *sizes]:
-            return Space(*map(int, sizes), None, "DECISION_DIAGRAMS")
+        case ["space", states, arcs, place, marking, dead]:
+            return Space(int(states), int(arcs), int(place), int(marking), int(dead))
+        case ["sizes", states, arcs, place, marking]:
+            sizes = int(states), int(arcs), int(place), int(marking)
+            return Space(*sizes, None, "DECISION_DIAGRAMS")
     return None
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from pn2code.contest.diagrams import KINDS, METHOD, Diagrams
@@ -118,7 +118,7 @@ def answers(
             return
         length = min(left, _ROUNDS_S[number]) if number < len(_ROUNDS_S) else left
         tasks = _tasks(tables, diagrams, open_, number, length, mebibytes, only)
-        for found in ask(program, tasks):
+        for found in ask(program, _until(ends, tasks)):
             assert isinstance(found, Answer)
             if not found.is_final:
                 continue
@@ -169,14 +169,23 @@ def _tasks(
     return tasks
 
 
+def _until(ends: float, tasks: list[Task]) -> list[Task]:
+    """None of them goes on after the end, however long it took to make them."""
+    left = max(0.0, ends - time.monotonic())
+    return [replace(task, seconds=min(task.seconds, left)) for task in tasks]
+
+
 def space(
     program: Path, tables: Tables, *, seconds: float, mebibytes: int, only: str = ""
 ) -> Space | None:
-    """The sizes of the state space, if it can be seen to its end; counted, and with diagrams."""
-    tasks = [Task("count", tables.text([]), seconds, mebibytes // 3)] if only != METHOD else []
+    """The sizes of the state space, if it can be seen to its end: counted, and with diagrams, side by side."""
+    ends = time.monotonic() + seconds
+    tasks = []
+    if only != METHOD:
+        tasks.append(Task("count", tables.text([]), seconds, mebibytes // 3))
     if only in ("", METHOD):
         tasks += Diagrams(tables).sizes(seconds, mebibytes // 3)
-    for found in ask(program, tasks):
+    for found in ask(program, _until(ends, tasks)):
         if isinstance(found, Space):
             return found
     return None

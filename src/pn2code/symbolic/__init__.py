@@ -1,1 +1,1 @@
-"""Decision diagrams for place/transition nets: the order of their levels (the diagrams are in `cnative/src/symbolic`)."""
+"""The order of the levels of decision diagrams; the diagrams themselves are in `cnative/src/symbolic`."""

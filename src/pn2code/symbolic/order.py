@@ -2,7 +2,7 @@
 
     orders(initial, pre, post)   # the most promising one first
 
-A diagram is small where places that depend on each other are close. Which order is good is not known before it is tried:
+A diagram is small where places that depend on each other are close. Which order is good is known when it was tried:
 several are made, and those first in which transitions reach over few levels (weighted event span: Siminiceanu, Ciardo
 2006). FORCE (Aloul, Markov, Sakallah 2003) moves places to the middle of their transitions again and again.
 """
@@ -19,6 +19,8 @@ from scipy.sparse.csgraph import breadth_first_order, connected_components, reve
 _PASSES = 200
 _PATIENCE = 10
 """FORCE ends after so many passes without a better order."""
+_WORK = 20_000_000
+"""Nor does it look at more arcs."""
 _WIDE = 200
 """A transition with more places says little about which of them belong together."""
 
@@ -41,7 +43,11 @@ def orders(places: int, pre: Arcs, post: Arcs) -> list[list[int]]:
 def _made(net: _Spans) -> Iterator[Order]:
     first = np.arange(net.places, dtype=np.int64)
     near = net.neighbours()
-    starts = [first, reverse_cuthill_mckee(near, symmetric_mode=True).astype(np.int64), _breadth_first(near)]
+    starts = [
+        first,
+        reverse_cuthill_mckee(near, symmetric_mode=True).astype(np.int64),
+        _breadth_first(near),
+    ]
     for start in starts:
         yield start
         yield net.forced(start)
@@ -92,7 +98,7 @@ class _Spans:
         best, lowest, idle = order, self.cost(order), 0
         if not len(self.sizes):
             return best
-        for _ in range(_PASSES):
+        for _ in range(min(_PASSES, _WORK // len(self.place))):
             level = self._levels(order)
             centre = np.add.reduceat(level[self.place], self.first) / self.sizes
             pull = np.bincount(self.place, np.repeat(centre, self.sizes), self.places)
