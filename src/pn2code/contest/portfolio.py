@@ -181,7 +181,7 @@ def space(
     """The sizes of the state space, if it can be seen to its end: counted, and with diagrams, side by side."""
     ends = time.monotonic() + seconds
     tasks = []
-    if only != METHOD:
+    if only in ("", "explore"):
         tasks.append(Task("count", tables.text([]), seconds, mebibytes // 3))
     if only in ("", METHOD):
         tasks += Diagrams(tables).sizes(seconds, mebibytes // 3)
