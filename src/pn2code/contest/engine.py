@@ -80,6 +80,7 @@ class Task:
         seconds: that it may take.
         mebibytes: of memory that it may use.
         seed: of what it draws.
+        then: what is begun when this one has ended, whatever it said.
     """
 
     method: str
@@ -87,6 +88,11 @@ class Task:
     seconds: float
     mebibytes: int
     seed: int = 1
+    then: Task | None = None
+
+    def until_all_ended(self) -> float:
+        """Seconds that it may take with all that follow."""
+        return self.seconds + (self.then.until_all_ended() if self.then else 0.0)
 
 
 def ask(program: Path, tasks: Sequence[Task]) -> Iterator[Answer | Space]:
@@ -97,21 +103,57 @@ def ask(program: Path, tasks: Sequence[Task]) -> Iterator[Answer | Space]:
     """
     said: SimpleQueue[Answer | Space | str | None] = SimpleQueue()
     with tempfile.TemporaryDirectory(prefix="pn2code-") as folder:
-        running: list[tuple[subprocess.Popen[str], threading.Thread]] = []
+        running = [
+            _Row(program, Path(folder) / f"{n}.tables", t, said) for n, t in enumerate(tasks)
+        ]
         try:
-            for n, task in enumerate(tasks):
-                path = Path(folder) / f"{n}.tables"
-                path.write_text(task.text, encoding="ascii")
-                process = _started(program, path, task)
-                reader = threading.Thread(target=_read, args=(process, said), daemon=True)
-                reader.start()
-                running.append((process, reader))
-            longest = max((t.seconds for t in tasks), default=0.0) + _GRACE_S
+            for row in running:
+                row.start()
+            longest = max((t.until_all_ended() for t in tasks), default=0.0) + _GRACE_S
             yield from _until_all_ended(said, len(running), time.monotonic() + longest)
         finally:
-            for process, reader in running:
-                process.kill()
-                reader.join()
+            for row in running:
+                row.stop()
+
+
+class _Row(threading.Thread):
+    """Processes one after the other, and what they say."""
+
+    def __init__(
+        self,
+        program: Path,
+        path: Path,
+        first: Task,
+        said: SimpleQueue[Answer | Space | str | None],
+    ) -> None:
+        super().__init__(daemon=True)
+        self.program, self.path, self.first, self.said = program, path, first, said
+        self.guard = threading.Lock()
+        self.process: subprocess.Popen[str] | None = None
+        self.is_stopped = False
+
+    def run(self) -> None:
+        task: Task | None = self.first
+        try:
+            while task is not None:
+                self.path.write_text(task.text, encoding="ascii")
+                with self.guard:
+                    if self.is_stopped:
+                        return
+                    self.process = _started(self.program, self.path, task)
+                _read(self.process, self.said)
+                task = task.then
+        finally:
+            self.said.put(None)
+
+    def stop(self) -> None:
+        """End what runs; nothing is begun any more."""
+        with self.guard:
+            self.is_stopped = True
+            if self.process is not None:
+                self.process.kill()
+        if self.ident is not None:
+            self.join()
 
 
 def _started(program: Path, path: Path, task: Task) -> subprocess.Popen[str]:
@@ -137,7 +179,6 @@ def _read(process: subprocess.Popen[str], said: SimpleQueue[Answer | Space | str
         errors = process.stderr.read()
     if process.returncode == _WRONG:
         said.put(errors.strip())
-    said.put(None)
 
 
 def _parsed(line: str) -> Answer | Space | None:
