@@ -18,8 +18,8 @@ from statistics import median
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))  # as pytest does: the tests' helpers
 
+from tools.bench import compile_times, monitor, snakes_peer, states
 from tools.bench import measures as m
-from tools.bench import monitor, snakes_peer, states
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,7 +132,12 @@ def main() -> int:
     parser.add_argument(
         "--database-15", action="store_true", help="only that: 71,744,536 states, minutes"
     )
+    parser.add_argument(
+        "--compile", action="store_true", help="only what compiling takes, by the size of the net"
+    )
     options = parser.parse_args()
+    if options.compile:
+        return compile_times.measure(min(options.repeat, 3))
     if options.database_15:
         return states.measure_large(15, os.cpu_count() or 1)
     if options.states:

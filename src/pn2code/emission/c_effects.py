@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cached_property
 
 from pn2code.emission.c_places import staying_pairs
 from pn2code.ir import nodes as ir
@@ -79,17 +80,16 @@ class Effects:
         """The same without references: whether it may be another time what it is now, in the same state."""
         return self.reaches(item, is_outside)
 
+    @cached_property
     def roots(self) -> tuple[ir.Global, ...]:
         """The variables that are state besides the marking, in order.
 
         Those that transitions assign; and if they assign any, or the contents of any cell, all through which cells are
         reached, and all of which the address is known to others.
         """
-        nodes = [
-            n
-            for t in self._net.transitions
-            for n in self._reached((t.enumerate, t.fire, t.thresholds))
-        ]
+        nodes = self._reached(
+            tuple((t.enumerate, t.fire, t.thresholds) for t in self._net.transitions)
+        )
         if not any(map(is_assignment, nodes)):
             return ()
         assigned = {n.name for n in nodes if isinstance(n, ir.SetGlobal) and n.is_reference}

@@ -10,3 +10,13 @@ from __future__ import annotations
 STANDARD = "-std=c11"
 FLOATS = ("-ffp-contract=off", "-fno-fast-math")
 """Sums of products are rounded as in the token game, on every processor. They come after the user's flags."""
+LARGE = 1_000_000
+"""Characters of generated C from which compiling it for speed takes longer than is gained; some 200 transitions."""
+QUICKER = ("-O1", "-fno-inline")
+"""For large nets, after `-O2`: less than half of the compiler's time, and the explorer of the large net that was
+measured is as fast (docs/benchmarks.md). No value that is computed depends on them."""
+
+
+def for_size(characters: int) -> tuple[str, ...]:
+    """What the compiler is told besides `-O2`, or whatever else is asked for, about generated C of this length."""
+    return QUICKER if characters > LARGE else ()

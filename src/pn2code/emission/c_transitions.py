@@ -132,7 +132,7 @@ class Transitions(Frame):
         lists = self._firing(t, False, variables, own, name) if has_lists else None
         thresholds = self._thresholds(t, variables, own)
         text = "\n".join(fire.lines)
-        roots = self._effects.roots()
+        roots = self._effects.roots
         search_draws = self._effects.reaches(t.enumerate, is_draw)
         fire_draws = self._effects.reaches(t.fire, is_draw)
         return {

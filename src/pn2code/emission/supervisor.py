@@ -197,6 +197,7 @@ def emit(
         source=" ".join(source_name.split()),
         has_simulate=True,
         c_flags=c_flags,
+        net_flags=" ".join(c_flags.for_size(len(net_c or ""))),
         needs=required,
     )
     elements = [

@@ -53,8 +53,6 @@ CACHE_UNUSABLE = register(
 
 FLAGS = (c_flags.STANDARD, "-O2", "-pipe", *c_flags.FLOATS)
 """For all that is compiled here: what decides about the results is what the generated Makefile has, too."""
-LARGE = 1_000_000
-"""Characters of generated C beyond which a net is not compiled in one piece with its host."""
 MOST_PROGRAMS = 64
 """Programs of a host that are kept; the ones that were not used for the longest time go first."""
 STALE_S = 6 * 3600.0
@@ -242,7 +240,10 @@ class _Builder:
         tools = [*compiler.command, compiler.version, *self.flags, *host.libraries]
         tools += ["own", *host.own] if host.own else []
         self.library = folder / f"{host.name}-runtime-{_digest(tools, self.runtime)}.a"
-        tools += ["net", *host.net] if host.net else []
+        size = sum(len(f.text) for f in self.files)
+        self.is_large = size > c_flags.LARGE
+        self.net_flags = (*c_flags.for_size(size), *host.net)
+        tools += ["net", *self.net_flags] if self.net_flags else []
         self.program = folder / f"{host.name}-{_digest(tools, [*self.runtime, *self.files])}"
 
     def is_there(self) -> bool:
@@ -328,17 +329,17 @@ class _Builder:
     def _net(self, room: Path, d: Diagnostics) -> bool:
         """net.o: the net in one piece with the host's source that calls it, or alone.
 
-        In one piece it is several times as fast, and takes longer to compile. Should a name of the net be one that the
-        host has too, they are compiled apart: the library has that source as well.
+        In one piece it is several times as fast, and takes longer to compile; a large net is compiled alone. Should a
+        name of the net be one that the host has too, they are compiled apart: the library has that source as well.
         """
-        includes = (*self.host.net, "-Iruntime/include", "-I.")
+        includes = (*self.net_flags, "-Iruntime/include", "-I.")
         others = [f.path for f in self._sources() if f.path != "net.c"]
         # One a call: of several sources `zig cc` makes one object only.
         if not all(self._compiler(room, *includes, "-c", source, d=d) for source in others):
             return False
         if len(others) == len(self._sources()):
             return True  # a host that needs no net
-        if self.host.whole and sum(len(f.text) for f in self.files) <= LARGE:
+        if self.host.whole and not self.is_large:
             source = f"runtime/src/{self.host.whole}"
             whole = ('-DPN_NET_SOURCE="net.c"', "-c", source, "-o", "net.o")
             if self._compiler(room, *includes, *whole, d=Diagnostics()):

@@ -21,6 +21,16 @@ from pn2code.emission.c import emit
 from pn2code.emission.c_expressions import c_bytes, c_integer
 from pn2code.emission.c_lines import wrap
 from pn2code.emission.output import OutputFile
+from pn2code.ir import calls
+
+WORK = """
+    net Work
+      standard
+      globref count = 0;
+      fun next n = (count := !count + 1; n + !count)
+      var n: INT;
+      place P : INT = 1`0
+"""
 
 PICK = """
     net Pick
@@ -144,3 +154,31 @@ def test_a_full_disk_keeps_no_template_from_being_rendered(
     monkeypatch.setattr(environment, "private_folder", lambda: tmp_path)
     made = environment.environment.__wrapped__()  # not the one that is remembered
     assert made.get_template("c/net.c.j2").name == "c/net.c.j2"
+
+
+def test_work_grows_with_the_net(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Pieces of IR that emission looks at: four times as many transitions, four times as many, and no more.
+
+    The transitions assign a variable in a function, so that what they reach is followed through calls.
+    """
+    looked: list[type] = []
+    parts = calls._parts
+
+    def told(kind: type) -> object:
+        looked.append(kind)
+        return parts(kind)
+
+    monkeypatch.setattr(calls, "_parts", told)
+    work = []
+    for count in (10, 40):
+        lines = [WORK.rstrip()]
+        lines += [
+            f"      trans T{k}\n        in P : n\n        out P : next n + {k}"
+            for k in range(count)
+        ]
+        ir, d = lowered(flat("\n".join(lines)))
+        assert ir is not None, d
+        looked.clear()
+        emit(ir, "9.9")
+        work.append(len(looked))
+    assert work[1] < 4.4 * work[0]

@@ -143,6 +143,37 @@ def test_sums_are_rounded_everywhere_alike(tmp_path: Path) -> None:
             assert words.index(flag) > words.index(undone) and flag in FLAGS
 
 
+@pytest.mark.parametrize(
+    ("more", "options", "is_quicker"),
+    [(0, [], False), (1, [], True), (1, ["CFLAGS=-O2"], False)],
+)
+def test_a_large_net_is_compiled_quickly(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, more: int, options: list[str], is_quicker: bool
+) -> None:
+    """Unless the user has said how."""
+    monkeypatch.delenv("CFLAGS", raising=False)
+    net_c = " " * (c_flags.LARGE + more)
+    files = emit(
+        partition(), name="cell", reply_timeout_s=1.0, digest="d" * 64, version="9.9", net_c=net_c
+    )
+    (makefile,) = [f for f in files if f.path == "Makefile"]
+    (tmp_path / "Makefile").write_text(makefile.text)
+    for name in ("net.c", "net.h", "cell_config.c"):
+        (tmp_path / name).touch()
+    for target, is_net in (("net.o", True), ("net_own.o", True), ("build/cell_config.o", False)):
+        done = subprocess.run(
+            ["make", "-n", target, *options],
+            cwd=tmp_path,
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        words = done.stdout.split()
+        assert ("-fno-inline" in words) == (is_net and is_quicker)
+        levels = [w for w in words if w.startswith("-O")]
+        assert levels[-1] == ("-O1" if is_net and is_quicker else "-O2")
+
+
 def test_flags_are_written_down_once(root: Path) -> None:
     """Whoever compiles C has them from `c_flags`; only the explorer's own code is made for this machine."""
     sources = [

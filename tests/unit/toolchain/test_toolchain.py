@@ -5,13 +5,16 @@ from __future__ import annotations
 import os
 import shlex
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
 from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.emission import c_flags
 from pn2code.emission.output import Block, OutputFile
+from pn2code.toolchain import programs
 from pn2code.toolchain.build import build, find_compiler
 from pn2code.toolchain.programs import Host, program
 
@@ -105,3 +108,35 @@ def test_without_a_compiler_that_of_ziglang_is_used(
     with program(HOST, (MAIN,), d) as path:
         assert path is not None and os.access(path, os.X_OK), d.items
     assert not d.items
+
+
+@pytest.mark.cc
+def test_a_large_net_is_compiled_quickly(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The net alone; and under a name of its own, so that the one is never taken for the other."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    commands: list[list[str]] = []
+    run = programs._run
+
+    def told(command: list[str], *rest: object) -> object:
+        commands.append(command)
+        return run(command, *rest)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(programs, "_run", told)
+    host = Host("none", net=("-DFOR_THE_NET",), only=("none.c",))
+    files = (
+        OutputFile("net.c", "int net(void);\nint net(void) { return 7; }\n"),
+        OutputFile("other.c", "int net(void);\nint main(void) { return net(); }\n"),
+    )
+    built = []
+    for limit in (1_000_000, 10):
+        monkeypatch.setattr(c_flags, "LARGE", limit)
+        d = Diagnostics()
+        with program(host, files, d) as found:
+            assert found is not None, list(d)
+            assert subprocess.run([found], check=False).returncode == 7
+            built.append(found)
+    assert built[0] != built[1]
+    of_net = [c for c in commands if c[-1] == "net.c"]
+    assert [[f for f in c_flags.QUICKER if f in c] for c in of_net] == [[], [*c_flags.QUICKER]]
+    for flag in programs.FLAGS:  # what comes later counts; and a host may have its own word
+        assert of_net[1].index(flag) < of_net[1].index("-O1") < of_net[1].index("-DFOR_THE_NET")

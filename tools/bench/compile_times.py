@@ -1,0 +1,141 @@
+"""What compiling a net costs by its size: `./dev bench --compile`.
+
+The net is a ring of stations with a queue each: lists, records, code segments, a guard, and no two transitions alike,
+so that none of them share a C function. Told of each size: how long the generated C is, what generating and compiling
+it takes, and how fast the explorer is; in turn with `-O2` and with what `c_flags` has for large nets. Processor time.
+"""
+
+from __future__ import annotations
+
+import os
+import resource
+import subprocess
+import tempfile
+import time
+from dataclasses import replace
+from pathlib import Path
+
+from tests.helpers.netbuilder import flat
+
+from pn2code.diagnostics import Diagnostics
+from pn2code.emission import c_flags
+from pn2code.emission.output import OutputFile
+from pn2code.toolchain import programs as toolchain
+from pn2code.verify.exploring import programs
+from pn2code.verify.exploring.programs import Sizes
+
+SIZES = (100, 200, 300, 600)
+STATES = 1_000_000
+"""So many are explored, of each size; the ring has more."""
+WAYS = (("-O2",), ("-O2", *c_flags.QUICKER))
+
+
+def ring(transitions: int) -> str:
+    """A ring of stations, in the short form of the tests' nets.
+
+    Args:
+        transitions: how many the net has, at least; three a station.
+    """
+    stations = -(-transitions // 3)
+    lines = [
+        "net Stations", "  standard", "  colset KIND = with screw | nut | bolt;",
+        "  colset ITEM = record id: INT * kind: KIND;", "  colset ITEMS = list ITEM;",
+        "  colset NOTE = product INT * STRING;",
+        "  var i, j: ITEM; var l: ITEMS; var n: INT; var s, t: STRING;",
+        "  fun put (x : ITEM, nil) = [x]",
+        "    | put (x : ITEM, y :: r) = if #id x < #id y then x :: y :: r else y :: put (x, r)",
+        "  fun after k = case k of screw => nut | nut => bolt | _ => screw",
+        "  fun turned (x : ITEM, k) = {id = (#id x + k) mod 4, kind = after (#kind x)}",
+    ]  # fmt: skip
+    moves = []
+    for k in range(stations):
+        first = (
+            f" = 1`[{{id = {k % 4}, kind = nut}}, {{id = 3, kind = screw}}]"
+            if k in (0, stations // 2)
+            else " = 1`[]"
+        )
+        after = (k + 1) % stations
+        lines += [
+            f"  place Queue{k} : ITEMS{first}", f"  place Held{k} : ITEM", f"  place Done{k} : ITEM",
+            f'  place Note{k} : NOTE = 1`(0, "{k}")',
+        ]  # fmt: skip
+        action = f"(turned (i, {k % 3}), Int.toString (n + {k}))"
+        moves += [
+            f"  trans Take{k}", f"    in Queue{k} : i :: l", f"    out Queue{k} : l", f"    out Held{k} : i",
+            f"  trans Work{k} guard [#id i < {4 + k}] code input (i, n); output (j, s); action {action}",
+            f"    in Held{k} : i", f"    out Done{k} : j",
+            f"    in Note{k} : (n, t)", f"    out Note{k} : ((n + 1) mod 2, s)",
+            f"  trans Pass{k}", f"    in Done{k} : i", f"    in Queue{after} : l",
+            f"    out Queue{after} : if length l > {k % 5} then put (i, l) else l ^^ [i]",
+        ]  # fmt: skip
+    return "\n".join(lines + moves)
+
+
+def measure(repeat: int) -> int:
+    """Prints the table; the least of the repetitions."""
+    print(
+        "| transitions | lines of C | generate, s | flags | compile, s | ms a transition | explore, s |"
+    )
+    print("|---|---|---|---|---|---|---|")
+    with tempfile.TemporaryDirectory(prefix="pn2code-bench-") as cache:
+        os.environ["XDG_CACHE_HOME"] = cache  # nothing is there, so that all is compiled
+        for size in SIZES:
+            _measure(size, repeat)
+    return 0
+
+
+def _measure(size: int, repeat: int) -> None:
+    net = flat(ring(size))
+    count = len(net.transitions)
+    sizes = Sizes.start(net, {})
+    start = time.process_time()
+    files = programs.generated(net, {}, sizes, Diagnostics())
+    generated = time.process_time() - start
+    if files is None:
+        raise SystemExit("bench: the net cannot be generated")
+    lines = sum(f.text.count("\n") for f in files)
+    compiled = [min(_compile(files, flags) for _ in range(repeat)) for flags in WAYS]
+    explored = _explore(files, repeat)
+    for flags, of_compiler, of_explorer in zip(WAYS, compiled, explored, strict=True):
+        print(
+            f"| {count} | {lines:,} | {generated:.1f} | `{' '.join(flags)}` | {of_compiler:.1f} "
+            f"| {1000 * of_compiler / count:.1f} | {of_explorer:.2f} |",
+            flush=True,
+        )
+
+
+def _compile(files: tuple[OutputFile, ...], flags: tuple[str, ...]) -> float:
+    """Processor time of the compiler for the net alone."""
+    with tempfile.TemporaryDirectory(prefix="pn2code-bench-") as name:
+        room = Path(name)
+        runtime = programs.HOST.runtime()
+        for f in (*runtime, *files):
+            (room / f.path).parent.mkdir(parents=True, exist_ok=True)
+            (room / f.path).write_text(f.text, encoding="utf-8")
+        command = ["cc", *toolchain.FLAGS, "-DPN_MANY", *flags, "-Iruntime/include", "-I."]
+        return _work([*command, "-c", "net.c"], room)
+
+
+def _explore(files: tuple[OutputFile, ...], repeat: int) -> list[float]:
+    """Processor time of the explorers, in turn."""
+    hosts = [replace(programs.HOST, net=("-DPN_MANY", *flags)) for flags in WAYS]
+    d = Diagnostics()
+    with (
+        toolchain.program(hosts[0], files, d) as one,
+        toolchain.program(hosts[1], files, d) as other,
+    ):
+        if one is None or other is None:
+            raise SystemExit("bench: " + "; ".join(map(str, d)))
+        options = ("--threads", "1", "--max-states", str(STATES))
+        runs = [[_work([str(p), *options]) for p in (one, other)] for _ in range(repeat)]
+    return [min(column) for column in zip(*runs, strict=True)]
+
+
+def _work(command: list[str], folder: Path | None = None) -> float:
+    """User and system time of a command, s; an explorer that is stopped by its limit ends with 3."""
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    if done.returncode not in (0, 3):
+        raise SystemExit(f"bench: {command[0]}: {done.stderr}")
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime
