@@ -63,13 +63,35 @@ def write(folder: Path, examination: str, *formulas: str) -> None:
     (folder / f"{examination}.xml").write_text(FORMULAS.format("".join(named)))
 
 
-def test_state_space(folder: Path) -> None:
-    assert said(folder, "StateSpace") == [
-        "STATE_SPACE STATES 6 TECHNIQUES EXPLICIT",
-        "STATE_SPACE TRANSITIONS 6 TECHNIQUES EXPLICIT",
-        "STATE_SPACE MAX_TOKEN_IN_PLACE 2 TECHNIQUES EXPLICIT",
-        "STATE_SPACE MAX_TOKEN_PER_MARKING 3 TECHNIQUES EXPLICIT",
+@pytest.mark.parametrize(
+    ("method", "techniques"),
+    [("explore", "EXPLICIT"), ("diagrams", "DECISION_DIAGRAMS"), ("", "")],
+)
+def test_state_space(folder: Path, method: str, techniques: str) -> None:
+    """Two methods can tell; together, whichever is first."""
+    lines = said(folder, "StateSpace", *(("--only", method) if method else ()))
+    sizes = ["STATES 6", "TRANSITIONS 6", "MAX_TOKEN_IN_PLACE 2", "MAX_TOKEN_PER_MARKING 3"]
+    assert [line.partition(" TECHNIQUES ")[0] for line in lines] == [
+        f"STATE_SPACE {size}" for size in sizes
     ]
+    assert all(line.endswith(techniques) for line in lines)
+
+
+def test_a_state_space_that_cannot_be_counted(folder: Path) -> None:
+    assert said(folder, "StateSpace", "--only", "walk") == ["CANNOT_COMPUTE"]
+
+
+def test_diagrams_alone(folder: Path) -> None:
+    """They answer what is asked of markings and of branching time, and nothing of linear time."""
+    write(folder, "UpperBounds", "<place-bound><place>q</place></place-bound>")
+    assert said(folder, "UpperBounds", "--only", "diagrams") == [
+        "FORMULA a 2 TECHNIQUES DECISION_DIAGRAMS"
+    ]
+    assert said(folder, "Liveness", "--only", "diagrams") == [
+        "FORMULA Liveness FALSE TECHNIQUES DECISION_DIAGRAMS"
+    ]
+    write(folder, "LTLCardinality", f"<all-paths><globally>{ONE_IN_Q}</globally></all-paths>")
+    assert said(folder, "LTLCardinality", "--only", "diagrams") == ["FORMULA a CANNOT_COMPUTE"]
 
 
 @pytest.mark.parametrize(

@@ -37,6 +37,30 @@ def random_tables(draw: random.Random) -> Tables:
     )
 
 
+def restless_tables(draw: random.Random) -> Tables:
+    """As above, with more places, larger weights, and transitions that put more than they take."""
+    places = draw.randint(2, 7)
+    pre, post = [], []
+    for _ in range(draw.randint(2, 7)):
+        taken: dict[int, int] = {}
+        for _ in range(draw.randint(1, 4)):
+            p = draw.randrange(places)
+            taken[p] = taken.get(p, 0) + 1
+        put: dict[int, int] = {}
+        for _ in range(max(0, sum(taken.values()) + draw.choice((-2, -1, 0, 0, 0, 1, 1)))):
+            p = draw.randrange(places) if draw.random() < 0.6 else draw.choice([*taken])
+            put[p] = put.get(p, 0) + 1
+        pre.append(taken)
+        post.append(put)
+    return Tables(
+        tuple(draw.choice((0, 0, 0, 1, 2, 3, 5)) for _ in range(places)),
+        tuple(pre),
+        tuple(post),
+        {f"p{p}": (p,) for p in range(places)},
+        {f"t{t}": (t,) for t in range(len(pre))},
+    )
+
+
 def random_condition(draw: random.Random, tables: Tables, depth: int = 2) -> Formula:
     """A formula about one marking."""
     kind = draw.randrange(5 if depth else 2)

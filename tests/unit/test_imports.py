@@ -31,7 +31,7 @@ ALLOWED: dict[str, set[str]] = {
     "convert": {"diagnostics", "ml", "net", "pnml", "reading", "semantics", "unfold"},
     "emission": {"cell", "diagnostics", "ir", "lowering", "net", "robot_scripts", "tdl"},
     "toolchain": {"diagnostics", "emission"},
-    "contest": {"diagnostics", "properties", "toolchain", "unfold"},
+    "contest": {"diagnostics", "properties", "symbolic", "toolchain", "unfold"},
     "simulate": {"cell", "diagnostics", "emission", "lowering", "monitors", "net", "semantics", "toolchain", "trace"},
     "verify": {"cell", "channels", "diagnostics", "drawing", "emission", "ir", "lowering", "ml", "net",
         "properties", "reading", "robot_scripts", "semantics", "simulate", "structure", "tdl", "toolchain", "trace",

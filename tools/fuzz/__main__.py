@@ -3,6 +3,7 @@
     python -m tools.fuzz [--seconds 600] [--cases N] [--seed 1] [--save FOLDER]
     python -m tools.fuzz --nets N       random nets are compiled and compared instead: see `walks`
     python -m tools.fuzz --graphs N     whole state spaces of random nets: see `graphs`
+    python -m tools.fuzz --diagrams N   decision diagrams next to the graphs of random nets: see `diagrams`
     python -m tools.fuzz --hosts N      random nets with references in all hosts: see `hosts`
     python -m tools.fuzz --declarations N   every type at every position: see `declarations`
     python -m tools.fuzz --expressions N    CPN ML over the whole library, compiled: see `expressions`
@@ -180,6 +181,10 @@ def main() -> int:
         from tools.fuzz import graphs
 
         return graphs.main()
+    if any(o.startswith("--diagrams") for o in others):
+        from tools.fuzz import diagrams
+
+        return diagrams.main()
     if any(o.startswith("--hosts") for o in others):
         from tools.fuzz import hosts
 

@@ -3,8 +3,9 @@
  *
  *     tables FILE METHOD SECONDS MIB SEED
  *
- * METHOD is walk, explore, count, reach, ctl or ltl. The exit code is 0 when the method came to its end, 2 if the
- * tables are wrong, 4 if memory ran out.
+ * METHOD is walk, explore, count, reach, ctl, ltl, diagrams or sizes (diagrams, for the numbers of markings). The exit
+ * code is 0 when the method came to its end, 2 if the tables are wrong, 3 if a set was not whole in time, 4 if memory
+ * ran out.
  */
 #include "tables.h"
 
@@ -34,6 +35,8 @@ int main(int count, char **argument)
         tb_ctl(&job, seconds);
     } else if (strcmp(method, "ltl") == 0) {
         tb_ltl(&job, seconds);
+    } else if ((strcmp(method, "diagrams") == 0) || (strcmp(method, "sizes") == 0)) {
+        tb_diagrams(&job, strcmp(method, "sizes") == 0, seconds);
     } else {
         tb_fail(TB_EXIT_WRONG, "`%s` is no method", method);
     }

@@ -122,6 +122,7 @@ typedef struct tb_job {
     tb_net_t net;
     tb_question_t *question;
     uint32_t questions;
+    uint32_t *order; /* all places, from the top of a diagram downwards; NULL: none is given */
 } tb_job_t;
 
 /* Read a job from a file; an error ends the program with a message. */
@@ -266,5 +267,6 @@ void tb_explore(tb_job_t *job, bool count);
 void tb_reach(tb_job_t *job, double each);
 void tb_ctl(tb_job_t *job, double each);
 void tb_ltl(tb_job_t *job, double each);
+void tb_diagrams(tb_job_t *job, bool is_sizes, double seconds); /* symbolic/ */
 
 #endif

@@ -8,11 +8,12 @@
  *     for each question: its number, and
  *         reach FORMULA | bound SUM | ctl FORMULA | ltl AUTOMATON
  *         guided N (transition times).. and one of them: a guess how the formula may become true, for walks
+ *     order, and all places, from the top of a diagram downwards: where diagrams are wanted
  *
- *     FORMULA    true | false | dead | not F | and N F.. | or N F.. | sum N (place factor).. limit | enabled N
- * transition.. EX F | AX F | EF F | AF F | EG F | AG F | EU F F | AU F F AUTOMATON  atoms FORMULA.. states, for each
- * state: whether it accepts (0 or 1), how many moves, (target TRUE FALSE).., where TRUE and FALSE are numbers with the
- * bits of the atoms that must be so
+ *     FORMULA    true | false | dead | not F | and N F.. | or N F.. | sum N (place factor).. limit
+ *                | enabled N transition.. | EX F | AX F | EF F | AF F | EG F | AG F | EU F F | AU F F
+ *     AUTOMATON  atoms FORMULA.. states, for each state: whether it accepts (0 or 1), how many moves,
+ *                (target TRUE FALSE).., where TRUE and FALSE are numbers with the bits of the atoms that must be so
  *
  * The text comes from pn2code itself, so that an error in it is an error of the program; it is found all the same.
  */
@@ -319,6 +320,25 @@ static void read_question(reader_t *r, tb_question_t *q)
     q->least = INT64_MIN;
 }
 
+/* Each place once. */
+static void read_order(reader_t *r, tb_job_t *job)
+{
+    char word[LONGEST_WORD];
+    if ((fscanf(r->file, "%63s", word) != 1) || (strcmp(word, "order") != 0)) {
+        return;
+    }
+    bool *is_there = tb_new(job->net.places, sizeof *is_there);
+    job->order = tb_new(job->net.places, sizeof *job->order);
+    for (uint32_t i = 0U; i < job->net.places; i++) {
+        job->order[i] = index_below(r, job->net.places);
+        if (is_there[job->order[i]]) {
+            tb_fail(TB_EXIT_WRONG, "place %u is in the order twice", job->order[i]);
+        }
+        is_there[job->order[i]] = true;
+    }
+    tb_free(is_there, job->net.places, sizeof *is_there);
+}
+
 void tb_read(tb_job_t *job, const char *path)
 {
     reader_t r = { fopen(path, "r"), { 0 }, &job->net, 0U };
@@ -331,5 +351,6 @@ void tb_read(tb_job_t *job, const char *path)
     for (uint32_t i = 0U; i < job->questions; i++) {
         read_question(&r, &job->question[i]);
     }
+    read_order(&r, job);
     (void)fclose(r.file);
 }

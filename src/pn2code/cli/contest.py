@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from contextlib import suppress
 from enum import StrEnum
@@ -52,6 +53,7 @@ def contest(
     `CANNOT_COMPUTE` stands for what is not known when the time is over. The exit code is 0, and 1 if the input is
     wrong.
     """
+    sys.set_int_max_str_digits(0)  # numbers of markings may be longer than Python allows
     deadline = Deadline.of_command(max_seconds)
     found = None
     try:
@@ -70,7 +72,8 @@ def contest(
             stop(d, Format.FULL)
         left = max(0.0, deadline.left or 0.0)
         if examination == SPACE:
-            lines = _space(space(program, tables, seconds=left, mebibytes=memory))
+            sizes = space(program, tables, seconds=left, mebibytes=memory, only=only or "")
+            lines = _space(sizes)
         else:
             lines = _formulas(program, tables, questions, left, memory, only)
         for line in lines:
@@ -129,4 +132,4 @@ def _space(found: Space | None) -> Iterator[str]:
         ("MAX_TOKEN_IN_PLACE", found.tokens_in_place),
         ("MAX_TOKEN_PER_MARKING", found.tokens_in_marking),
     ):
-        yield f"STATE_SPACE {what} {number} TECHNIQUES EXPLICIT"
+        yield f"STATE_SPACE {what} {number} TECHNIQUES {found.method}"

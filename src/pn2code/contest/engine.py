@@ -23,7 +23,13 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.toolchain import programs
 from pn2code.toolchain.programs import Host
 
-HOST = Host("tables", only=("tables*.c",))
+HOST = Host(
+    "tables",
+    flags=("-pthread",),
+    libraries=("-pthread", "-lm"),
+    also=("symbolic",),
+    only=("tables*.c", "symbolic*.c"),
+)
 _WRONG = 2
 """Exit code: the tables are wrong."""
 _GRACE_S = 1.0
@@ -49,13 +55,14 @@ class Answer:
 
 @dataclass(frozen=True, slots=True)
 class Space:
-    """Sizes of a state space that was seen to its end."""
+    """Sizes of a state space that was seen to its end; `dead` is None where it was not asked for."""
 
     states: int
     arcs: int
     tokens_in_place: int
     tokens_in_marking: int
-    dead: int
+    dead: int | None
+    method: str = "EXPLICIT"
 
 
 def engine(d: Diagnostics) -> AbstractContextManager[Path | None]:
@@ -206,6 +213,9 @@ def _parsed(line: str) -> Answer | Space | None:
             return Answer(int(number), value == "yes", True, method)
         case ["bound", number, value, how, method]:
             return Answer(int(number), int(value), how == "exact", method)
-        case ["space", *sizes]:
-            return Space(*map(int, sizes))
+        case ["space", states, arcs, place, marking, dead]:
+            return Space(int(states), int(arcs), int(place), int(marking), int(dead))
+        case ["sizes", states, arcs, place, marking]:
+            sizes = int(states), int(arcs), int(place), int(marking)
+            return Space(*sizes, None, "DECISION_DIAGRAMS")
     return None

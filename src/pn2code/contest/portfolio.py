@@ -10,10 +10,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from queue import Empty, SimpleQueue
 
+from pn2code.contest.diagrams import KINDS, METHOD, Diagrams
 from pn2code.contest.engine import Answer, Said, Space, Task, ask
 from pn2code.contest.examinations import Asked, Part
 from pn2code.contest.structural import REDUCTION, Question, Structural, question
@@ -26,6 +27,7 @@ METHODS = {
     "reach": ("reach", "bound"),
     "ctl": ("ctl",),
     "ltl": ("ltl",),
+    METHOD: KINDS,
 }
 """Method -> the kinds of questions that it can answer. All but `structure` are those of the engine."""
 _PAIRS = (("walk", "reach"), ("walk", "reach"), ("explore", "reach"), ("walk", "reach"))
@@ -146,6 +148,7 @@ class _Portfolio:
             parts: list[tuple[Part, bool | None]] = [(p, None) for p in line.asked.parts]
             for which, (part, hint) in enumerate([*parts, *line.asked.hints]):
                 self.places.append(_Place(line, part, which, hint))
+        self.drawn: dict[int, Diagrams] = {}
         self.structural: Structural | None = None
         if only in ("", "structure"):
             self._start_structural()
@@ -237,9 +240,13 @@ class _Portfolio:
     # --- what the engine is asked ----------------------------------------------------------------
 
     def _lanes(self, open_: list[int], number: int, length: float) -> list[Iterator[Task]]:
-        """Two lanes: each with tasks for all kinds of questions."""
+        """Two lanes, each with tasks for all kinds of questions; from the second round on one with diagrams."""
         ends = time.monotonic() + length
         kinds = sorted({self.places[n].part.kind for n in open_})
+        drawn = [n for n in open_ if self.places[n].part.kind in KINDS]
+        if self.only == METHOD:
+            return [self._drawn(drawn, number, number + i, ends, 2) for i in range(2) if drawn]
+        is_drawn = bool(drawn) and not self.only and number > 0
         found = []
         for which in range(2):
             tasks: list[tuple[str, list[int]]] = []
@@ -250,8 +257,14 @@ class _Portfolio:
                 if mine:
                     tasks.append((method, mine))
             if tasks:
-                found.append(self._lane(tasks, number, which, ends))
-        return found
+                found.append(self._lane(tasks, number, which, ends, 2 + is_drawn))
+        return [*found, *([self._drawn(drawn, number, number - 1, ends, 3)] if is_drawn else [])]
+
+    def _drawn(
+        self, numbers: list[int], number: int, order: int, ends: float, lanes: int
+    ) -> Iterator[Task]:
+        """A lane with diagrams, with one of the orders of the places."""
+        return self._lane([(METHOD, numbers)], number, order, ends, lanes)
 
     def _methods(self, kinds: list[str], number: int, which: int) -> list[str]:
         if self.only:
@@ -260,10 +273,22 @@ class _Portfolio:
         return list(dict.fromkeys(pair[which] if k in ("reach", "bound") else k for k in kinds))
 
     def _lane(
-        self, tasks: list[tuple[str, list[int]]], number: int, which: int, ends: float
+        self,
+        tasks: list[tuple[str, list[int]]],
+        number: int,
+        which: int,
+        ends: float,
+        lanes: int,
     ) -> Iterator[Task]:
-        """The tasks of a lane, made when it comes to them."""
-        seed = 2 * number + which + 1
+        """The tasks of a lane, made when it comes to them.
+
+        Args:
+            tasks: methods with the numbers of their questions.
+            number: of the round.
+            which: lane of the round, for other random numbers; of diagrams the order.
+            ends: when it is over.
+            lanes: that share the memory.
+        """
         for i, (method, numbers) in enumerate(tasks):
             now = time.monotonic()
             until = now + (ends - now) / (len(tasks) - i)
@@ -274,7 +299,13 @@ class _Portfolio:
                 left = (until - time.monotonic()) / (len(groups) - k)
                 still = [n for n in group if self.places[n].is_open]
                 if still and left >= _LEAST_SLICE_S / 5:
-                    yield self._task(method, still, left, seed, is_first=number == 0)
+                    task = self._task(method, still, which, is_first=number == 0)
+                    yield replace(
+                        task,
+                        seconds=min(left, max(0.0, self.ends - time.monotonic())),
+                        mebibytes=self.mebibytes // lanes,
+                        seed=2 * number + which + 1,
+                    )
 
     def _groups(self, numbers: list[int]) -> list[list[int]]:
         """The questions that have the same net."""
@@ -285,9 +316,7 @@ class _Portfolio:
             found.setdefault(0 if smaller is None else id(smaller.tables), []).append(n)
         return list(found.values())
 
-    def _task(
-        self, method: str, numbers: list[int], seconds: float, seed: int, *, is_first: bool
-    ) -> Task:
+    def _task(self, method: str, numbers: list[int], which: int, *, is_first: bool) -> Task:
         """Some questions about the net that they share; in the beginning about the net as it is."""
         smaller = {}
         for n in numbers if not is_first else ():
@@ -297,18 +326,41 @@ class _Portfolio:
         nets = {id(s.tables): s.tables for _, s in smaller.values()}
         if len(smaller) < len(numbers) or len(nets) != 1:
             texts = [f"{n} {self.places[n].part.text}" for n in numbers]
-            return Task(method, self.tables.text(texts), seconds, self.mebibytes // 2, seed)
+            order = self._order(self.tables, which) if method == METHOD else ()
+            return Task(method, self.tables.text(texts, order), 0.0, 0)
         texts = [f"{n} {s.text(kind)}" for n, (kind, s) in smaller.items()]
         (tables,) = nets.values()
         added = {n: s.added for n, (_, s) in smaller.items()}
-        return Task(
-            method, tables.text(texts), seconds, self.mebibytes // 2, seed, added, REDUCTION
-        )
+        order = self._order(tables, which) if method == METHOD else ()
+        return Task(method, tables.text(texts, order), 0.0, 0, added=added, technique=REDUCTION)
+
+    def _order(self, tables: Tables, which: int) -> Sequence[int]:
+        """One of the orders of the places of a net, which is this one or a reduced one."""
+        if id(tables) not in self.drawn:
+            self.drawn[id(tables)] = Diagrams(tables)
+        orders = self.drawn[id(tables)].orders
+        return orders[which % len(orders)] if orders else ()
 
 
-def space(program: Path, tables: Tables, *, seconds: float, mebibytes: int) -> Space | None:
-    """The sizes of the state space, if it can be seen to its end."""
-    for found in ask(program, [Task("count", tables.text([]), seconds, mebibytes)]):
+def _until(ends: float, tasks: Sequence[Task]) -> Iterator[Task]:
+    """None of them goes on after the end, however long it took to make them."""
+    for task in tasks:
+        left = ends - time.monotonic()
+        if left > 0:
+            yield replace(task, seconds=min(task.seconds, left))
+
+
+def space(
+    program: Path, tables: Tables, *, seconds: float, mebibytes: int, only: str = ""
+) -> Space | None:
+    """The sizes of the state space, if it can be seen to its end: counted, and with diagrams, side by side."""
+    ends = time.monotonic() + seconds
+    lanes = []
+    if only in ("", "explore"):
+        lanes.append([Task("count", tables.text([]), seconds, mebibytes // 3)])
+    if only in ("", METHOD):
+        lanes += Diagrams(tables).sizes(seconds, mebibytes // 3)
+    for found in ask(program, [_until(ends, lane) for lane in lanes]):
         if isinstance(found, Space):
             return found
     return None

@@ -61,13 +61,14 @@ class Tables:
             {t.id: tuple(of[t.index]) for t in unfolding.net.transitions},
         )
 
-    def text(self, questions: Sequence[str]) -> str:
-        """The net with questions in the engine's own words."""
+    def text(self, questions: Sequence[str], order: Sequence[int] = ()) -> str:
+        """The net with questions in the engine's own words, for diagrams with an order of all places."""
         lines = [f"{len(self.initial)} {len(self.pre)}", " ".join(map(str, self.initial))]
         for pre, post in zip(self.pre, self.post, strict=True):
             lines.append(f"{_arcs(pre)} {_arcs(post)}")
         lines.append(str(len(questions)))
-        return "\n".join([*lines, *questions]) + "\n"
+        levels = [f"order {' '.join(map(str, order))}"] if order else []
+        return "\n".join([*lines, *questions, *levels]) + "\n"
 
     def reach(self, number: int, formula: Formula) -> str:
         """The question whether a marking is reachable in which a formula without operators of time is true."""

@@ -1,0 +1,127 @@
+/* SPDX-License-Identifier: MIT
+ * symbolic.c - the method `diagrams`: all reachable markings as a set, then their numbers, or the questions.
+ *
+ * Questions about markings come before those about time, each with its share of the time that is left. Before the set
+ * is whole nothing is said: a place that fills for ever ends with time, memory or too many tokens.
+ */
+#include "symbolic.h"
+
+#include <inttypes.h>
+#include <pthread.h>
+#include <stdio.h>
+
+#define METHOD "DECISION_DIAGRAMS"
+
+enum { STACK = 1 << 26, STACK_OF_LEVEL = 1 << 12, MOST_LEVELS = 1 << 20 };
+
+typedef struct run {
+    tb_job_t *job;
+    double seconds;
+    bool is_sizes;
+    sy_diagrams_t d;
+    sy_frozen_t frozen;
+} run_t;
+
+/* --- questions --------------------------------------------------------------------------------------------------------------------- */
+
+static void answer_bound(run_t *r, tb_question_t *q)
+{
+    int64_t *factor = tb_new((size_t)r->d.levels + 1U, sizeof *factor);
+    int64_t bound = 0;
+    for (uint32_t i = 0U; i < q->formula->count; i++) {
+        factor[r->d.level[q->formula->term[i].place]] += q->formula->term[i].factor;
+    }
+    if (sy_largest(&r->frozen, factor, &bound)) {
+        tb_say_bound(q, bound, true, METHOD);
+    }
+    tb_free(factor, (size_t)r->d.levels + 1U, sizeof *factor);
+}
+
+static void answer(run_t *r, tb_question_t *q)
+{
+    if (q->kind == TB_BOUND) {
+        answer_bound(r, q);
+        return;
+    }
+    const sy_node_t where = sy_where(&r->d, q->formula);
+    const bool is_so =
+        (q->kind == TB_REACH) ? (where != (sy_node_t)SY_NONE) : sy_contains(&r->d, where, r->job->net.initial);
+    tb_say(q, is_so ? TB_YES : TB_NO, METHOD);
+}
+
+static void answer_all(run_t *r, tb_kind_t kind)
+{
+    volatile uint32_t left = 0U;
+    for (uint32_t i = 0U; i < r->job->questions; i++) {
+        left += (r->job->question[i].kind == kind) ? 1U : 0U;
+    }
+    for (volatile uint32_t i = 0U; i < r->job->questions; i++) {
+        tb_question_t *q = &r->job->question[i];
+        if (q->kind != kind) {
+            continue;
+        }
+        const double now = tb_elapsed();
+        tb_limit_time(now + ((r->seconds - now) / (double)left));
+        left--;
+        if (setjmp(r->d.given_up) == 0) {
+            answer(r, q);
+        } else {
+            r->d.edge_words = 0U; /* nodes that were in the making */
+        }
+    }
+}
+
+/* --- the state space --------------------------------------------------------------------------------------------------------------- */
+
+static void find_space(run_t *r)
+{
+    sy_diagrams_t *d = &r->d;
+    d->space = sy_saturated(d, &d->forwards, sy_one(d, r->job->net.initial), (sy_node_t)SY_ANY);
+    sy_freeze(d, d->space, &r->frozen);
+    d->most = tb_new((size_t)d->levels + 1U, sizeof *d->most);
+    for (uint32_t i = 1U; i < r->frozen.nodes; i++) {
+        const tb_count_t most = r->frozen.tokens[r->frozen.first[i + 1U] - 1U];
+        const uint32_t level = r->frozen.level[i];
+        d->most[level] = (most > d->most[level]) ? most : d->most[level];
+    }
+    (void)printf("seen %" PRIu32 " nodes, %" PRIu64 " in all, %.3f s\n", r->frozen.nodes, d->nodes, tb_elapsed());
+    (void)fflush(stdout);
+}
+
+static void *work(void *argument)
+{
+    run_t *r = argument;
+    sy_init(&r->d, &r->job->net, r->job->order);
+    if (setjmp(r->d.given_up) != 0) {
+        tb_fail(TB_EXIT_TIME, "time is over");
+    }
+    sy_make_events(&r->d);
+    find_space(r);
+    if (r->is_sizes) {
+        sy_say_sizes(&r->d, &r->frozen);
+    } else {
+        answer_all(r, TB_BOUND);
+        answer_all(r, TB_REACH);
+        answer_all(r, TB_CTL);
+    }
+    return NULL;
+}
+
+/* The functions call themselves from level to level: they need a stack of their own. */
+void tb_diagrams(tb_job_t *job, bool is_sizes, double seconds)
+{
+    static run_t r;
+    pthread_attr_t attributes;
+    pthread_t worker;
+    r.job = job;
+    r.is_sizes = is_sizes;
+    r.seconds = seconds;
+    if (job->net.places > (uint32_t)MOST_LEVELS) {
+        tb_fail(TB_EXIT_MEMORY, "there are too many places");
+    }
+    const size_t stack = (size_t)STACK + ((size_t)STACK_OF_LEVEL * job->net.places);
+    if ((pthread_attr_init(&attributes) != 0) || (pthread_attr_setstacksize(&attributes, stack) != 0)
+        || (pthread_create(&worker, &attributes, work, &r) != 0) || (pthread_join(worker, NULL) != 0)) {
+        tb_fail(TB_EXIT_MEMORY, "there is no room for a stack");
+    }
+}

@@ -1,0 +1,210 @@
+/* SPDX-License-Identifier: MIT
+ * symbolic_formula.c - the reachable markings in which a formula holds.
+ *
+ * A path that ends in a dead marking is a path: EX is false there, and EG p is p. E[p U q] is what saturation backwards
+ * from q finds within p; EG p loses the markings from which no transition leads to another one, until none is lost.
+ */
+#include "symbolic.h"
+
+#include <stdlib.h>
+
+/* --- sums -------------------------------------------------------------------------------------------------------------------------- */
+
+typedef struct term {
+    uint32_t level;
+    int64_t factor;
+    int64_t least; /* of this term and those below it */
+    int64_t most;
+} term_t;
+
+typedef struct sum {
+    term_t *term; /* the highest level first; one more at the end, with level 0 */
+    uint32_t number;
+} sum_t;
+
+static int from_above(const void *a, const void *b)
+{
+    const term_t *left = a;
+    const term_t *right = b;
+    return (left->level < right->level) - (left->level > right->level);
+}
+
+/* One term for each level; false: the sum is too large for a number. */
+static bool order_terms(const sy_diagrams_t *d, const tb_formula_t *f, term_t *term)
+{
+    uint32_t count = 0U;
+    bool is_small = true;
+    for (uint32_t i = 0U; i < f->count; i++) {
+        const term_t t = { d->level[f->term[i].place], f->term[i].factor, 0, 0 };
+        term[i] = t;
+    }
+    qsort(term, f->count, sizeof *term, from_above);
+    for (uint32_t i = 0U; i < f->count; i++) {
+        if ((count > 0U) && (term[count - 1U].level == term[i].level)) {
+            term[count - 1U].factor += term[i].factor;
+        } else {
+            term[count] = term[i];
+            count++;
+        }
+    }
+    const term_t end = { 0U, 0, 0, 0 };
+    term[count] = end;
+    for (uint32_t i = count; i > 0U; i--) {
+        term_t *t = &term[i - 1U];
+        int64_t all;
+        is_small = is_small && !__builtin_mul_overflow(t->factor, (int64_t)d->most[t->level], &all)
+                   && !__builtin_add_overflow(term[i].least, (all < 0) ? all : 0, &t->least)
+                   && !__builtin_add_overflow(term[i].most, (all > 0) ? all : 0, &t->most);
+    }
+    return is_small;
+}
+
+/* The markings below a node in which the sum of the terms from here on is at most `limit`. */
+static sy_node_t at_most(sy_diagrams_t *d, const sum_t *s, sy_node_t n, uint32_t which, int64_t limit)
+{
+    const term_t *t = &s->term[which];
+    if ((n == (sy_node_t)SY_NONE) || (limit < t->least)) {
+        return (sy_node_t)SY_NONE;
+    }
+    if (limit >= t->most) {
+        return n;
+    }
+    const uint32_t level = sy_level(d, n);
+    if (level < t->level) {
+        return at_most(d, s, n, which + 1U, limit);
+    }
+    if ((limit > INT32_MAX) || (limit < INT32_MIN)) {
+        sy_give_up(d);
+    }
+    sy_node_t found;
+    if (sy_find(d, s->number, n, which, (uint32_t)(int32_t)limit, &found)) {
+        return found;
+    }
+    const bool is_here = level == t->level;
+    const uint64_t begun = sy_begin(d);
+    for (uint32_t i = 0U; i < sy_count(d, n); i++) {
+        const int64_t left = is_here ? (limit - (t->factor * (int64_t)sy_tokens(d, n, i))) : limit;
+        sy_put(d, sy_tokens(d, n, i), at_most(d, s, sy_child(d, n, i), is_here ? (which + 1U) : which, left));
+    }
+    found = sy_end(d, begun, level);
+    sy_note(d, s->number, n, which, (uint32_t)(int32_t)limit, found);
+    return found;
+}
+
+sy_node_t sy_where_sum(sy_diagrams_t *d, const tb_formula_t *f)
+{
+    sum_t s = { tb_new((size_t)f->count + 1U, sizeof(term_t)), (uint32_t)SY_SUM + d->sums };
+    d->sums++;
+    if (!order_terms(d, f, s.term)) {
+        sy_give_up(d);
+    }
+    const sy_node_t found = at_most(d, &s, d->space, 0U, f->limit);
+    tb_free(s.term, (size_t)f->count + 1U, sizeof(term_t));
+    return found;
+}
+
+/* --- transitions ------------------------------------------------------------------------------------------------------------------- */
+
+static sy_node_t where_enabled(sy_diagrams_t *d, const tb_formula_t *f)
+{
+    sy_node_t found = (sy_node_t)SY_NONE;
+    for (uint32_t i = 0U; i < f->count; i++) {
+        const sy_node_t one = sy_fire(d, d->space, (sy_node_t)SY_ANY, d->test[f->transition[i]]);
+        found = sy_union(d, found, one);
+    }
+    return found;
+}
+
+static sy_node_t where_dead(sy_diagrams_t *d)
+{
+    if (d->dead == (sy_node_t)SY_ANY) {
+        sy_node_t left = d->space;
+        for (uint32_t t = 0U; (t < d->net->transitions) && (left != (sy_node_t)SY_NONE); t++) {
+            left = sy_difference(d, left, sy_fire(d, left, (sy_node_t)SY_ANY, d->test[t]));
+        }
+        d->dead = left;
+    }
+    return d->dead;
+}
+
+/* The markings of `within` from which a transition leads into a set. */
+static sy_node_t before(sy_diagrams_t *d, sy_node_t n, sy_node_t within)
+{
+    sy_node_t found = (sy_node_t)SY_NONE;
+    for (uint32_t t = 0U; t < d->net->transitions; t++) {
+        found = sy_union(d, found, sy_fire(d, n, within, d->backwards.path[t]));
+    }
+    return found;
+}
+
+/* --- time -------------------------------------------------------------------------------------------------------------------------- */
+
+static sy_node_t other(sy_diagrams_t *d, sy_node_t n)
+{
+    return sy_difference(d, d->space, n);
+}
+
+static sy_node_t exists_until(sy_diagrams_t *d, sy_node_t p, sy_node_t q)
+{
+    return sy_saturated(d, &d->backwards, q, p);
+}
+
+static sy_node_t exists_always(sy_diagrams_t *d, sy_node_t p)
+{
+    const sy_node_t ends = sy_intersection(d, where_dead(d), p);
+    for (;;) {
+        const sy_node_t kept = sy_union(d, ends, before(d, p, p));
+        if (kept == p) {
+            return p;
+        }
+        p = kept;
+    }
+}
+
+static sy_node_t always_until(sy_diagrams_t *d, sy_node_t p, sy_node_t q)
+{
+    const sy_node_t not_q = other(d, q);
+    const sy_node_t neither = sy_difference(d, not_q, p);
+    return other(d, sy_union(d, exists_until(d, not_q, neither), exists_always(d, not_q)));
+}
+
+static sy_node_t where_temporal(sy_diagrams_t *d, const tb_formula_t *f)
+{
+    const sy_node_t p = sy_where(d, f->part[0]);
+    switch (f->op) {
+    case TB_EX: return before(d, p, d->space);
+    case TB_AX: return other(d, before(d, other(d, p), d->space));
+    case TB_EF: return exists_until(d, d->space, p);
+    case TB_AF: return other(d, exists_always(d, other(d, p)));
+    case TB_EG: return exists_always(d, p);
+    case TB_AG: return other(d, exists_until(d, d->space, other(d, p)));
+    case TB_EU: return exists_until(d, p, sy_where(d, f->part[1]));
+    case TB_AU: return always_until(d, p, sy_where(d, f->part[1]));
+    default: tb_fail(TB_EXIT_WRONG, "operator %d is none of time", (int)f->op);
+    }
+}
+
+static sy_node_t where_parts(sy_diagrams_t *d, const tb_formula_t *f)
+{
+    sy_node_t found = (f->op == TB_AND) ? d->space : (sy_node_t)SY_NONE;
+    for (uint32_t i = 0U; i < f->count; i++) {
+        const sy_node_t part = sy_where(d, f->part[i]);
+        found = (f->op == TB_AND) ? sy_intersection(d, found, part) : sy_union(d, found, part);
+    }
+    return found;
+}
+
+sy_node_t sy_where(sy_diagrams_t *d, const tb_formula_t *f)
+{
+    switch (f->op) {
+    case TB_TRUE: return d->space;
+    case TB_FALSE: return (sy_node_t)SY_NONE;
+    case TB_NOT: return other(d, sy_where(d, f->part[0]));
+    case TB_AND:
+    case TB_OR: return where_parts(d, f);
+    case TB_SUM: return sy_where_sum(d, f);
+    case TB_ENABLED: return where_enabled(d, f);
+    case TB_DEAD: return where_dead(d);
+    default: return where_temporal(d, f);
+    }
+}

@@ -1,0 +1,58 @@
+"""Decision diagrams beside the other methods: a process of its own, which builds all markings and then answers.
+
+    diagrams = Diagrams(tables)
+    diagrams.orders[0]                             # the most promising order of its places
+
+Whether a diagram stays small depends on the order of its levels, so that each round of a portfolio takes another one.
+The engine says nothing before the set is whole: a diagram that explodes costs its share of time and memory, and
+nothing else.
+"""
+
+from __future__ import annotations
+
+import time
+from functools import cached_property
+
+from pn2code.contest.engine import Task
+from pn2code.contest.tables import Tables
+from pn2code.symbolic.order import orders
+
+METHOD = "diagrams"
+KINDS = ("reach", "bound", "ctl")
+"""The kinds of questions that it can answer."""
+
+_SHARES = (0.1, 0.15, 0.15, 0.6)
+"""Of the time, for one order after the other where there are several."""
+
+
+class Diagrams:
+    """A net with orders of its places."""
+
+    def __init__(self, tables: Tables) -> None:
+        self.tables = tables
+
+    @cached_property
+    def orders(self) -> list[list[int]]:
+        """The most promising one first."""
+        return orders(len(self.tables.initial), self.tables.pre, self.tables.post)
+
+    def sizes(self, seconds: float, mebibytes: int) -> list[list[Task]]:
+        """The numbers of markings and arcs: two lanes side by side, each with one order after the other.
+
+        Each order has a short time at first; the most promising two have what is left, when the orders are made.
+        """
+        ends = time.monotonic() + seconds
+        rows = [self.orders[:1], self.orders[1:2]]
+        shares: tuple[float, ...] = (1.0,)
+        if len(self.orders) > 2:
+            shares = _SHARES
+            rows = [[*self.orders[i::2][:3], self.orders[i]] for i in range(2)]
+        seconds = max(0.0, ends - time.monotonic())
+        return [
+            [
+                Task("sizes", self.tables.text([], order), share * seconds, mebibytes)
+                for order, share in zip(row, shares[-len(row) :], strict=True)
+            ]
+            for row in rows
+            if row
+        ]
