@@ -5,7 +5,7 @@
  *
  * 1. bare: two processes in DIR, each renames a file and waits by inotify for the other's: time of a round trip.
  * 2. cell: SUPERVISOR (the net of hand_net.c with HAND_DELAY 0) is started on DIR; this program plays its robot and
- * measures, for each command, from the call of rename that makes the answer file appear
+ *    measures, for each command, from the call of rename that makes the answer file appear
  *      - to the moment the next command's flag is there, seen by looking without pause: "published";
  *      - to the moment this program is woken by inotify for it: "round trip".
  *    Odd rounds are measured one way, even rounds the other.

@@ -77,6 +77,14 @@ EXAMPLES = {
 }  # fmt: skip
 
 
+@pytest.mark.parametrize("name", [*EXAMPLES, "riveting", "philosophers"])
+def test_check_has_nothing_to_say(name: str, root: Path) -> None:
+    done = CliRunner().invoke(app, ["check", str(root / "examples" / name)])
+    assert done.exit_code == 0, done.output
+    assert len(done.output.splitlines()) == 1, done.output
+    assert done.output.rstrip().endswith("no errors")
+
+
 @pytest.fixture(scope="module", params=EXAMPLES)
 def example(request: pytest.FixtureRequest, root: Path) -> tuple[Path, Expected]:
     return root / "examples" / request.param, EXAMPLES[request.param]

@@ -1,21 +1,23 @@
 /* SPDX-License-Identifier: MIT
  * pn_net.h - the contract between a generated net (net.c) and the hosts that run it.
  *
- * A generated net is one constant table, `const pn_net_t pn_net`, and a marking type whose size the table
- * gives. Hosts (supervisor, simulate, explore, the program under test of `conform`) know nets only through this table.
- * What is done with markings in the same way in every net is in pn_marking.h, and with the multi-set of one place in
- * pn_bag.h.
+ * A generated net is one constant table, `const pn_net_t pn_net`, and a marking type whose size the table gives. Hosts
+ * (supervisor, simulate, explore, the program under test of `conform`) know nets only through this table. What is done
+ * with markings in the same way in every net is in pn_marking.h, and with the multi-set of one place in pn_bag.h.
  *
  * Several objects are made from a net, all with the same flags for the standard and for floating-point numbers:
  *
  *   deployed    net_own.o, linked with `./supervisor` of a generated folder: net.c without the transitions of robots
- * (-DPN_OWN_ONLY). The folder's net.o has all of them, for the supervisor's traced and monitored variants and for
- * `./simulate`. verified    `pn2code verify` makes a net.c of its own, with packed places where that is possible and
- * arrays of other sizes, and compiles it into its explorer. What is proved is proved of that one. simulated   `pn2code
- * simulate` makes a net.c of its own, too, with large arrays and in one piece with its simulator. compared    `pn2code
- * conform` compiles the net.c of the generated folder, and the sources of the deployed supervisor except port_posix.c,
- * likewise without the transitions of robots, into its program under test. It compares that program, and the explorer's
- * graph, with the token game in every state that can be reached (docs/conform.md).
+ *               (-DPN_OWN_ONLY). The folder's net.o has all of them, for the supervisor's traced and monitored variants
+ *               and for `./simulate`.
+ *   verified    `pn2code verify` makes a net.c of its own, with packed places where that is possible and arrays of
+ *               other sizes, and compiles it into its explorer. What is proved is proved of that one.
+ *   simulated   `pn2code simulate` makes a net.c of its own, too, with large arrays and in one piece with its
+ *               simulator.
+ *   compared    `pn2code conform` compiles the net.c of the generated folder, and the sources of the deployed
+ *               supervisor except port_posix.c, likewise without the transitions of robots, into its program under
+ *               test. It compares that program, and the explorer's graph, with the token game in every state that can
+ *               be reached (docs/conform.md).
  *
  * Errors: a net's expressions may raise (integer overflow, division by zero, no matching rule, a colour out of range,
  * an array that is full). The first error of a context is kept in it (pn_ctx_t.error) and is sticky: from then on every

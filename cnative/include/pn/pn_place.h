@@ -8,7 +8,7 @@
  *     array_holds(p, v, w)         whether there is a token v and another token w
  *     array_take(p, v, n)          takes n of them; false, and nothing taken, when there are fewer
  *     array_add(cx, p, bag, v, n)  puts n of them; false (PN_ERR_CAPACITY) when there are now more than the place may
- * hold
+ *                                  hold
  *
  * Behind its capacity the array has room for all that one occurrence may put: nothing is ever written outside, and what
  * has been put beyond the capacity can be taken out again.

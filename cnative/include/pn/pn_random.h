@@ -18,18 +18,21 @@
  *
  *     purpose 0, step 0               declarations, then the initial marking, place by place
  *     purpose 1, step n               the choice of the next binding element, n = occurrences so far: below(number of
- * enabled transition instances of the best priority), in the order of trying, then below(number of enabled bindings of
- * that one); both are drawn, even when there is only one purpose 2 + 2 t, step n         the bindings of transition t
- * (index in the net's table) after n occurrences: starts anew each time they are enumerated purpose 3 + 2 t, step n + 1
- * the occurrence of t: code segment, inscriptions of input arcs (again), delay, inscriptions of output arcs; arcs in
- * the order of the file
+ *                                     enabled transition instances of the best priority), in the order of trying, then
+ *                                     below(number of enabled bindings of that one); both are drawn, even when there is
+ *                                     only one
+ *     purpose 2 + 2 t, step n         the bindings of transition t (index in the net's table) after n occurrences:
+ *                                     starts anew each time they are enumerated
+ *     purpose 3 + 2 t, step n + 1     the occurrence of t: code segment, inscriptions of input arcs (again), delay,
+ *                                     inscriptions of output arcs; arcs in the order of the file
  *
  * Drawing. `unit()`, `normal01()` and so on are drawn where they stand, from left to right; x / y, x * y * z from the
  * left; log, exp, sqrt, cos, pow are those of libm (so pow overflows to infinity). PI = 3.14159265358979323846.
  *
  *     below(n)               n <= 1: 0, nothing is drawn. Else limit = (2^64 - 1) - (2^64 - 1) mod n; x = next(), again
- * while x >= limit; result x mod n unit()                 ((double)(next() >> 11) + 0.5) / 9007199254740992.0, which is
- * never 0 and never 1 normal01()             r = sqrt(-2.0 * log(unit())); result r * cos((2.0 * PI) * unit())
+ *                            while x >= limit; result x mod n
+ *     unit()                 ((double)(next() >> 11) + 0.5) / 9007199254740992.0, which is never 0 and never 1
+ *     normal01()             r = sqrt(-2.0 * log(unit())); result r * cos((2.0 * PI) * unit())
  *     gamma1(a)              a < 1: g = gamma1(a + 1.0); result g * pow(unit(), 1.0 / a)
  *                            else d = a - 1.0 / 3.0; c = 1.0 / sqrt(9.0 * d); again and again:
  *                              x = normal01(); v = 1.0 + c * x, both again while v <= 0; v = v * v * v; u = unit();
@@ -41,17 +44,23 @@
  *     binomial(n, p)         n >= 1, 0 <= p <= 1        number of i in 1..n with unit() < p; always n draws
  *     uniform(a, b)          a <= b                     a + (b - a) * unit()
  *     discrete(a, b)         a <= b                     a + below(b - a + 1)    (the number as an unsigned 64-bit one;
- * 0: next()) normal(mean, variance) variance >= 0              mean + sqrt(variance) * normal01() exponential rate rate
- * > 0                   -log(unit()) / rate poisson mean           mean > 0                   n = -1; left = mean;
- * while left >= 0: left = left + log(unit()), n = n + 1; result n erlang(n, rate)        n >= 1, rate > 0           0.0
- * + exponential(rate) + ..., n of them, from the left chisq n                n >= 1                     0.0 + x1 * x1 +
- * ..., n of them, each xi = normal01() student n              n >= 1                     x = normal01(); result x /
- * sqrt(chisq(n) / (double)n) gamma(shape, rate)     shape > 0, rate > 0        gamma1(shape) / rate beta(a, b) a > 0, b
- * > 0               x = gamma1(a); y = gamma1(b); result x / (x + y) weibull(shape, scale)  shape > 0, scale > 0 scale
- * * pow(-log(unit()), 1.0 / shape) rayleigh scale         scale >= 0                 scale * sqrt(-2.0 * log(unit()))
+ *                                                                               0: next())
+ *     normal(mean, variance) variance >= 0              mean + sqrt(variance) * normal01()
+ *     exponential rate       rate > 0                   -log(unit()) / rate
+ *     poisson mean           mean > 0                   n = -1; left = mean; while left >= 0: left = left +
+ *                                                       log(unit()), n = n + 1; result n
+ *     erlang(n, rate)        n >= 1, rate > 0           0.0 + exponential(rate) + ..., n of them, from the left
+ *     chisq n                n >= 1                     0.0 + x1 * x1 + ..., n of them, each xi = normal01()
+ *     student n              n >= 1                     x = normal01(); result x / sqrt(chisq(n) / (double)n)
+ *     gamma(shape, rate)     shape > 0, rate > 0        gamma1(shape) / rate
+ *     beta(a, b)             a > 0, b > 0               x = gamma1(a); y = gamma1(b); result x / (x + y)
+ *     weibull(shape, scale)  shape > 0, scale > 0       scale * pow(-log(unit()), 1.0 / shape)
+ *     rayleigh scale         scale >= 0                 scale * sqrt(-2.0 * log(unit()))
  *     CS.ran()               CS.size() is known         CS.col(below(CS.size())); for a subset the value at that
- * position among its values; else CPN'Error as CS.size() raises it random ms              not empty (else Empty)
- * element number below(length of the list), from 0, in the order of the list
+ *                                                       position among its values; else CPN'Error as CS.size() raises
+ *                                                       it
+ *     random ms              not empty (else Empty)     element number below(length of the list), from 0, in the order
+ *                                                       of the list
  *
  * A result that is not finite is given as it is.
  */

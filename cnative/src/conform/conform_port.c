@@ -7,12 +7,14 @@
  * line of JSON:
  *
  *     push              saves the state: {"pushed": true}. The state is the process: it waits while a copy of it goes
- * on pop               goes back to the state saved last: {"popped": true} write NAME BYTES  another party publishes a
- * file (name and bytes in hexadecimal): {"written": true} time SECONDS      the clock shows so much since the start:
- * {"time": true} go                one cycle: {"files": {NAME: TEXT, ...}, "read": [NAME, ...], "published": [NAME,
- * ...], "marking": {PLACE: [[count, value], ...], ...}, "fired": N, "ended": null | "finished" | "stopped"}; "read" and
- * "published" have files in the order in which they were read and replaced; of a program that has ended, the state
- * before is back then
+ *                       on
+ *     pop               goes back to the state saved last: {"popped": true}
+ *     write NAME BYTES  another party publishes a file (name and bytes in hexadecimal): {"written": true}
+ *     time SECONDS      the clock shows so much since the start: {"time": true}
+ *     go                one cycle: {"files": {NAME: TEXT, ...}, "read": [NAME, ...], "published": [NAME, ...],
+ *                       "marking": {PLACE: [[count, value], ...], ...}, "fired": N, "ended": null | "finished" |
+ *                       "stopped"}; "read" and "published" have files in the order in which they were read and
+ *                       replaced; of a program that has ended, the state before is back then
  *
  * At the start the tables of the program (pn_cell, and what pn_net says of places and transitions) are told, then the
  * first cycle is done, and its answer is given unasked.

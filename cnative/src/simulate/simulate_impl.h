@@ -105,7 +105,7 @@ void sim_time_progress(double seconds);
 /* Repeats the steps of a script (see there); false when the run ends here. */
 bool sim_replay(sim_t *sim);
 
-/* --- simulate_watch.c: the simple monitors --- */
+/* --- simulate_watch.c: the monitors --- */
 
 /* Takes a monitor from its text (see there); false when it is not well-formed. */
 bool sim_watch_add(const char *text);

@@ -8,7 +8,7 @@
  *   supervisor_monitor.c  with -DPN_MONITOR: each step checked against the rules of the net
  *   supervisor_alone.c  the whole net in memory: --dry-run, and nets without a cell
  *   supervisor_trace.c  with -DPN_TRACE: `--trace`, `--dry-run`, and colours as JSON. The deployed program has none of
- * it
+ *                       it
  */
 #ifndef SUPERVISOR_IMPL_H
 #define SUPERVISOR_IMPL_H

@@ -5,10 +5,12 @@
  * Rules that are checked:
  *
  *   before an occurrence   no place and no reference has changed since the step before; the transition is one of this
- * program's; it is enabled with this binding; nothing of this program with a higher priority is enabled after it only
- * places that the transition touches have changed (that none holds more than it may is always checked), references only
- * if it assigns some after messages         only channels of that direction have changed; none holds more than one
- * token; no reference has changed
+ *                          program's; it is enabled with this binding; nothing of this program with a higher priority
+ *                          is enabled
+ *   after it               only places that the transition touches have changed (that none holds more than it may is
+ *                          always checked), references only if it assigns some
+ *   after messages         only channels of that direction have changed; none holds more than one token; no reference
+ *                          has changed
  *
  * They hold in a program that is compiled right, on a machine that works: what the monitor finds is memory that
  * something has overwritten, a compiler that is wrong, a file of the net that was edited. It remembers a checksum of

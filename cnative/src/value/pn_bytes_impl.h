@@ -4,7 +4,7 @@
  *     number without a sign   seven bits a byte, the lowest first; the highest bit says that there are more
  *     integer                 the same for 0, -1, 1, -2, 2, ..., numbered from 0
  *     eight bytes of a real   how many bytes of its highest bits are there (the others are 0), and these, the lowest
- * first
+ *                             first
  */
 #ifndef PN_BYTES_IMPL_H
 #define PN_BYTES_IMPL_H

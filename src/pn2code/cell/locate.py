@@ -16,7 +16,7 @@ def locate(
     path: Path, d: Diagnostics, *, layout: str | None = None
 ) -> tuple[Path, CellConfig | None] | None:
     """The net and the cell that a path means: a `.cpn` file (with a `cell.toml` beside it, or not),
-    a `cell.toml`, a folder with one."""
+    a `cell.toml`, a folder with one, or a folder whose only net it is."""
     if not path.exists():
         d.error(
             codes.CELL_MISSING,
@@ -25,6 +25,8 @@ def locate(
             hint="check the path",
         )
         return None
+    if path.is_dir() and not (path / "cell.toml").exists():
+        return _only_net(path, d)
     beside = path.parent / "cell.toml"
     if path.is_file() and path.suffix != ".toml" and not beside.is_file():
         return path, None
@@ -40,6 +42,23 @@ def locate(
         return None
     # A cell.toml describes one net; others in the same folder stand for themselves.
     return (path, config) if config.net_path.resolve() == path.resolve() else (path, None)
+
+
+def _only_net(folder: Path, d: Diagnostics) -> tuple[Path, None] | None:
+    """The net of a folder that has no `cell.toml`: its only one."""
+    nets = sorted(p for p in folder.iterdir() if p.suffix in (".cpn", ".pnml") and p.is_file())
+    if len(nets) == 1:
+        return nets[0], None
+    names = ", ".join(f"`{p.name}`" for p in nets[:5]) + (", ..." if len(nets) > 5 else "")
+    d.error(
+        codes.CELL_MISSING,
+        f"there is no file `{folder / 'cell.toml'}`, and {f'{len(nets)} nets' if nets else 'no net'} in the folder",
+        Origin(str(folder)),
+        hint=f"give one of the nets ({names})"
+        if nets
+        else "give a folder with a cell.toml, or a .cpn file; docs/cell.md describes cell.toml",
+    )
+    return None
 
 
 def _has_net(config: CellConfig, d: Diagnostics) -> bool:

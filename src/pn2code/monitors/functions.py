@@ -16,7 +16,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from pn2code.diagnostics import Diagnostic, Diagnostics, Severity, SourceText, Span
-from pn2code.ml.core.terms import Dec, Let, RecBind, RecordExp, Symbol, Var
+from pn2code.ml.core.terms import Con, Dec, Let, RecBind, RecordExp, Symbol, Var
 from pn2code.ml.core.types import label_key, record
 from pn2code.ml.elaborate import Elaborator
 from pn2code.monitors.codes import MONITOR_ERROR, UNSUPPORTED_MONITOR
@@ -59,8 +59,9 @@ class Checked:
         symbols: its functions by name ("pred", "obs", "init", "stop", "action").
         observed: of a data collector: the type of its values.
         constructors: tags in the datatype of its binding elements, by name.
-        stops: of a breakpoint that looks at no marking: for each of these names a function of the instance's number
-            and the binding, which gives one unit when the predicate is true, and nothing otherwise.
+        tokens: of a breakpoint or data collector that looks at no marking: for each of these names a function of the
+            instance's number and the binding, which gives one unit or the observed value when the predicate is true,
+            and nothing otherwise.
         span: a piece of text of its functions.
     """
 
@@ -68,7 +69,7 @@ class Checked:
     symbols: Mapping[str, Symbol]
     observed: str = "int"
     constructors: Mapping[str, int] | None = None
-    stops: Mapping[str, Symbol] = field(default_factory=dict)
+    tokens: Mapping[str, Symbol] = field(default_factory=dict)
     span: Span | None = None
 
 
@@ -210,23 +211,37 @@ class _Functions:
                 observed = self.observed()
                 for name, type_text in self.types(observed).items():
                     self.elaborator.declarations(self.constrained(name, type_text))
-                if m.kind is Kind.BREAKPOINT and not m.places:
-                    self.elaborator.declarations(self.generated(self.stops()))
+                if self.gives_tokens(inner.declarations, observed):
+                    self.elaborator.declarations(self.generated(self.tokens(observed)))
         if self.d.has_errors or any(i.code.startswith("unsupported-") for i in self.d):
             return None, ()
         symbols = {name: inner.globals[f"CPN'{name}"] for name in self.types(observed)}
         tags = {constructor(t): tag for tag, t in enumerate(self.transitions)}
-        stops = {}
-        if m.kind is Kind.BREAKPOINT and not m.places:
-            stops = {name: inner.globals[f"CPN'stops'{tag}"] for name, tag in tags.items()}
+        tokens = {}
+        if self.gives_tokens(inner.declarations, observed):
+            tokens = {name: inner.globals[f"CPN'tokens'{tag}"] for name, tag in tags.items()}
         span = _span(inner.declarations)
-        return Checked(m, symbols, observed, tags, stops, span), inner.declarations
+        return Checked(m, symbols, observed, tags, tokens, span), inner.declarations
 
-    def stops(self) -> str:
-        """The functions of `Checked.stops`."""
+    def gives_tokens(self, declarations: Sequence[Dec], observed: str) -> bool:
+        """Whether all that the monitor sees is one unit or number at occurrences (`Checked.tokens`)."""
+        if self.m.places:
+            return False
+        if self.m.kind is Kind.BREAKPOINT:
+            return True
+        return (
+            self.m.kind is Kind.DATA_COLLECTION
+            and observed in ("int", "real")
+            and all(_gives_nothing(declarations, f) for f in ("init", "stop"))
+        )
+
+    def tokens(self, observed: str) -> str:
+        """The functions of `Checked.tokens`."""
+        is_collector = self.m.kind is Kind.DATA_COLLECTION
+        kind, given = (observed, "CPN'obs CPN'e") if is_collector else ("unit", "()")
         return "\n".join(
-            f"fun CPN'stops'{tag} (CPN'i : int, CPN'b : {_variables(t)}) : unit list = "
-            f"if CPN'pred ({constructor(t)} (CPN'i, CPN'b)) then [()] else [];"
+            f"fun CPN'tokens'{tag} (CPN'i : int, CPN'b : {_variables(t)}) : {kind} list = "
+            f"let val CPN'e = {constructor(t)} (CPN'i, CPN'b) in if CPN'pred CPN'e then [{given}] else [] end;"
             for tag, t in enumerate(self.transitions)
         )
 
@@ -301,6 +316,22 @@ class _Functions:
     def _marking_types(self) -> list[str]:
         colsets = [self.flat.places[p.place].colset for p in self.m.places]
         return [f"{c.name} {'tms' if c.timed else 'ms'}" for c in colsets]
+
+
+def _gives_nothing(declarations: Sequence[Dec], name: str) -> bool:
+    """Whether a function is `fun name ... = NONE` in all its rules, or is not declared."""
+    found = [
+        function
+        for dec in declarations
+        if isinstance(dec, RecBind)
+        for symbol, function in dec.bindings
+        if symbol.name == name
+    ]
+    return all(
+        isinstance(rule.body, Con) and rule.body.constructor.name == "NONE"
+        for function in found[-1:]
+        for rule in function.rules
+    )
 
 
 def _order(name: str) -> int:

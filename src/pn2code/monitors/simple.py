@@ -1,4 +1,4 @@
-"""Monitors without functions, told to the compiled simulator (cnative/src/simulate/simulate_watch.c).
+"""Monitors that the compiled simulator watches by itself (cnative/src/simulate/simulate_watch.c).
 
 simple = Simple.of(program, net, breakpoints=True)       # None: the token game has to watch
 simple.options()                                         # ["--watch", "S 3 0,4", ...]
@@ -37,13 +37,15 @@ class Simple:
     Args:
         monitors: those with predicates first, as they look first (`Watch.occurred`), then as in the file.
         net: the net.
-        stops: by id of a breakpoint with a predicate the place that gets a token when it is reached (`stops.py`).
+        own: by id of a monitor with functions the place that gets what it sees (`compiling.py`).
+        reals: the ids of the collectors that observe reals.
         order: their numbers in order of the file.
     """
 
     monitors: tuple[Monitor, ...]
     net: FlatNet
-    stops: Mapping[str, int] = field(default_factory=dict)
+    own: Mapping[str, int] = field(default_factory=dict)
+    reals: frozenset[str] = frozenset()
     order: tuple[int, ...] = ()
 
     @staticmethod
@@ -52,26 +54,32 @@ class Simple:
         net: FlatNet,
         *,
         breakpoints: bool,
-        stops: Mapping[str, int] | None = None,
+        own: Mapping[str, int] | None = None,
     ) -> Simple | None:
-        """The monitors at work, if all of them are simple, or have a place in `stops`."""
-        of = stops or {}
+        """The monitors at work, if all of them are simple, or have a place in `own`."""
+        of = own or {}
         given = [
             c.monitor for c in program.monitors if breakpoints or c.monitor.kind not in BREAKPOINTS
         ]
         monitors = sorted(given, key=lambda m: m.id not in of)
         if len(monitors) > MOST or any(m.kind not in _SIMPLE and m.id not in of for m in monitors):
             return None
-        return Simple(tuple(monitors), net, of, tuple(map(monitors.index, given)))
+        reals = frozenset(c.monitor.id for c in program.monitors if c.observed == "real")
+        return Simple(tuple(monitors), net, of, reals, tuple(map(monitors.index, given)))
 
     def options(self) -> list[str]:
         """For the simulator's command line."""
         return [word for m in self.monitors for word in ("--watch", self._option(m))]
 
     def _option(self, m: Monitor) -> str:
-        if m.id in self.stops:
-            return f"f {self.stops[m.id]} *"
         match m.kind:
+            case Kind.BREAKPOINT:
+                return f"f {self.own[m.id]} *"
+            case Kind.DATA_COLLECTION:
+                letter = "r" if m.id in self.reals else "i"
+                watched = {t.id for t in m.transitions}
+                when = [str(t.index) for t in self.net.transitions if t.id in watched]
+                return f"{letter.upper() if is_timed(m, self.net) else letter} {self.own[m.id]} {','.join(when)}"
             case Kind.MARKING_SIZE | Kind.LIST_LENGTH:
                 letter = "s" if m.kind is Kind.MARKING_SIZE else "l"
                 place = m.places[0].place

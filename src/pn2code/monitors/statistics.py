@@ -142,18 +142,21 @@ class Timed(_Collected):
 Statistics = Untimed | Timed
 
 
-def restored(found: Mapping[str, Number], now: Number | None) -> Statistics:
+def restored(found: Mapping[str, Number | str], now: Number | None) -> Statistics:
     """What another program has collected.
 
     Args:
-        found: `count`, `min`, `max`, `first`, `last`, `sum`, `ss` up to the last value, `start`, `updated`.
+        found: `count`, `min`, `max`, `first`, `last`, `sum`, `ss` up to the last value, `start`, `updated`; reals that
+            are not finite are texts.
         now: the model time, for timed statistics; None: untimed.
     """
-    s: Statistics = Untimed() if now is None else Timed(lambda: now)
-    s.count = int(found["count"])
-    s._min, s._max = found["min"], found["max"]
-    s._first, s._last = found["first"], found["last"]
-    s._sum, s._squares = found["sum"], found["ss"]
+    zero = 0.0 if isinstance(found["min"], float) else 0
+    s: Statistics = Untimed(zero) if now is None else Timed(lambda: now, zero)
+    numbers = {name: float(x) if isinstance(x, str) else x for name, x in found.items()}
+    s.count = int(numbers["count"])
+    s._min, s._max = numbers["min"], numbers["max"]
+    s._first, s._last = numbers["first"], numbers["last"]
+    s._sum, s._squares = numbers["sum"], numbers["ss"]
     if isinstance(s, Timed):
-        s._start, s._updated = found["start"], found["updated"]
+        s._start, s._updated = numbers["start"], numbers["updated"]
     return s

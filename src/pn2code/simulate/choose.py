@@ -10,11 +10,11 @@ from __future__ import annotations
 from enum import Enum
 
 from pn2code.diagnostics import Diagnostics, Origin, Severity
+from pn2code.monitors.compiling import Instrumented
 from pn2code.monitors.functions import MonitorProgram, elaborate
 from pn2code.monitors.kinds import resolve
 from pn2code.monitors.sharing import shared_references
 from pn2code.monitors.simple import Simple
-from pn2code.monitors.stops import Stopping
 from pn2code.net.front import Examined
 from pn2code.simulate import compiled, programs, reference
 from pn2code.simulate.codes import ENGINE_CHANGED, SIMULATOR_FAILED
@@ -84,22 +84,24 @@ def simulate(request: Request, wish: Wish, d: Diagnostics) -> Outcome | None:
 def _compiled(request: Request, d: Diagnostics) -> tuple[Outcome | None, bool]:
     """The run, and whether there was a program for it. What proves to be too small is made larger, and the run anew."""
     room, memory = programs.ROOM, compiled.MEMORY
-    stopping = _stopping(request)
+    instrumented = _instrumented(request)
     while True:
-        net = stopping.net if stopping else request.net
-        own = Diagnostics() if stopping else d
+        net = instrumented.net if instrumented else request.net
+        own = Diagnostics() if instrumented else d
         with programs.program(net, request.storage, own, room=room) as program:
             if program is None:
-                if stopping is not None and own.has_errors:
-                    stopping = None  # the net can perhaps be compiled without its breakpoints
+                if instrumented is not None and own.has_errors:
+                    instrumented = None  # the net can perhaps be compiled without its monitors
                     continue
                 return None, False
             try:
-                outcome = compiled.run(request, program, d, memory=memory, stopping=stopping)
-                if stopping is not None and outcome is not None and outcome.why == "error":
-                    stopping = None  # a monitor's exception is told by who watches for it
+                outcome = compiled.run(
+                    request, program, d, memory=memory, instrumented=instrumented
+                )
+                if instrumented is not None and outcome is not None and outcome.why == "error":
+                    instrumented = None  # a monitor's exception is told by who watches for it
                     continue
-                if stopping is not None:
+                if instrumented is not None:
                     d.items += own.items
                 return outcome, True
             except compiled.OutOfRoomError as full:
@@ -125,18 +127,18 @@ def _compiled(request: Request, d: Diagnostics) -> tuple[Outcome | None, bool]:
                     return None, True
 
 
-def _stopping(request: Request) -> Stopping | None:
-    """The net with its breakpoints, where these can be compiled and nobody else has to watch.
+def _instrumented(request: Request) -> Instrumented | None:
+    """The net with its monitors, where these can be compiled and nobody else has to watch.
 
     A trace has the markings of the net, so with one the token game writes it.
     """
     program = request.monitors
     if program is None or request.trace is not None or request.replay is not None:
         return None
-    found = Stopping.of(request.net, program, breakpoints=request.breakpoints)
+    found = Instrumented.of(request.net, program, breakpoints=request.breakpoints)
     if found is None:
         return None
-    simple = Simple.of(program, request.net, breakpoints=request.breakpoints, stops=found.stops)
+    simple = Simple.of(program, request.net, breakpoints=request.breakpoints, own=found.places)
     return found if simple is not None else None
 
 

@@ -20,8 +20,8 @@ from pathlib import Path
 from typing import IO, Any
 
 from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.monitors.compiling import Instrumented
 from pn2code.monitors.simple import Simple
-from pn2code.monitors.stops import Stopping
 from pn2code.monitors.watch import not_one_list
 from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.semantics.game.marking import BindingElement, Marking, place_from_json
@@ -64,7 +64,7 @@ def run(
     d: Diagnostics,
     *,
     memory: int = MEMORY,
-    stopping: Stopping | None = None,
+    instrumented: Instrumented | None = None,
 ) -> Outcome | None:
     """Plays the run; None when the program came to a bad end, which was reported.
 
@@ -73,7 +73,7 @@ def run(
         program: the simulator.
         d: gets the errors, and warnings of monitors.
         memory: bytes for lists and strings.
-        stopping: the net with its breakpoints, if that is what was compiled.
+        instrumented: the net with its monitors, if that is what was compiled.
 
     Raises:
         OutOfRoomError: the program is too small for this run.
@@ -88,7 +88,7 @@ def run(
             request.monitors,
             request.net,
             breakpoints=request.breakpoints,
-            stops=stopping.stops if stopping else None,
+            own=instrumented.places if instrumented else None,
         )
     if simple is None and request.monitors is not None and request.monitors.monitors:
         return _followed(request, program, given, memory, d)

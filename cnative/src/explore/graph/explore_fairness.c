@@ -1,9 +1,11 @@
 /* SPDX-License-Identifier: MIT
  * explore_fairness.c - how fair each transition is, over all infinite occurrence sequences (in a finite graph each is
- * in the end a walk in one component): impartial  t occurs infinitely often in each                        no cycle
- * without t fair       ... in each in which it is enabled infinitely often      no cycle without t through a node at
- * which t is enabled just       ... in each in which it is enabled from some point on    no cycle without t among the
- * nodes at which t is enabled
+ * in the end a walk in one component):
+ *   impartial  t occurs infinitely often in each                        no cycle without t
+ *   fair       ... in each in which it is enabled infinitely often      no cycle without t through a node at which t is
+ *                                                                       enabled
+ *   just       ... in each in which it is enabled from some point on    no cycle without t among the nodes at which t
+ *                                                                       is enabled
  *
  * The first and the third ask whether a part of the graph has a cycle, and are worked out for up to 32 transitions
  * together: each node has a bit for each question, which tells whether a cycle of that part may be reached from it. A

@@ -10,7 +10,8 @@
  *   bounded response  the longest run of steps
  *   confluence        from each node all runs of steps come to rest in the same node
  *   non-blocking      of its steps the supervisor does only the first in the documented order, all others do what they
- * like: from each node that can be reached so, a node can be reached in which it rests and that is final
+ *                     like: from each node that can be reached so, a node can be reached in which it rests and that is
+ *                     final
  *
  * The first three come of one walk over the steps, the last of a search forwards and one backwards. All are linear in
  * the graph.

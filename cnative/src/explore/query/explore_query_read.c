@@ -15,18 +15,24 @@
  *     strong 2                        fairness that is assumed; weak
  *     end
  *     owner 0 2 5 7                   transitions of the supervisor; other numbers are robots and devices
- * (explore_control.c) priorities own                  priorities count among the transitions of one owner only first 1
- * 5 7                     of these (group 1) only the first binding element in the documented order occurs choose 2 8 9
- * of these (group 2) only the first enabled transition occurs, with all its bindings kin 8 9 count as one transition in
- * their group meek 8                          though enabled it holds no other one back probe 9 never occurs; while it
- * is enabled it holds others of its owner back silent 10 11                    steps that are no occurrences of the net
+ *                                     (explore_control.c)
+ *     priorities own                  priorities count among the transitions of one owner only
+ *     first 1 5 7                     of these (group 1) only the first binding element in the documented order occurs
+ *     choose 2 8 9                    of these (group 2) only the first enabled transition occurs, with all its
+ *                                     bindings
+ *     kin 8 9                         count as one transition in their group
+ *     meek 8                          though enabled it holds no other one back
+ *     probe 9                         never occurs; while it is enabled it holds others of its owner back
+ *     silent 10 11                    steps that are no occurrences of the net
  *     instant 8 9                     steps of scripts that neither wait nor take time
  *     clock 11                        occurs a unit of time later, where something is waited for
  *     ? ends 4                        item 4 is `ef` of the ends, which are reached whoever is slow
- * (explore_running.c); `-`: as below ? finite-response ? restless 100                  no run of `instant` steps goes
- * on for ever, nor is longer than that ? bounded-response 100 ? confluence 0                  0: with a run of the
- * documented order, 1: with one that comes to another end ? non-blocking 3                nodes of item 3 are final;
- * `-`: none is
+ *                                     (explore_running.c); `-`: as below
+ *     ? finite-response
+ *     ? restless 100                  no run of `instant` steps goes on for ever, nor is longer than that
+ *     ? bounded-response 100
+ *     ? confluence 0                  0: with a run of the documented order, 1: with one that comes to another end
+ *     ? non-blocking 3                nodes of item 3 are final; `-`: none is
  */
 #define _POSIX_C_SOURCE 200809L /* strtok_r */
 

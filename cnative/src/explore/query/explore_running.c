@@ -12,7 +12,7 @@
  * kept from its end for ever exactly in a set of nodes
  *
  *   - in which the adversary can stay: of each node some steps are chosen, with all their outcomes in the set, and by
- * these each node of the set can be reached from each other one (an *end component*);
+ *     these each node of the set can be reached from each other one (an *end component*);
  *   - in which each owner takes one of these steps somewhere, or has no step at all somewhere.
  *
  * The largest end components are found by taking away steps that leave their component until none does.

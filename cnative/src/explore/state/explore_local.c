@@ -7,7 +7,7 @@
  * of what these places hold, and noted as numbers:
  *
  *     transition, words that it reads  ->  for each successor: how many bindings lead to it, and its words that are
- * different
+ *                                          different
  *
  * Of a place in which a transition only puts tokens the note says which, not what becomes of the place: so what the
  * place holds does not matter. A second table knows sums: multi-set, what is added -> multi-set.

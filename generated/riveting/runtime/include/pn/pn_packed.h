@@ -10,10 +10,12 @@
  *
  *     place_count_of(m, i)    the number of tokens of colour i
  *     place_next(m, i)        the first colour from i on of which there is a token; the number of colours if there is
- * none place_is_empty(m)       whether there is no token place_check(cx, v)      raises PN_ERR_COLOUR at the place if
- * the value is not in the colour set: that is always asked where not every number is that of a colour (`is_whole`:
- * subsets), but only until it is known of a colour place_has_sum(m, s)     whether there are all tokens of a sum;
- * place_take_sum takes, place_add_sum puts them
+ *                             none
+ *     place_is_empty(m)       whether there is no token
+ *     place_check(cx, v)      raises PN_ERR_COLOUR at the place if the value is not in the colour set: that is always
+ *                             asked where not every number is that of a colour (`is_whole`: subsets), but only until it
+ *                             is known of a colour
+ *     place_has_sum(m, s)     whether there are all tokens of a sum; place_take_sum takes, place_add_sum puts them
  *
  * Unlike there, place_add changes nothing when a counter would overflow.
  */

@@ -1,43 +1,35 @@
 /* SPDX-License-Identifier: MIT
- * simulate_watch.c - the simple monitors of a net: sizes of markings, lengths of lists, counts, breakpoints without
- * functions.
+ * simulate_watch.c - the monitors of a net that need no function here: sizes of markings, lengths of lists, counts,
+ * values that transitions leave in a place of their own, breakpoints.
  *
  * Each is given by `--watch "KIND INDEX WHEN"`:
  *
  *     s, l   the number of tokens of a place, the length of its only list; INDEX of the place
+ *     i, r   the integer or real that is in a place, if any; the place is emptied (pn2code.monitors.compiling)
  *     c      1; INDEX is not looked at
  *     e, f   stops when the place is empty, or is not
  *     n, d   stops when transition INDEX is enabled now, or is not; looks also when model time goes on
  *
  * WHEN: `*`: after every step, else the indices of the transitions after whose occurrences it looks, with commas. Small
- * letters s and l count every value the same; capital ones weight it with the time for which it held, and look once
- * more at the end. Both look at the start. Sums are exact, or the run ends with "limit": "watch".
+ * letters count every value the same; capital S, L, I, R weight it with the time for which it held. s and l look at the
+ * start as well, and S and L once more at the end. Sums of integers are exact, or the run ends with "limit": "watch".
  */
+#include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "pn/pn_num.h"
 #include "pn/pn_text.h"
 #include "simulate_impl.h"
+#include "simulate_statistics.h"
 
 enum { MOST_WATCHES = 256 };
 
 typedef struct watch {
-    char kind;
-    bool is_timed;
+    char kind; /* a small letter */
     uint32_t index;
     uint8_t *on; /* by transition; NULL: after every step */
-    int64_t count;
-    int64_t min;
-    int64_t max;
-    int64_t first;
-    int64_t last;
-    int64_t sum;
-    int64_t squares;
-    double real_sum; /* of timed ones, where the clock is real */
-    double real_squares;
-    pn_time_t start;
-    pn_time_t updated;
+    sim_statistics_t statistics;
 } watch_t;
 
 static watch_t s_watch[MOST_WATCHES];
@@ -73,12 +65,14 @@ static bool read_when(const char *text, watch_t *watch)
 bool sim_watch_add(const char *text)
 {
     char *end = NULL;
-    if ((s_count >= MOST_WATCHES) || (text[0] == '\0') || (strchr("slcefndSL", text[0]) == NULL) || (text[1] != ' ')) {
+    if ((s_count >= MOST_WATCHES) || (text[0] == '\0') || (strchr("slircefndSLIR", text[0]) == NULL)
+        || (text[1] != ' ')) {
         return false;
     }
     watch_t *watch = &s_watch[s_count];
-    watch->is_timed = (text[0] == 'S') || (text[0] == 'L');
-    watch->kind = (text[0] == 'S') ? 's' : ((text[0] == 'L') ? 'l' : text[0]);
+    watch->statistics.is_timed = isupper((unsigned char)text[0]) != 0;
+    watch->kind = (char)tolower((unsigned char)text[0]);
+    watch->statistics.is_real = watch->kind == 'r';
     watch->index = (uint32_t)strtoul(&text[2], &end, 10);
     const bool is_transition = (watch->kind == 'n') || (watch->kind == 'd') || (watch->kind == 'c');
     if ((*end != ' ') || (watch->index >= (is_transition ? pn_net.transition_count : pn_net.place_count))) {
@@ -132,71 +126,59 @@ static int64_t list_length(const sim_t *sim, uint32_t place)
     return length;
 }
 
-static bool add(int64_t *sum, int64_t value, int64_t factor)
+/* The number in a place that holds one token, from its JSON [[1, 2.5]]; a real that is not finite is a text. */
+static sim_number_t number_in(const sim_t *sim, uint32_t place, bool is_real)
 {
-    int64_t product = 0;
-    return !__builtin_mul_overflow(value, factor, &product) && !__builtin_add_overflow(*sum, product, sum);
+    static const char START[] = "[[1, ";
+    pn_text_t text;
+    pn_text_init(&text, sim_text_buffer, SIM_TEXT_SIZE);
+    pn_bag_json(pn_net.place[place].bag, sim->marking, &text);
+    const char *const at = &text.buffer[sizeof START - 1U];
+    sim_number_t found = { 0 };
+    if (is_real) {
+        found.real = strtod((*at == '"') ? &at[1] : at, NULL);
+    } else {
+        found.integer = (int64_t)strtoll(at, NULL, 10);
+    }
+    return found;
 }
 
-/* Counts the last value for the time that has passed since. */
-static bool weigh(watch_t *watch, pn_time_t now)
+/* Ends the run: a monitor cannot go on. */
+static bool fail(sim_t *sim, const watch_t *watch, const char *limit)
 {
-    if (pn_net.real_time) {
-        const double lasted = now.real - watch->updated.real;
-        watch->real_sum += lasted * (double)watch->last;
-        watch->real_squares += lasted * (double)watch->last * (double)watch->last;
-        return true;
-    }
-    const int64_t lasted = now.integer - watch->updated.integer;
-    int64_t weighted = 0;
-    return !__builtin_mul_overflow(lasted, watch->last, &weighted) && add(&watch->sum, weighted, 1)
-           && add(&watch->squares, weighted, watch->last);
-}
-
-static bool update(watch_t *watch, int64_t value, pn_time_t now)
-{
-    bool is_fine = true;
-    if (watch->count == 0) {
-        watch->min = value;
-        watch->max = value;
-        watch->first = value;
-        watch->start = now;
-    } else if (watch->is_timed) {
-        is_fine = weigh(watch, now);
-    }
-    if (!watch->is_timed) {
-        is_fine = add(&watch->sum, value, 1) && add(&watch->squares, value, value);
-    }
-    watch->min = (value < watch->min) ? value : watch->min;
-    watch->max = (value > watch->max) ? value : watch->max;
-    watch->last = value;
-    watch->updated = now;
-    watch->count++;
-    return is_fine;
+    sim->watch = (int64_t)(watch - s_watch);
+    sim->watch_limit = limit;
+    sim->why = "error";
+    return false;
 }
 
 /* Looks at what a collector collects. */
 static bool collect(sim_t *sim, watch_t *watch)
 {
-    int64_t value = 1;
-    if (watch->kind == 's') {
-        value = (int64_t)pn_bag_total(pn_net.place[watch->index].bag, sim->marking);
-    } else if (watch->kind == 'l') {
-        value = list_length(sim, watch->index);
+    sim_number_t value = { .integer = 1 };
+    switch (watch->kind) {
+    case 's': value.integer = (int64_t)pn_bag_total(pn_net.place[watch->index].bag, sim->marking); break;
+    case 'l': value.integer = list_length(sim, watch->index); break;
+    case 'i':
+    case 'r':
+        if (pn_bag_total(pn_net.place[watch->index].bag, sim->marking) == 0U) {
+            return true;
+        }
+        value = number_in(sim, watch->index, watch->kind == 'r');
+        pn_bag_clear(pn_net.place[watch->index].bag, sim->marking);
+        break;
+    case 'c':
+    default: break;
     }
-    const bool is_list = value >= 0;
-    if (is_list && update(watch, value, pn_now(&pn_net, sim->marking))) {
-        return true;
+    if ((watch->kind == 'l') && (value.integer < 0)) {
+        return fail(sim, watch, "");
     }
-    sim->watch = (int64_t)(watch - s_watch);
-    sim->watch_limit = is_list ? "watch" : "";
-    sim->why = "error";
-    return false;
+    return sim_statistics_add(&watch->statistics, value, pn_now(&pn_net, sim->marking)) || fail(sim, watch, "watch");
 }
 
 static bool is_collector(const watch_t *watch)
 {
-    return strchr("slc", watch->kind) != NULL;
+    return strchr("slirc", watch->kind) != NULL;
 }
 
 /* Whether a breakpoint is reached. */
@@ -281,7 +263,8 @@ void sim_watch_stop(sim_t *sim)
     const bool has_failed = strcmp(sim->why, "error") == 0;
     const int64_t failed = sim->watch;
     for (uint32_t i = 0U; i < s_count; i++) {
-        if (s_watch[i].is_timed && !collect(sim, &s_watch[i])) {
+        const bool is_measured = (s_watch[i].kind == 's') || (s_watch[i].kind == 'l');
+        if (is_measured && s_watch[i].statistics.is_timed && !collect(sim, &s_watch[i])) {
             sim->watch = has_failed ? failed : sim->watch; /* the first error counts */
             return;
         }
@@ -290,39 +273,12 @@ void sim_watch_stop(sim_t *sim)
 
 /* --- report ------------------------------------------------------------------------------------------------------- */
 
-static void text_int(pn_text_t *text, const char *name, int64_t value)
-{
-    pn_text_str(text, ", \"");
-    pn_text_str(text, name);
-    pn_text_str(text, "\": ");
-    pn_text_int(text, value);
-}
-
 void sim_text_watches(pn_text_t *text)
 {
     pn_text_str(text, ", \"watched\": [");
     for (uint32_t i = 0U; i < s_count; i++) {
-        const watch_t *watch = &s_watch[i];
-        const bool is_real = watch->is_timed && pn_net.real_time;
-        pn_text_str(text, (i > 0U) ? ", {\"start\": " : "{\"start\": ");
-        sim_text_time(text, watch->start);
-        pn_text_str(text, ", \"updated\": ");
-        sim_text_time(text, watch->updated);
-        text_int(text, "count", watch->count);
-        text_int(text, "min", watch->min);
-        text_int(text, "max", watch->max);
-        text_int(text, "first", watch->first);
-        text_int(text, "last", watch->last);
-        if (is_real) {
-            pn_text_str(text, ", \"sum\": ");
-            pn_text_json_real(text, watch->real_sum);
-            pn_text_str(text, ", \"ss\": ");
-            pn_text_json_real(text, watch->real_squares);
-        } else {
-            text_int(text, "sum", watch->sum);
-            text_int(text, "ss", watch->squares);
-        }
-        pn_text_char(text, '}');
+        pn_text_str(text, (i > 0U) ? ", " : "");
+        sim_text_statistics(text, &s_watch[i].statistics);
     }
     pn_text_char(text, ']');
 }

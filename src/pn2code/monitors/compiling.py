@@ -1,13 +1,14 @@
-"""Breakpoints with a predicate, made part of the net, so that they are compiled with it.
+"""Breakpoints and data collectors with functions, made part of the net, so that they are compiled with it.
 
-    stopping = Stopping.of(net, program, breakpoints=True)      # None: the token game has to watch
-    stopping.net                                                # with a place for each such breakpoint
-    stopping.monitors                                           # that are content with looking at places
+    found = Instrumented.of(net, program, breakpoints=True)     # None: the token game has to watch
+    found.net                                                   # with a place for each such monitor
+    found.places                                                # which monitor looks at which place
 
 Each transition that such a monitor watches gets an output arc to a place of its own: a token comes there when the
-predicate is true of the binding element. Output arcs are evaluated after the code segment, so references are what they
-are after the occurrence, as for a monitor. Only predicates are taken that do nothing besides giving a value, and that
-look at no marking: those of places are what they are after the occurrence.
+predicate is true of the binding element, for a data collector the number that it observes. Output arcs are evaluated
+after the code segment, so references are what they are after the occurrence, as for a monitor. Only functions are taken
+that do nothing besides giving a value, and that look at no marking: those of places are what they are after the
+occurrence.
 """
 
 from __future__ import annotations
@@ -20,9 +21,9 @@ from pn2code.diagnostics import Span
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset
 from pn2code.ml.core.colsets import Kind as ColsetKind
-from pn2code.ml.core.types import INT, UNIT, TCon, label_key, record
+from pn2code.ml.core.types import INT, REAL, UNIT, TCon, label_key, record
 from pn2code.monitors.functions import Checked, MonitorProgram, constructor
-from pn2code.monitors.kinds import Kind, Monitor
+from pn2code.monitors.kinds import Kind
 from pn2code.net.flat import (
     ArcInscription,
     ArcKind,
@@ -37,24 +38,26 @@ from pn2code.semantics.evaluation.evaluate import variables
 
 
 @frozen
-class Stopping:
-    """A net with breakpoints in it.
+class Instrumented:
+    """A net with monitors in it.
 
     Args:
         net: places and transitions of the net keep their numbers; the new places come after them.
-        stops: by id of the monitor the place that gets a token when it is reached.
+        places: by id of the monitor the place that gets a token when it sees something.
     """
 
     net: FlatNet
-    stops: dict[str, int]
+    places: dict[str, int]
 
     @staticmethod
-    def of(net: FlatNet, program: MonitorProgram, *, breakpoints: bool) -> Stopping | None:
-        """With all breakpoints that have predicates; None when there is none, or one that cannot be compiled."""
-        wanted = [c for c in program.monitors if c.monitor.kind is Kind.BREAKPOINT]
-        if not wanted or not breakpoints or any(not c.stops for c in wanted):
+    def of(net: FlatNet, program: MonitorProgram, *, breakpoints: bool) -> Instrumented | None:
+        """With all breakpoints and data collectors that have functions; None when there is none, or one that cannot be
+        compiled."""
+        kinds = {Kind.DATA_COLLECTION, *([Kind.BREAKPOINT] if breakpoints else [])}
+        wanted = [c for c in program.monitors if c.monitor.kind in kinds]
+        if not wanted or any(not c.tokens for c in wanted):
             return None
-        roots = {s for c in wanted for s in c.stops.values()}
+        roots = {s for c in wanted for s in c.tokens.values()}
         declarations = tuple(_reached(program.declarations, roots))
         used = {s for dec in declarations for s in variables(dec)}
         if used & set(program.statistics):
@@ -69,21 +72,20 @@ class Stopping:
             datatypes=datatypes,
         )
         effects = Effects(whole)
-        if any(effects.of(dec) - {Effect.READ} for dec in declarations):
+        if any(effects.of(dec) - {Effect.READ, Effect.COUNT} for dec in declarations):
             return None
-        places, transitions, stops = list(net.places), list(net.transitions), {}
-        unit = _unit(net)
+        places, transitions, own = list(net.places), list(net.transitions), {}
         for c in wanted:
             at = len(places)
-            stops[c.monitor.id] = at
-            places.append(_place(at, c.monitor, unit))
+            own[c.monitor.id] = at
+            places.append(_place(at, c, net))
             watched = {t.id for t in c.monitor.transitions}
             transitions = [
                 replace(t, arcs=(*t.arcs, _arc(at, c, t))) if t.id in watched else t
                 for t in transitions
             ]
         changed = replace(net, program=whole, places=tuple(places), transitions=tuple(transitions))
-        return Stopping(changed, stops)
+        return Instrumented(changed, own)
 
 
 def _reached(declarations: Sequence[core.Dec], roots: set[core.Symbol]) -> Iterable[core.Dec]:
@@ -97,20 +99,35 @@ def _reached(declarations: Sequence[core.Dec], roots: set[core.Symbol]) -> Itera
     return (dec for number, dec in enumerate(declarations) if number in taken)
 
 
-def _unit(net: FlatNet) -> Colset:
-    found = (c for c in net.program.colsets.values() if c.kind is ColsetKind.UNIT and not c.timed)
-    return next(found, Colset("CPN'UNIT", ColsetKind.UNIT, UNIT, names=("()",)))
+_COLOURS = {
+    "unit": Colset("CPN'UNIT", ColsetKind.UNIT, UNIT, names=("()",)),
+    "int": Colset("CPN'INT", ColsetKind.INT, INT),
+    "real": Colset("CPN'REAL", ColsetKind.REAL, REAL),
+}
+"""Colour sets of the new places, where the net has none of the kind."""
 
 
-def _place(index: int, monitor: Monitor, unit: Colset) -> FlatPlace:
-    name = f"breakpoint {monitor.name}"
+def _colours(checked: Checked) -> Colset:
+    return _COLOURS[checked.observed if checked.monitor.kind is Kind.DATA_COLLECTION else "unit"]
+
+
+def _colset(wanted: Colset, net: FlatNet) -> Colset:
+    """One without time and bounds; the net's own, if it has it."""
+    same = (c for c in net.program.colsets.values() if c.kind is wanted.kind and not c.timed)
+    return next((c for c in same if c.low is None and c.high is None), wanted)
+
+
+def _place(index: int, checked: Checked, net: FlatNet) -> FlatPlace:
+    monitor = checked.monitor
+    name = f"monitor {monitor.name}"
+    colset = _colset(_colours(checked), net)
     return FlatPlace(
-        index, f"{name} {index}", name, "", "", 1, monitor.id, unit, None, (monitor.origin,)
+        index, f"{name} {index}", name, "", "", 1, monitor.id, colset, None, (monitor.origin,)
     )
 
 
 def _arc(place: int, checked: Checked, t: FlatTransition) -> FlatArc:
-    symbol = checked.stops[constructor(t)]
+    symbol = checked.tokens[constructor(t)]
     origin = checked.monitor.origin
     span = t.guards[0].span if t.guards else _span(checked)
     names = sorted(
@@ -123,7 +140,7 @@ def _arc(place: int, checked: Checked, t: FlatTransition) -> FlatArc:
         record({"1": INT, "2": own}),
         span,
     )
-    tokens = TCon("list", (UNIT,))
+    tokens = TCon("list", (_colours(checked).type,))
     value = core.Apply(core.Var(symbol, symbol.type, span), pair, tokens, span)
     inscription = ArcInscription(value, Form.MULTISET, (), origin)
     return FlatArc(f"{checked.monitor.id}.{t.index}", ArcKind.OUTPUT, place, inscription, origin)
