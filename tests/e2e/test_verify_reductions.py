@@ -9,13 +9,15 @@ from random import Random
 
 import pytest
 
-from helpers.explored import Explored, Explorers
+from helpers.concurrent_nets import concurrent
+from helpers.explored import Explored, Explorers, node_key
 from helpers.netbuilder import flat, write
 from helpers.table_nets import TableExplorer, orbits, random_net, symmetric_net
 from helpers.thorough import amount
 from pn2code.cli import main
 from pn2code.net.flat import FlatNet
 from pn2code.verify.answers.path import steps
+from pn2code.verify.exploring.dependency import dependency
 from pn2code.verify.exploring.elements import elements
 
 pytestmark = pytest.mark.cc
@@ -126,6 +128,67 @@ def test_dead_markings_of_random_nets(tables: TableExplorer) -> None:
         dead += found["dead_count"] > 0
     assert less > 15
     assert dead > 5
+
+
+def dead_of(found: Explored) -> set[str]:
+    """The markings from which no arc leaves, in the graph that was written."""
+    nodes: dict[int, str] = {}
+    left: set[int] = set()
+    for line in found.lines:
+        entry = json.loads(line)
+        if "node" in entry:
+            nodes[entry["node"]] = node_key(entry["t"], entry["marking"])
+        else:
+            left.add(entry["from"])
+    return {text for node, text in nodes.items() if node not in left}
+
+
+def by_transitions(explorers: Explorers, net: FlatNet) -> tuple[Explored, Explored]:
+    """Without partial order, and with that of transitions."""
+    whole = explorers.explore(net, name=net.name, reads=False)
+    assert whole.report["complete"], whole.report
+    table = explorers.folder / f"{net.name}.dependency"
+    table.write_text(dependency(net).text())
+    options = ("--reduce", "partial-order", "--dependency", table)
+    return whole, explorers.said(explorers.folder / net.name, *options)
+
+
+@pytest.mark.parametrize("seed", range(amount(1, 20)))
+def test_dead_markings_of_processes(explorers: Explorers, seed: int) -> None:
+    """With code segments, references, priorities, lists; all nets of the file in one program."""
+    whole, found = by_transitions(explorers, flat(concurrent(seed, 30)))
+    assert found.report["complete"], found.report
+    assert found.report["nodes"] < whole.report["nodes"]
+    assert dead_of(found) == dead_of(whole)
+    assert found.report["dead_count"] == whole.report["dead_count"] > 30
+
+
+def test_an_exception_is_not_missed(explorers: Explorers) -> None:
+    """Although another process, which has nothing to do with it, could go on for ever."""
+    text = """
+        net Raises
+          colset INT = int;
+          var x, y: INT;
+          place A : INT = 1`1
+          place B : INT
+          place C : INT = 1`0
+          trans Tick
+            in C : y
+            out C : 1 - y
+          trans Move
+            in A : x
+            out B : x - 1
+          trans Divide
+            in B : x
+            out A : 6 div x
+    """
+    net = flat(text)
+    whole = explorers.explore(net, name=net.name, reads=False)
+    table = explorers.folder / f"{net.name}.dependency"
+    table.write_text(dependency(net).text())
+    options = ("--reduce", "partial-order", "--dependency", table)
+    found = explorers.said(explorers.folder / net.name, *options)
+    assert whole.report["error"]["kind"] == found.report["error"]["kind"] == "exception"
 
 
 def test_orbits_of_random_nets(tables: TableExplorer) -> None:

@@ -52,6 +52,7 @@ static void print_help(void)
         "  --reduce time       states that differ only in how late it is are one\n"
         "  --reduce HOW        partial-order, symmetry: fewer states, the same answer whether there are dead ones\n"
         "  --elements FILE     the table of binding elements that these two need\n"
+        "  --dependency FILE   instead of it, for partial-order: which transitions depend on which\n"
         "  --spill DIR         keep large tables in files of a folder\n"
         "  --progress          lines of JSON on the standard error\n"
         "  --progress-every S  seconds between them (default 0.5)\n"
@@ -156,6 +157,7 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
            || ((strcmp(option, "--approximate") == 0) && read_approximation(value, options))
            || ((strcmp(option, "--reduce") == 0) && read_reduction(value, options))
            || ((strcmp(option, "--elements") == 0) && read_text(value, &options->elements))
+           || ((strcmp(option, "--dependency") == 0) && read_text(value, &options->dependency))
            || ((strcmp(option, "--spill") == 0) && read_text(value, &options->spill))
            || ((strcmp(option, "--traces") == 0) && read_number(value, UINT32_MAX, &options->traces))
            || ((strcmp(option, "--dead-limit") == 0) && read_number(value, UINT32_MAX, &options->dead_limit))

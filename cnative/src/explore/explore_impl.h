@@ -51,6 +51,7 @@ typedef struct ex_options {
     bool is_stubborn; /* reductions: see explore_reduce.h */
     bool is_symmetric;
     const char *elements;    /* file: the table that these need */
+    const char *dependency;  /* file: the table that partial order needs where there is no such table */
     const char *spill;       /* folder; NULL: none */
     const char *write_graph; /* file; NULL: none */
     uint64_t write_limit;    /* most nodes of a graph that is written */
@@ -510,17 +511,18 @@ typedef struct ex_worker {
     _Alignas(EX_CACHE_LINE) struct ex_run *run; /* no line is shared with another one */
     uint32_t index;
     pn_ctx_t cx;
-    void *marking;                /* of the state last loaded */
-    bool failed;                  /* an evaluation or an allocation has failed: see run->error, run->why */
-    ex_scratch_t *scratch;        /* of the codec and the successors */
-    struct ex_search *search;     /* of the search */
-    struct ex_bounds *bounds;     /* of explore_bounds.c */
-    struct ex_stubborn *stubborn; /* of explore_stubborn.c */
-    struct ex_symmetry *symmetry; /* of explore_symmetry.c */
-    struct ex_early *early;       /* of explore_query_early.c */
-    struct ex_local *local;       /* of explore_local.c; NULL: nothing is remembered */
-    struct ex_wake *wake;         /* of explore_wake.c; NULL: nothing is remembered */
-    bool has_waited;              /* the time went on in ex_successors before something was enabled */
+    void *marking;                    /* of the state last loaded */
+    bool failed;                      /* an evaluation or an allocation has failed: see run->error, run->why */
+    ex_scratch_t *scratch;            /* of the codec and the successors */
+    struct ex_search *search;         /* of the search */
+    struct ex_bounds *bounds;         /* of explore_bounds.c */
+    struct ex_stubborn *stubborn;     /* of explore_stubborn.c */
+    struct ex_persistent *persistent; /* of explore_dependency.c */
+    struct ex_symmetry *symmetry;     /* of explore_symmetry.c */
+    struct ex_early *early;           /* of explore_query_early.c */
+    struct ex_local *local;           /* of explore_local.c; NULL: nothing is remembered */
+    struct ex_wake *wake;             /* of explore_wake.c; NULL: nothing is remembered */
+    bool has_waited;                  /* the time went on in ex_successors before something was enabled */
     int64_t
         elapsed; /* when the time is reduced: how much of it went by in ex_successors before something was enabled */
     /* Counted during the exploration. */

@@ -300,12 +300,37 @@ void ex_differs(ex_worker_t *worker, uint32_t transition, const char *how)
     note(worker->run, "mismatch", how, (int64_t)transition);
 }
 
+/* The same where partial order goes by transitions. */
+static bool make_dependency(ex_run_t *run, ex_reduction_t *reduction)
+{
+    const char *problem = NULL;
+    if (run->options.is_symmetric || pn_net.timed || (run->owner_of != NULL) || (run->programs != NULL)) {
+        problem = "it goes neither with symmetry, nor with time, nor with priorities of owners";
+    } else if (!ex_dependency_read(run, reduction, run->options.dependency)) {
+        problem = "the table of dependencies cannot be read, is malformed, or there is not enough memory";
+    } else {
+        run->reduction = reduction;
+    }
+    for (uint32_t i = 0U; (problem == NULL) && (i < run->options.threads); i++) {
+        if (!ex_persistent_make(&run->worker[i], reduction)) {
+            problem = "there is not enough memory for the reductions";
+        }
+    }
+    if (problem != NULL) {
+        note(run, "reduction", problem, -1);
+    }
+    return problem == NULL;
+}
+
 bool ex_reduction_make(ex_run_t *run)
 {
     if (!run->options.is_stubborn && !run->options.is_symmetric) {
         return true;
     }
     ex_reduction_t *reduction = ex_alloc(run, sizeof *reduction);
+    if (run->options.dependency != NULL) {
+        return (reduction != NULL) && make_dependency(run, reduction);
+    }
     if (run->options.elements == NULL) {
         note(run, "reduction", "there is no table of elements", -1);
         return false;

@@ -69,6 +69,7 @@ typedef struct ex_reduction {
     uint32_t rotation_count;
     ex_rotations_t *rotations;
     ex_exchanges_t exchanges;
+    struct ex_dependency *dependency; /* of explore_dependency.c; NULL: partial order goes by binding elements */
 } ex_reduction_t;
 
 /* Reads the table of run->options.elements and makes what the workers need. False: run->error says why; its kind is
@@ -95,6 +96,16 @@ void ex_stubborn_begin(ex_worker_t *worker);
 bool ex_stubborn_takes(ex_worker_t *worker, uint32_t transition, const void *next, bool *is_known);
 /* Whether all elements of the table that are enabled have come as successors. */
 bool ex_stubborn_is_even(const ex_worker_t *worker);
+
+/* --- stubborn sets of transitions --------------------------------------------------------------------------------- */
+
+/* Reads the table of run->options.dependency; false: it is wrong, or there is no memory. */
+bool ex_dependency_read(ex_run_t *run, ex_reduction_t *reduction, const char *path);
+bool ex_persistent_make(ex_worker_t *worker, const ex_reduction_t *reduction);
+/* By transition whether it is enabled in worker->marking: whoever asks for a choice fills this in. */
+bool *ex_persistent_enabled(const ex_worker_t *worker);
+/* By transition whether it is to be looked at; `priority` is that of what is enabled. It lives until the next call. */
+const bool *ex_persistent_choose(ex_worker_t *worker, int32_t priority);
 
 /* --- symmetry ----------------------------------------------------------------------------------------------------- */
 

@@ -17,11 +17,12 @@ typedef struct hunt {
     pn_successor_sink_t on_next; /* what is done with each */
     void *user;
     bool is_found;
-    bool is_stopped; /* by the sink */
-    bool is_local;   /* explore_local.c is asked first; other places than packed ones may not be loaded */
-    bool is_single;  /* one successor of the transition at hand is enough */
-    bool is_probe;   /* it is enough that there is one */
-    bool has_aged;   /* worker->marking is later than the cells of the codec */
+    bool is_stopped;       /* by the sink */
+    bool is_local;         /* explore_local.c is asked first; other places than packed ones may not be loaded */
+    bool is_single;        /* one successor of the transition at hand is enough */
+    bool is_probe;         /* it is enough that there is one */
+    bool has_aged;         /* worker->marking is later than the cells of the codec */
+    const bool *is_chosen; /* by transition: what the reductions look at; NULL: all */
 } hunt_t;
 
 bool ex_is_repeatable(void)
@@ -306,7 +307,7 @@ static bool hunt_now(hunt_t *hunt)
         if (hunt->is_found && (pn_net.transition[t].priority != priority)) {
             break;
         }
-        if (!is_tried(hunt, t, chosen)) {
+        if (!is_tried(hunt, t, chosen) || ((hunt->is_chosen != NULL) && !hunt->is_chosen[t])) {
             continue;
         }
         priority = pn_net.transition[t].priority;
@@ -314,6 +315,35 @@ static bool hunt_now(hunt_t *hunt)
             return false;
         }
     }
+    return true;
+}
+
+/* Which transitions are to be looked at. False when it is to go no further. */
+static bool choose_transitions(hunt_t *hunt)
+{
+    ex_worker_t *const worker = hunt->worker;
+    bool *const is_enabled = ex_persistent_enabled(worker);
+    int32_t priority = 0;
+    bool is_any = false;
+    (void)memset(is_enabled, 0, pn_net.transition_count * sizeof *is_enabled);
+    for (uint32_t k = 0U; k < pn_net.order_count; k++) {
+        const uint32_t t = pn_net.order[k];
+        if (is_any && (pn_net.transition[t].priority != priority)) {
+            break;
+        }
+        hunt->is_probe = true;
+        hunt->is_found = false;
+        const bool goes_on = hunt_transition(hunt, t);
+        is_enabled[t] = hunt->is_found;
+        is_any = is_any || hunt->is_found;
+        priority = pn_net.transition[t].priority;
+        hunt->is_probe = false;
+        hunt->is_found = false;
+        if (!goes_on) {
+            return false;
+        }
+    }
+    hunt->is_chosen = ex_persistent_choose(worker, priority);
     return true;
 }
 
@@ -372,7 +402,11 @@ static ex_found_t hunt_state(hunt_t *hunt)
     if ((reduction != NULL) && reduction->is_stubborn) {
         ex_stubborn_begin(worker);
     }
-    bool goes_on = hunt_now(hunt);
+    bool goes_on = true;
+    if ((reduction != NULL) && (reduction->dependency != NULL)) {
+        goes_on = choose_transitions(hunt);
+    }
+    goes_on = goes_on && hunt_now(hunt);
     pn_time_t next = { 0 };
     if (goes_on && has_clock) {
         goes_on = hunt_clock(hunt);

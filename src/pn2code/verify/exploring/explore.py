@@ -44,6 +44,11 @@ KEPT_ERRORS = 20
 """Lines of what the explorer says that are no progress."""
 TOO_DEEP = "recursion too deep"
 """What the runtime says of it (pn_num.c)."""
+_TABLES = {
+    "--elements": "binding elements",
+    "--dependency": "dependencies",
+    "--queries": "questions",
+}
 LEAST_SECONDS = 1e-6
 """No time at all is a limit, too; the explorer wants a positive one."""
 
@@ -275,6 +280,7 @@ def _run_with_tables(
     """Like `_run`, with files of binding elements (for reductions) and of questions as long as it runs."""
     tables = {
         "--elements": chosen.elements.text() if chosen.elements else "",
+        "--dependency": chosen.dependency.text() if chosen.dependency else "",
         "--queries": wishes.questions,
     }
     made: list[Path] = []
@@ -289,7 +295,7 @@ def _run_with_tables(
                 made.append(Path(name))
                 made[-1].write_text(text, encoding="ascii")
             except OSError as problem:
-                what = "binding elements" if option == "--elements" else "questions"
+                what = _TABLES[option]
                 d.error(
                     EXPLORER_FAILED,
                     f"there is no room for the table of {what}: {os_reason(problem)}",

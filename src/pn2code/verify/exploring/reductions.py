@@ -10,6 +10,7 @@ from pn2code.net.flat import FlatNet
 from pn2code.net.predicate import Predicate
 from pn2code.verify.codes import REDUCTION_NOT_POSSIBLE
 from pn2code.verify.exploring import time_reduction
+from pn2code.verify.exploring.dependency import Dependency, dependency
 from pn2code.verify.exploring.elements import Elements, NotPossibleError, elements
 from pn2code.verify.exploring.limits import Reduction
 from pn2code.verify.exploring.time_reduction import Obstacle
@@ -29,10 +30,12 @@ class Chosen:
     Args:
         reductions: which.
         elements: the table of binding elements, None: none of them needs it.
+        dependency: what partial order rests on instead where there is no such table.
     """
 
     reductions: tuple[Reduction, ...]
     elements: Elements | None
+    dependency: Dependency | None = None
 
     def without_elements(self) -> Chosen:
         """Those that need no table."""
@@ -71,11 +74,34 @@ def possible(
             found.append(reduction)
         else:
             refuse(reduction, obstacle.message, obstacle.at, d)
-    table = _table(net, [r for r in wanted if r in OF_ELEMENTS], d)
-    if table is not None:
-        found += _of_elements(net, table, wanted, d)
+    asked = [r for r in wanted if r in OF_ELEMENTS]
+    try:
+        table = elements(net, wants_symmetry=Reduction.SYMMETRY in asked) if asked else None
+    except NotPossibleError as problem:
+        return _by_transitions(net, wanted, found, str(problem), d)
+    if table is None:
+        return Chosen(tuple(r for r in wanted if r in found), None)
+    if table.unfolding.has_priorities and asked == [Reduction.PARTIAL_ORDER]:
+        return _by_transitions(net, wanted, found, "transitions have different priorities", d)
+    found += _of_elements(net, table, wanted, d)
     is_used = any(r in OF_ELEMENTS for r in found)
     return Chosen(tuple(r for r in wanted if r in found), table if is_used else None)
+
+
+def _by_transitions(
+    net: FlatNet, wanted: Sequence[Reduction], found: list[Reduction], why: str, d: Diagnostics
+) -> Chosen:
+    """Those of a net of which partial order cannot go by binding elements, because of `why`."""
+    table = None
+    if Reduction.SYMMETRY in wanted:
+        refuse(Reduction.SYMMETRY, why, Origin(net.file), d)
+    if Reduction.PARTIAL_ORDER in wanted:
+        try:
+            table = dependency(net)
+            found = [*found, Reduction.PARTIAL_ORDER]
+        except NotPossibleError as problem:
+            refuse(Reduction.PARTIAL_ORDER, str(problem), Origin(net.file), d)
+    return Chosen(tuple(r for r in wanted if r in found), None, table)
 
 
 def refuse(reduction: Reduction, why: str, at: Origin | Span, d: Diagnostics) -> None:
@@ -86,17 +112,6 @@ def refuse(reduction: Reduction, why: str, at: Origin | Span, d: Diagnostics) ->
         at,
         hint="the net is explored without it",
     )
-
-
-def _table(net: FlatNet, wanted: Sequence[Reduction], d: Diagnostics) -> Elements | None:
-    if not wanted:
-        return None
-    try:
-        return elements(net, wants_symmetry=Reduction.SYMMETRY in wanted)
-    except NotPossibleError as problem:
-        for reduction in wanted:
-            refuse(reduction, str(problem), Origin(net.file), d)
-        return None
 
 
 def _of_elements(
