@@ -57,7 +57,10 @@ NEVER = {
     "./dev bench --firings": "the same",
     "./dev bench --states": "the same",
     "./dev bench --monitor": "the same",
+    "./dev bench --compile": "the same",
     "./dev bench --database-15": "the same, and gigabytes",
+    "./dev contest --seconds 10 --examinations ReachabilityDeadlock UpperBounds --log contest.jsonl": "hours; "
+    "test_contest_command does it for one net",
     "make misra": "test_misra does it",
     "make mutation": "twenty minutes; test_conform changes programs, too",
     ". .venv/bin/activate": "the environment of the tests is one of another place",

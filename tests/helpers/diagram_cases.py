@@ -20,6 +20,7 @@ from pn2code.base.resources import cnative_folder
 from pn2code.contest.engine import Answer, Space, Task, ask
 from pn2code.contest.formulas import Tokens
 from pn2code.contest.tables import Tables
+from pn2code.emission import c_flags
 
 SECONDS = 60.0
 """Never needed: all come to their end."""
@@ -45,7 +46,7 @@ def sanitized_engine(folder: Path) -> Path:
     assert compiler is not None
     root = cnative_folder() / "src"
     sources = [*(root / "tables").glob("*.c"), *(root / "symbolic").glob("*.c")]
-    command = [compiler, "-std=c11", *SANITIZERS, *map(str, sources), "-lm", "-pthread"]
+    command = [compiler, c_flags.STANDARD, *SANITIZERS, *map(str, sources), "-lm", "-pthread"]
     path = folder / "tables"
     done = subprocess.run([*command, "-o", str(path)], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr

@@ -17,6 +17,7 @@ from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission import c as emit_c
 from pn2code.emission.output import OutputFile
+from pn2code.ir import nodes as ir
 from pn2code.lowering.nets import net as lower_net
 from pn2code.lowering.nets.packing import Packing, choose
 from pn2code.net.flat import FlatNet
@@ -35,6 +36,9 @@ QUICK = replace(HOST, net=("-O0",))
 """For small spaces: compiled in a fifth of the time. Only the net is slower, up to three times; the explorer is not."""
 LARGE = replace(HOST, net=("-DPN_MANY",))
 """For nets of many transitions: the compiler decides itself what is worth having in several copies."""
+PACKED = replace(LARGE, net=(*LARGE.net, "-O2", "-finline"))
+"""For those whose places are counters: beyond `c_flags.LARGE` others are compiled with less optimization, which costs
+the explorer of such a net nothing. Counters are what the compiler optimizes best."""
 MANY = 40
 """Transitions of a net that is worth to be compiled quickly first."""
 FIRST_STATES = 100_000
@@ -123,14 +127,33 @@ def generated(
     predicates: Sequence[Predicate] = (),
 ) -> tuple[OutputFile, ...] | None:
     """net.c and net.h; None when the net cannot be compiled, which was reported."""
+    found = _lowered(net, storage, sizes, d, predicates)
+    return None if found is None else emit_c.emit(found, pn2code.__version__)
+
+
+def _lowered(
+    net: FlatNet,
+    storage: Mapping[str, str],
+    sizes: Sizes,
+    d: Diagnostics,
+    predicates: Sequence[Predicate],
+) -> ir.NetIR | None:
     partition = divide(net, None, d)
     if partition is None:
         return None
     capacity = {p.name: sizes.room.get(p.name, ROOM) for p in net.places}
-    ir = lower_net.lower(
+    found = lower_net.lower(
         partition, storage, d, capacity=capacity, packing=sizes.packing, predicates=predicates
     )
-    return None if ir is None or d.has_errors else emit_c.emit(ir, pn2code.__version__)
+    return None if d.has_errors else found
+
+
+def _host(net: ir.NetIR) -> Host:
+    """What a net is compiled with for a large space."""
+    if len(net.transitions) <= MANY:
+        return HOST
+    counters = sum(1 for p in net.places if p.packed is not None)
+    return PACKED if 2 * counters > len(net.places) else LARGE
 
 
 @contextmanager
@@ -155,11 +178,12 @@ def program(
         interrupted: asked while compilers run.
         quick: rather compile quickly than run quickly, unless it has been compiled already.
     """
-    files = generated(net, storage, sizes, d, predicates)
-    if files is None:
+    lowered = _lowered(net, storage, sizes, d, predicates)
+    if lowered is None:
         yield None
         return
-    best = LARGE if len(net.transitions) > MANY else HOST
+    files = emit_c.emit(lowered, pn2code.__version__)
+    best = _host(lowered)
     host = QUICK if quick and not programs.is_kept(best, files) else best
     with programs.program(host, files, d, interrupted=interrupted) as found:
         yield found
