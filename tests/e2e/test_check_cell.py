@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -198,3 +200,18 @@ def test_a_robot_whose_port_has_no_socket(tmp_path: Path) -> None:
     assert (
         "note[port-unassigned]: port `flag` of page `Rob` has no socket at `Robot`" in done.stderr
     )
+
+
+def test_check_does_not_load_what_only_others_need(root: Path) -> None:
+    """SciPy, pictures and the C that is emitted cost more than the whole check."""
+    code = (
+        "import sys; from typer.testing import CliRunner; from pn2code.cli.main import app\n"
+        "done = CliRunner().invoke(app, ['check', 'examples/sorting'])\n"
+        "assert done.exit_code == 0 and 'no errors' in done.output, done.output\n"
+        "print(*sorted({'scipy', 'matplotlib', 'jinja2', 'pn2code.emission.c'} & set(sys.modules)))"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", code], cwd=root, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.split() == []
