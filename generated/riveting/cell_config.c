@@ -19,6 +19,7 @@
  * nobody owes an answer for longer than `reply_timeout_s`, 120 s (tools, waits and delays take at most 3 s; how long moves and
  * measurements take is not known)
  * each possible value of a sensor occurs from time to time
+ * arms reach each pose that they are told, and nothing is in their way (limits, singularities and collisions show in a run)
  */
 #include "pn/pn_arena.h"
 #include "pn/pn_cell.h"

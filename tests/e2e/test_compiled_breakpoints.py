@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -10,7 +9,8 @@ from typing import Any
 import pytest
 from typer.testing import CliRunner
 
-from helpers.monitors import Spec, with_monitors
+from helpers import monitors
+from helpers.monitors import SAME, Spec
 from pn2code.cli.main import app
 
 pytestmark = pytest.mark.cc
@@ -62,15 +62,7 @@ OTHER = Spec(
 
 
 def simulated(folder: Path, specs: Sequence[Spec], *options: object) -> dict[str, Any]:
-    net = folder / "watched.cpn"
-    net.write_bytes(with_monitors(NET, *specs))
-    command = ["simulate", net, "--json", "--steps", 300, *options]
-    done = CliRunner().invoke(app, [str(word) for word in command])
-    said: dict[str, Any] = json.loads(done.stdout)
-    return said
-
-
-SAME = ("steps", "why", "breakpoint", "places", "monitors", "error", "output")
+    return monitors.simulated(folder / "watched.cpn", NET, specs, 300, *options)
 
 
 @pytest.mark.parametrize(

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import pytest
-from typer.testing import CliRunner
 
-from helpers.monitors import Spec, with_monitors
-from pn2code.cli.main import app
+from helpers import monitors
+from helpers.monitors import SAME, Spec
 
 pytestmark = pytest.mark.cc
 
@@ -84,15 +82,7 @@ STOP = Spec(
 
 
 def simulated(folder: Path, specs: Sequence[Spec], *options: object) -> dict[str, Any]:
-    net = folder / "collected.cpn"
-    net.write_bytes(with_monitors(NET, *specs))
-    command = ["simulate", net, "--json", "--steps", 400, *options]
-    done = CliRunner().invoke(app, [str(word) for word in command])
-    said: dict[str, Any] = json.loads(done.stdout)
-    return said
-
-
-SAME = ("steps", "why", "breakpoint", "places", "monitors", "error", "output", "time")
+    return monitors.simulated(folder / "collected.cpn", NET, specs, 400, *options)
 
 
 @pytest.mark.parametrize(

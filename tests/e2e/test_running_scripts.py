@@ -432,6 +432,17 @@ def test_what_does_much_in_one_moment_says_what_it_assumes(tmp_path: Path) -> No
     assert not any(map(is_said, small.values()))
 
 
+def test_a_robot_that_moves_is_assumed_to_reach_its_poses(tmp_path: Path) -> None:
+    """Only a run shows whether it does; answers that hold when programs do less do not rest on it."""
+    text = net(ONE, {"A": counting("act ()", 3)}, ACT + N)
+    moving = checks(write(tmp_path / "moves", text, of_robot(toml(["A"], HOME))))
+    assert moving["non-blocking"]["answer"] == "yes"
+    saying = [n for n, c in moving.items() if any("reach each pose" in x for x in c["assumes"])]
+    assert saying == ["non-blocking"]
+    acting = checks(write(tmp_path / "acts", text, toml(["A"], TOOL)))
+    assert not any("reach each pose" in x for c in acting.values() for x in c["assumes"])
+
+
 def test_a_tool_of_hardly_any_time_may_take_none(tmp_path: Path) -> None:
     """What is added to the time of a run is lost if it is too short."""
     text = net(ONE, {"A": counting("act ()", 10_000)}, ACT + N)

@@ -5,12 +5,20 @@ The nodes of a monitor are named `Page.Name`, or `Path/To/Instance.Name` where a
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
 
 from lxml import etree
+from typer.testing import CliRunner
 
 from helpers.netbuilder import DOCTYPE, cpn
+from pn2code.cli.main import app
+
+SAME = ("steps", "why", "breakpoint", "places", "monitors", "error", "output", "time")
+"""What a simulation says that does not depend on the engine."""
 
 
 @dataclass(frozen=True)
@@ -60,6 +68,17 @@ def with_monitors(text: str, *specs: Spec) -> bytes:
         for name, value in spec.options.items():
             etree.SubElement(monitor, "option", name=name, value=value)
     return bytes(etree.tostring(root, encoding="iso-8859-1", xml_declaration=True, doctype=DOCTYPE))
+
+
+def simulated(
+    net: Path, text: str, specs: Sequence[Spec], steps: int, *options: object
+) -> dict[str, Any]:
+    """What a simulation of the net with its monitors says; the file is written to `net`."""
+    net.write_bytes(with_monitors(text, *specs))
+    command = ["simulate", net, "--json", "--steps", steps, *options]
+    done = CliRunner().invoke(app, [str(word) for word in command])
+    said: dict[str, Any] = json.loads(done.stdout)
+    return said
 
 
 def _instances(net: etree._Element) -> dict[str, tuple[str, etree._Element]]:

@@ -28,6 +28,12 @@ _MOVING = (
     "exchanged, or commands carried out, without time passing"
 )
 
+_REACHED = (
+    "arms reach each pose that they are told, and nothing is in their way (limits, singularities and collisions show "
+    "in a run)"
+)
+_MOTIONS = frozenset({"move_joint", "move_linear", "move_home", "measure"})
+
 _SENSORS = "each possible value of a sensor occurs from time to time"
 
 
@@ -41,6 +47,7 @@ class Premises:
         durations: whether timers and what programs do go on side by side.
         sensors: whether programs ask sensors.
         moving: whether a run in lock-step might do too much in one moment if moves took no time.
+        moves: whether programs move arms: a move that is not possible stops its program.
     """
 
     replies: Replies = Replies()
@@ -48,6 +55,7 @@ class Premises:
     durations: bool = False
     sensors: bool = False
     moving: bool = False
+    moves: bool = False
 
     @staticmethod
     def of(
@@ -55,7 +63,8 @@ class Premises:
     ) -> Premises:
         """Those of a cell; `given`: by place, a clause that says which token a file gave it."""
         states: list[str] = []
-        measured = _measured(partition, config)
+        used = _used(partition, config)
+        measured = sorted(name for name, command in used.items() if command == "measure")
         if measured:
             names = ", ".join(f"`{name}`" for name in measured)
             states.append(f"a measurement gives the result of {names} in the net")
@@ -65,7 +74,13 @@ class Premises:
             names = ", ".join(f"`{i.name}`" for i in assumed)
             states.append(f"{names} begins with the tokens of the net, not with those of its file")
         replies = Replies.of(partition, config)
-        return Premises(replies, tuple(states), partition.net.timed, bool(config.sensors))
+        return Premises(
+            replies,
+            tuple(states),
+            partition.net.timed,
+            bool(config.sensors),
+            moves=not _MOTIONS.isdisjoint(used.values()),
+        )
 
     def of_check(self, name: str, answer: str) -> tuple[str, ...]:
         """Those of an answer to a check (`control_types`)."""
@@ -75,7 +90,7 @@ class Premises:
         if name == "non-blocking":
             found += [self.replies.premise] if self.replies.premise else []
             found += [_SENSORS] if self.sensors else []
-            found += [_MOVING] if self.moving else []
+            found += self._of_moves()
         return tuple(found)
 
     def of_property(self, asked: m.Asked, answer: str, *, kept: bool) -> tuple[str, ...]:
@@ -85,10 +100,14 @@ class Premises:
         found = list(self.states)
         if not kept and self.replies.premise:
             found.append(self.replies.premise)
-        found += [_MOVING] if self.moving and not kept else []
+        found += [] if kept else self._of_moves()
         if self.durations and _is_possibility(asked):
             found.append(_DURATIONS)
         return tuple(found)
+
+    def _of_moves(self) -> list[str]:
+        """Those of an answer that needs the cell to go on."""
+        return [*([_MOVING] if self.moving else []), *([_REACHED] if self.moves else [])]
 
 
 def _is_possibility(asked: m.Asked) -> bool:
@@ -102,13 +121,11 @@ def _is_possibility(asked: m.Asked) -> bool:
             return False
 
 
-def _measured(partition: Partition, config: CellConfig) -> tuple[str, ...]:
-    """The functions by which robots measure."""
+def _used(partition: Partition, config: CellConfig) -> dict[str, str]:
+    """The functions by which robots do something, each with its command."""
     program = partition.net.program
     known = {
-        program.globals[name].uid: name
-        for name, p in config.primitives.items()
-        if p.command == "measure" and name in program.globals
+        program.globals[name].uid: name for name in config.primitives if name in program.globals
     }
     reach = Reach(program)
     found: set[str] = set()
@@ -116,4 +133,4 @@ def _measured(partition: Partition, config: CellConfig) -> tuple[str, ...]:
         if t.code is not None and partition.owners[owner].kind is OwnerKind.ROBOT:
             reach.add_locals(t.code.action)
             found |= {known[uid] for uid in reach.everything(t.code.action) if uid in known}
-    return tuple(sorted(found))
+    return {name: config.primitives[name].command for name in sorted(found)}
