@@ -814,8 +814,9 @@ def test_what_no_state_shows_is_assumed(root: Path) -> None:
         "`coordenadas` begins with 5",
     )
     assert premises.of_check("ownership", "yes") == premises.of_check("messages", "no") == ()
-    late, sensors = premises.of_check("non-blocking", "yes")[2:]
+    late, sensors, moves = premises.of_check("non-blocking", "yes")[2:]
     assert "moves and measurements take is not known" in late and "sensor" in sensors
+    assert "reach each pose" in moves
 
 
 def test_whoever_waits_for_others_may_owe_for_ever(tmp_path: Path) -> None:
