@@ -148,7 +148,7 @@ class _Portfolio:
             parts: list[tuple[Part, bool | None]] = [(p, None) for p in line.asked.parts]
             for which, (part, hint) in enumerate([*parts, *line.asked.hints]):
                 self.places.append(_Place(line, part, which, hint))
-        self.drawn: dict[int, Diagrams] = {}
+        self.diagrams: dict[int, Diagrams] = {}
         self.structural: Structural | None = None
         if only in ("", "structure"):
             self._start_structural()
@@ -245,7 +245,8 @@ class _Portfolio:
         kinds = sorted({self.places[n].part.kind for n in open_})
         drawn = [n for n in open_ if self.places[n].part.kind in KINDS]
         if self.only == METHOD:
-            return [self._drawn(drawn, number, number + i, ends, 2) for i in range(2) if drawn]
+            orders = (number, number + 1) if drawn else ()
+            return [self._lane([(METHOD, drawn)], number, i, ends, 2) for i in orders]
         is_drawn = bool(drawn) and not self.only and number > 0
         found = []
         for which in range(2):
@@ -258,13 +259,9 @@ class _Portfolio:
                     tasks.append((method, mine))
             if tasks:
                 found.append(self._lane(tasks, number, which, ends, 2 + is_drawn))
-        return [*found, *([self._drawn(drawn, number, number - 1, ends, 3)] if is_drawn else [])]
-
-    def _drawn(
-        self, numbers: list[int], number: int, order: int, ends: float, lanes: int
-    ) -> Iterator[Task]:
-        """A lane with diagrams, with one of the orders of the places."""
-        return self._lane([(METHOD, numbers)], number, order, ends, lanes)
+        if is_drawn:
+            found.append(self._lane([(METHOD, drawn)], number, number - 1, ends, 3))
+        return found
 
     def _methods(self, kinds: list[str], number: int, which: int) -> list[str]:
         if self.only:
@@ -325,20 +322,19 @@ class _Portfolio:
                 smaller[n] = (asked.kind, asked.smaller)
         nets = {id(s.tables): s.tables for _, s in smaller.values()}
         if len(smaller) < len(numbers) or len(nets) != 1:
+            tables, added, technique = self.tables, dict[int, int](), ""
             texts = [f"{n} {self.places[n].part.text}" for n in numbers]
-            order = self._order(self.tables, which) if method == METHOD else ()
-            return Task(method, self.tables.text(texts, order), 0.0, 0)
-        texts = [f"{n} {s.text(kind)}" for n, (kind, s) in smaller.items()]
-        (tables,) = nets.values()
-        added = {n: s.added for n, (_, s) in smaller.items()}
+        else:
+            (tables,) = nets.values()
+            added = {n: s.added for n, (_, s) in smaller.items()}
+            technique = REDUCTION
+            texts = [f"{n} {s.text(kind)}" for n, (kind, s) in smaller.items()]
         order = self._order(tables, which) if method == METHOD else ()
-        return Task(method, tables.text(texts, order), 0.0, 0, added=added, technique=REDUCTION)
+        return Task(method, tables.text(texts, order), 0.0, 0, added=added, technique=technique)
 
     def _order(self, tables: Tables, which: int) -> Sequence[int]:
         """One of the orders of the places of a net, which is this one or a reduced one."""
-        if id(tables) not in self.drawn:
-            self.drawn[id(tables)] = Diagrams(tables)
-        orders = self.drawn[id(tables)].orders
+        orders = self.diagrams.setdefault(id(tables), Diagrams(tables)).orders
         return orders[which % len(orders)] if orders else ()
 
 
