@@ -68,3 +68,14 @@ def test_static_analysis_of_the_runtime_finds_nothing(tmp_path: Path) -> None:
         capture_output=True, text=True, check=False, cwd=tmp_path,
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
+
+
+def test_no_line_is_longer_than_120_columns() -> None:
+    """The formatter leaves comments as they are, so that tables in them stay tables."""
+    long = [
+        f"{path.name}:{number}"
+        for path in sorted(cnative_folder().rglob("*.[ch]"))
+        for number, line in enumerate(path.read_text().splitlines(), 1)
+        if len(line) > 120
+    ]
+    assert long == []

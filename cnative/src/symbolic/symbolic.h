@@ -85,7 +85,7 @@ typedef struct sy_diagrams {
     jmp_buf given_up; /* where to go on when time is over, or a number is too large */
 } sy_diagrams_t;
 
-/* --- nodes (symbolic_nodes.c) ---------------------------------------------------------------------------------------------------- */
+/* --- nodes (symbolic_nodes.c) ------------------------------------------------------------------------------------- */
 
 enum { SY_EDGE = 2, SY_MAKING = 3 /* words of an edge in the pool, and of one in the making */ };
 
@@ -127,7 +127,7 @@ void sy_make_room(sy_diagrams_t *d);
 bool sy_find(const sy_diagrams_t *d, uint32_t op, uint32_t a, uint32_t b, uint32_t c, sy_node_t *found);
 void sy_note(sy_diagrams_t *d, uint32_t op, uint32_t a, uint32_t b, uint32_t c, sy_node_t node);
 
-/* --- sets (symbolic_sets.c) ------------------------------------------------------------------------------------------------------ */
+/* --- sets (symbolic_sets.c) --------------------------------------------------------------------------------------- */
 
 sy_node_t sy_union(sy_diagrams_t *d, sy_node_t a, sy_node_t b);
 sy_node_t sy_intersection(sy_diagrams_t *d, sy_node_t a, sy_node_t b);
@@ -135,7 +135,7 @@ sy_node_t sy_difference(sy_diagrams_t *d, sy_node_t a, sy_node_t b);
 sy_node_t sy_one(sy_diagrams_t *d, const tb_count_t *marking);
 bool sy_contains(const sy_diagrams_t *d, sy_node_t n, const tb_count_t *marking);
 
-/* --- transitions (symbolic_events.c, symbolic_fire.c) ----------------------------------------------------------------------------- */
+/* --- transitions (symbolic_events.c, symbolic_fire.c) ------------------------------------------------------------- */
 
 void sy_make_events(sy_diagrams_t *d);
 
@@ -144,7 +144,7 @@ sy_node_t sy_fire(sy_diagrams_t *d, sy_node_t n, sy_node_t within, sy_path_t pat
 /* A set with all that transitions make of it, again and again, as far as that lies in `within`. */
 sy_node_t sy_saturated(sy_diagrams_t *d, const sy_events_t *e, sy_node_t n, sy_node_t within);
 
-/* --- sizes (symbolic_sizes.c) ---------------------------------------------------------------------------------------------------- */
+/* --- sizes (symbolic_sizes.c) ------------------------------------------------------------------------------------- */
 
 /* A set as an array of nodes: node 0 is the unit, children come before their parents, the last node is the root. */
 typedef struct sy_frozen {
@@ -166,7 +166,7 @@ bool sy_largest(const sy_frozen_t *f, const int64_t *factor, int64_t *sum);
 /* Print the numbers of markings and arcs, and the most tokens in a place and in a marking. */
 void sy_say_sizes(sy_diagrams_t *d, const sy_frozen_t *f);
 
-/* --- formulas (symbolic_formula.c) ------------------------------------------------------------------------------------------------- */
+/* --- formulas (symbolic_formula.c) -------------------------------------------------------------------------------- */
 
 /* The reachable markings in which a formula holds. */
 sy_node_t sy_where(sy_diagrams_t *d, const tb_formula_t *f);

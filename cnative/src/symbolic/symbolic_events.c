@@ -55,7 +55,7 @@ static void collect(const sy_diagrams_t *d, uint32_t t, effects_t *e)
     qsort(e->of, e->count, sizeof *e->of, by_level);
 }
 
-/* --- paths ------------------------------------------------------------------------------------------------------------------------- */
+/* --- paths -------------------------------------------------------------------------------------------------------- */
 
 typedef struct paths {
     sy_diagrams_t *d;
@@ -116,7 +116,7 @@ static bool changes_something(const sy_diagrams_t *d, sy_path_t path)
     return found;
 }
 
-/* --- events by level --------------------------------------------------------------------------------------------------------------- */
+/* --- events by level ---------------------------------------------------------------------------------------------- */
 
 static void sort_events(sy_diagrams_t *d, sy_events_t *e, sy_op_t op)
 {

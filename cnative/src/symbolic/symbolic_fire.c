@@ -15,7 +15,7 @@ enum { CLOSED = 0, FIRED = 1, LIFTED = 2 };
 
 static sy_node_t lifted(sy_diagrams_t *d, const sy_events_t *e, sy_node_t n, sy_node_t within, uint32_t below);
 
-/* --- nodes in the making ----------------------------------------------------------------------------------------------------------- */
+/* --- nodes in the making ------------------------------------------------------------------------------------------ */
 
 /* The edge with so many tokens, or the place where it belongs. */
 static uint64_t edge_at(const sy_diagrams_t *d, uint64_t begun, tb_count_t tokens)
@@ -68,7 +68,7 @@ static tb_count_t after(const sy_step_t *s, tb_count_t tokens)
     return (tb_count_t)sum;
 }
 
-/* --- firing ------------------------------------------------------------------------------------------------------------------------ */
+/* --- firing ------------------------------------------------------------------------------------------------------- */
 
 static void close_here(sy_diagrams_t *d, const sy_events_t *e, uint64_t begun, uint32_t level, sy_node_t within);
 static sy_node_t closed(sy_diagrams_t *d, const sy_events_t *e, sy_node_t n, sy_node_t within);
@@ -147,7 +147,7 @@ sy_node_t sy_fire(sy_diagrams_t *d, sy_node_t n, sy_node_t within, sy_path_t pat
     return fired(d, NULL, n, within, path);
 }
 
-/* --- closing ----------------------------------------------------------------------------------------------------------------------- */
+/* --- closing ------------------------------------------------------------------------------------------------------ */
 
 /* Fire all events of a level from one edge, whose tokens and child these are. */
 static void fire_from(sy_diagrams_t *d, const sy_events_t *e, uint64_t begun, uint32_t level, sy_node_t within,

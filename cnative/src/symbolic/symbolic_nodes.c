@@ -35,7 +35,7 @@ void sy_init(sy_diagrams_t *d, const tb_net_t *net, const uint32_t *order)
     d->dead = (sy_node_t)SY_ANY;
 }
 
-/* --- looking at nodes -------------------------------------------------------------------------------------------------------------- */
+/* --- looking at nodes --------------------------------------------------------------------------------------------- */
 
 sy_node_t sy_below(const sy_diagrams_t *d, sy_node_t n, uint32_t level, tb_count_t tokens)
 {
@@ -66,7 +66,7 @@ sy_node_t sy_down_to(const sy_diagrams_t *d, sy_node_t n, uint32_t level)
     return n;
 }
 
-/* --- making nodes ------------------------------------------------------------------------------------------------------------------ */
+/* --- making nodes ------------------------------------------------------------------------------------------------- */
 
 uint64_t sy_begin(const sy_diagrams_t *d)
 {
@@ -184,7 +184,7 @@ sy_node_t sy_end(sy_diagrams_t *d, uint64_t begun, uint32_t level)
     return only_one(d, words);
 }
 
-/* --- results ----------------------------------------------------------------------------------------------------------------------- */
+/* --- results ------------------------------------------------------------------------------------------------------ */
 
 static uint64_t result_at(const sy_diagrams_t *d, uint32_t op, uint32_t a, uint32_t b, uint32_t c)
 {

@@ -15,7 +15,7 @@
 
 enum { WORD_BITS = 64, DIGITS = 9 };
 
-/* --- a set as an array ------------------------------------------------------------------------------------------------------------- */
+/* --- a set as an array -------------------------------------------------------------------------------------------- */
 
 typedef struct marks {
     uint64_t *bit;    /* index in the pool -> whether the node is in the set */
@@ -126,7 +126,7 @@ void sy_unfreeze(const sy_diagrams_t *d, sy_frozen_t *f)
     tb_free(f->levels, (size_t)d->levels + 3U, sizeof *f->levels);
 }
 
-/* --- sums -------------------------------------------------------------------------------------------------------------------------- */
+/* --- sums --------------------------------------------------------------------------------------------------------- */
 
 bool sy_largest(const sy_frozen_t *f, const int64_t *factor, int64_t *sum)
 {
@@ -146,7 +146,7 @@ bool sy_largest(const sy_frozen_t *f, const int64_t *factor, int64_t *sum)
     return is_small;
 }
 
-/* --- numbers of any length --------------------------------------------------------------------------------------------------------- */
+/* --- numbers of any length ---------------------------------------------------------------------------------------- */
 
 static void plus(uint64_t *a, const uint64_t *b, uint32_t words)
 {
@@ -200,7 +200,7 @@ static void print(uint64_t *a, uint32_t words)
     tb_free(part, ((size_t)words * 3U) + 1U, sizeof *part);
 }
 
-/* --- counting ---------------------------------------------------------------------------------------------------------------------- */
+/* --- counting ----------------------------------------------------------------------------------------------------- */
 
 typedef struct counting {
     const sy_diagrams_t *d;

@@ -41,7 +41,7 @@ typedef struct tb_net {
     tb_arcs_t changers; /* place -> transitions that change it */
 } tb_net_t;
 
-/* --- questions ------------------------------------------------------------------------------------------------------------------- */
+/* --- questions ---------------------------------------------------------------------------------------------------- */
 
 typedef enum tb_op {
     TB_TRUE,
@@ -128,7 +128,7 @@ typedef struct tb_job {
 /* Read a job from a file; an error ends the program with a message. */
 void tb_read(tb_job_t *job, const char *path);
 
-/* --- memory and time ------------------------------------------------------------------------------------------------------------- */
+/* --- memory and time ---------------------------------------------------------------------------------------------- */
 
 /* Zeroed memory; the program ends with exit code 4 when the limit is met. */
 void *tb_new(size_t count, size_t size);
@@ -144,7 +144,7 @@ _Noreturn void tb_fail(int code, const char *format, ...) __attribute__((format(
 
 enum { TB_EXIT_WRONG = 2, TB_EXIT_TIME = 3, TB_EXIT_MEMORY = 4 };
 
-/* --- a place in the state space -------------------------------------------------------------------------------------------------- */
+/* --- a place in the state space ----------------------------------------------------------------------------------- */
 
 /* A marking, and what is enabled in it; kept up to date by differences. */
 typedef struct tb_cursor {
@@ -176,7 +176,7 @@ bool tb_holds(const tb_formula_t *f, const tb_cursor_t *c);
 double tb_distance(const tb_formula_t *f, const tb_cursor_t *c, bool wanted);
 int64_t tb_sum(const tb_formula_t *sum, const tb_count_t *marking);
 
-/* --- known markings -------------------------------------------------------------------------------------------------------------- */
+/* --- known markings ----------------------------------------------------------------------------------------------- */
 
 typedef struct tb_store {
     uint32_t places;
@@ -201,7 +201,7 @@ typedef enum tb_added { TB_ADDED, TB_KNOWN, TB_FULL } tb_added_t;
 tb_added_t tb_store_add(tb_store_t *s, const tb_count_t *marking, uint32_t *number);
 void tb_store_get(const tb_store_t *s, uint32_t number, tb_count_t *marking);
 
-/* --- the state space, as far as it is needed ------------------------------------------------------------------------------------- */
+/* --- the state space, as far as it is needed ---------------------------------------------------------------------- */
 
 /* Markings by number with their successors, which are looked up when they are first asked for (tables_graph.c). */
 typedef struct tb_graph {
@@ -234,7 +234,7 @@ static inline uint32_t tb_successor(const tb_graph_t *g, uint32_t marking, uint3
     return g->successor[g->first[marking] - 1U + which];
 }
 
-/* --- stubborn sets --------------------------------------------------------------------------------------------------------------- */
+/* --- stubborn sets ------------------------------------------------------------------------------------------------ */
 
 /* What has to be looked at in a marking, so that no marking is missed in which a formula is true (tables_stubborn.c).
  */
@@ -254,13 +254,13 @@ void tb_stubborn_free(tb_stubborn_t *s);
 uint32_t tb_stubborn(tb_stubborn_t *s, const tb_cursor_t *c, const tb_formula_t *f, const tb_formula_t *sum,
                      uint32_t *fire);
 
-/* --- answers --------------------------------------------------------------------------------------------------------------------- */
+/* --- answers ------------------------------------------------------------------------------------------------------ */
 
 /* Print an answer at once, so that it is known even if the program is ended in the next moment. */
 void tb_say(tb_question_t *q, tb_answer_t answer, const char *method);
 void tb_say_bound(tb_question_t *q, int64_t bound, bool is_exact, const char *method);
 
-/* --- methods --------------------------------------------------------------------------------------------------------------------- */
+/* --- methods ------------------------------------------------------------------------------------------------------ */
 
 void tb_walk(tb_job_t *job, uint64_t seed, double seconds);
 void tb_explore(tb_job_t *job, bool count);

@@ -105,7 +105,7 @@ static tb_answer_t of_successors(checker_t *c, uint32_t marking, const tb_formul
     return is_known ? TB_NO : TB_UNKNOWN;
 }
 
-/* --- E[p U q] -------------------------------------------------------------------------------------------------------------------- */
+/* --- E[p U q] ----------------------------------------------------------------------------------------------------- */
 
 typedef struct until {
     const tb_formula_t *formula;
@@ -231,7 +231,7 @@ static tb_answer_t exists_until(checker_t *c, uint32_t from, const until_t *u)
     return is_lost ? TB_UNKNOWN : (is_found ? TB_YES : TB_NO);
 }
 
-/* --- A[p U q] -------------------------------------------------------------------------------------------------------------------- */
+/* --- A[p U q] ----------------------------------------------------------------------------------------------------- */
 
 /* The search for a path that never comes to q through p. */
 static tb_answer_t always_until(checker_t *c, uint32_t from, const until_t *u)
@@ -279,7 +279,7 @@ static tb_answer_t always_until(checker_t *c, uint32_t from, const until_t *u)
     return is_lost ? TB_UNKNOWN : (is_avoided ? TB_NO : TB_YES);
 }
 
-/* --- all operators --------------------------------------------------------------------------------------------------------------- */
+/* --- all operators ------------------------------------------------------------------------------------------------ */
 
 static tb_answer_t searched(checker_t *c, uint32_t marking, const until_t *u, bool is_existential)
 {

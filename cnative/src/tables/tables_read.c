@@ -56,7 +56,7 @@ static uint32_t index_below(reader_t *r, uint32_t count)
     return (uint32_t)number(r, 0, (int64_t)count - 1);
 }
 
-/* --- the net --------------------------------------------------------------------------------------------------------------------- */
+/* --- the net ------------------------------------------------------------------------------------------------------ */
 
 typedef struct growing {
     tb_arc_t *arc;
@@ -170,7 +170,7 @@ static void read_net(reader_t *r)
     net->changers = turned(&net->changes, net->transitions, net->places);
 }
 
-/* --- the questions --------------------------------------------------------------------------------------------------------------- */
+/* --- the questions ------------------------------------------------------------------------------------------------ */
 
 static const struct {
     const char *word;
