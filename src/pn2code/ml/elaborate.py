@@ -147,6 +147,8 @@ class Elaborator:
         self._ctx.tainted = False
         colset, datatypes = self._colsets.declare(spec)
         self._made += datatypes
+        if colset is not None:
+            self._redeclared(colset)
         self._hide({*spec.ids, *(label for label, _ in spec.fields)}, spec.origin)
         return colset
 
@@ -178,19 +180,32 @@ class Elaborator:
                 self._clash(name, origin, "inscriptions mean the value, which was declared first")
                 continue
             old = self._variables.get(name)
-            if old is not None and old.colset is not None and old.colset != colset:
+            if old is None:
+                self._variable(name, colset)
+            elif old.colset is not None and old.colset != colset:
                 self._d.warning(
                     codes.VARIABLE_CLASH,
                     f"variable `{name}` of colour set `{old.colset.name}` is declared again, "
                     f"now of `{colset.name}`",
                     origin,
-                    hint="rename one of them: the last declaration counts everywhere",
+                    hint="rename one of them: as in CPN Tools, the first declaration counts everywhere",
                 )
-            symbol = self._ctx.fresh_symbol(name, colset.type, colset)
-            self._variables[name] = symbol
-            self._variable_scope.values[name] = Binding(
-                name, from_type(colset.type, []), symbol=symbol, colset=colset
-            )
+
+    def _variable(self, name: str, colset: Colset) -> None:
+        """A variable of the net in arcs, guards and code segments."""
+        symbol = self._ctx.fresh_symbol(name, colset.type, colset)
+        self._variables[name] = symbol
+        self._variable_scope.values[name] = Binding(
+            name, from_type(colset.type, []), symbol=symbol, colset=colset
+        )
+
+    def _redeclared(self, colset: Colset) -> None:
+        """Variables get the colour set that has their colour set's name in the end, as in CPN Tools."""
+        for name, symbol in list(self._variables.items()):
+            old = symbol.colset
+            known = isinstance(self._variable_scope.values.get(name), Binding)
+            if known and old is not None and old.name == colset.name and old != colset:
+                self._variable(name, colset)
 
     def _hide(self, names: Set[str], at: Origin | Span) -> None:
         """Variables of the net that have become constructors: CPN Tools refuses the transitions that use them."""
