@@ -199,6 +199,43 @@ class Elaborator:
             name, from_type(colset.type, []), symbol=symbol, colset=colset
         )
 
+    def _tables(self) -> tuple[dict[str, Any], ...]:
+        """What is declared for the whole net, by name."""
+        top = self._ctx.top
+        modules = (top.structures, top.signatures, top.functors)
+        return (
+            top.values,
+            top.types,
+            *modules,
+            self._ctx.colsets,
+            self._variables,
+            self._variable_scope.values,
+        )
+
+    @contextmanager
+    def noting(self, forget: list[Callable[[], None]]) -> Iterator[None]:
+        """Appends to `forget` what takes the names away again that are declared meanwhile."""
+        before = [dict(table) for table in self._tables()]
+        yield
+        made = [
+            {name: x for name, x in table.items() if x is not old.get(name)}
+            for table, old in zip(self._tables(), before, strict=True)
+        ]
+        forget.append(partial(self._forget, made))
+
+    def _forget(self, made: Sequence[Mapping[str, Any]]) -> None:
+        """Takes names away, unless they have been declared again; with a colour set, its variables."""
+        self._repeats.clear()
+        tables = self._tables()
+        for table, names in zip(tables, made, strict=True):
+            for name, x in names.items():
+                if table.get(name) is x:
+                    del table[name]
+        for name, symbol in list(self._variables.items()):
+            if symbol.colset is not None and symbol.colset.name not in self._ctx.colsets:
+                del self._variables[name]
+                self._variable_scope.values.pop(name, None)
+
     def _redeclared(self, colset: Colset) -> None:
         """Variables get the colour set that has their colour set's name in the end, as in CPN Tools."""
         for name, symbol in list(self._variables.items()):

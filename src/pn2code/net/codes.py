@@ -81,8 +81,8 @@ SUBSTITUTION_INSCRIPTION = register(
 UNSUPPORTED_CHANNEL = register(
     "unsupported-channel",
     "synchronous channels of CPN Tools are not supported",
-    "CPN Tools 4 can synchronise transitions over channels (`ch.!x`, `ch.?y`), an experimental feature. pn2code reads "
-    "the net, but such transitions fire alone. Merge the transitions, or use a place between them.",
+    "CPN Tools 4 can synchronise transitions over channels (`ch.!x`, `ch.?y`), an experimental feature, which its "
+    "engine refuses without an extension. Merge the transitions, or use a place between them.",
 )
 DECLARATION_EMPTY = register(
     "declaration-empty",

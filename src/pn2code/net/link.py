@@ -152,10 +152,10 @@ class _Linker:
         )
 
     def transition(self, t: RawTransition, arcs: list[RawArc]) -> Transition:
-        if t.channel is not None:
-            self.d.warning(
+        if t.channel is not None and t.channel.text.text.strip() != "()":
+            self.d.error(
                 UNSUPPORTED_CHANNEL,
-                f"synchronous channels are not supported: transition `{t.name}` fires alone",
+                f"synchronous channels are not supported: transition `{t.name}` has one",
                 t.channel.text.span(),
                 hint="use a place between the transitions, or merge them",
             )

@@ -157,9 +157,7 @@ class Counter:
             self._known[e] = self._size(e, part.atom)
         return self._known[e]
 
-    def _size(
-        self, e: core.Exp, atom: Atom, local: frozenset[core.Symbol] = frozenset()
-    ) -> Size:
+    def _size(self, e: core.Exp, atom: Atom, local: frozenset[core.Symbol] = frozenset()) -> Size:
         """Of an expression in which the patterns around it have given values to the local names."""
         evaluator = self.symbolic.evaluator
         if (

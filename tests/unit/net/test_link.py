@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from helpers.netbuilder import cpn
 from pn2code.diagnostics import Diagnostics, Severity
 from pn2code.net.flat import ArcKind
@@ -236,12 +238,14 @@ def test_default_texts_are_absent() -> None:
     assert (t.guard, t.delay, t.code, t.priority) == (None, None, None, None)
 
 
-def test_channels_have_no_effect() -> None:
+@pytest.mark.parametrize(
+    ("text", "severities"), [("ch.!x", ["error"]), ("n", ["error"]), ("()", [])]
+)
+def test_channels_are_not_supported(text: str, severities: list[str]) -> None:
     data = cpn("net N\n  place A : INT\n  trans T\n    in A : n")
-    text = b'<channel id="ch"><text>ch.!x</text></channel><cond '
-    net, d = run(data.replace(b"<cond ", text))
-    assert net is not None
-    assert [(x.code, x.severity.value) for x in d] == [("unsupported-channel", "warning")]
+    channel = f'<channel id="ch"><text>{text}</text></channel><cond '.encode()
+    _, d = run(data.replace(b"<cond ", channel))
+    assert [x.severity.value for x in d if x.code == "unsupported-channel"] == severities
 
 
 def test_inscriptions_of_substitution_transitions_have_no_effect() -> None:
