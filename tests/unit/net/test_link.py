@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
 from helpers.netbuilder import cpn
@@ -120,6 +122,26 @@ def test_bad_and_double_assignments() -> None:
     names = {p.id: p.name for p in net.pages[0].places + net.pages[1].places}
     second = net.pages[0].substitutions[1]
     assert {names[q.port]: names[q.socket] for q in second.ports} == {"I": "B", "O": "B"}
+
+
+def test_a_port_that_is_not_on_the_subpage_is_an_error() -> None:
+    """The engine of CPN Tools refuses the socket: "Cannot find port on page"."""
+    text = cpn(HIERARCHY).decode("iso-8859-1")
+    pairs = re.findall(r'portsock="\((\w+),(\w+)\)', text)
+    port, socket = pairs[0]
+    changed = text.replace(f"({port},{socket})", f"(GONE,{socket})", 1)
+    net, d = run(changed.encode("iso-8859-1"))
+    assert net is None
+    errors = [(x.code, x.message) for x in d.errors]
+    assert errors == [
+        (
+            "port-assignment",
+            "a port assignment of `S1` is wrong: `GONE` is not a port of page `Sub`",
+        )
+    ]
+    neither = text.replace(f"({port},{socket})", f"({port},{socket})(GONE,GONE2)", 1)
+    net, d = run(neither.encode("iso-8859-1"))
+    assert net is not None and [x.code for x in d] == ["port-assignment"]
 
 
 def test_unknown_subpage() -> None:
