@@ -20,6 +20,7 @@ from pn2code.semantics.values.multiset import MultiSet, TimedMultiSet
 from pn2code.structure import flows, siphons
 from pn2code.structure.bounds import (
     MOST_PROGRAMS,
+    MOST_WORK,
     PlaceBound,
     constant_of,
     markable,
@@ -43,13 +44,15 @@ class Limits:
         flows: of the searches for invariants.
         siphons: most minimal siphons, and traps.
         siphon_work: see `siphons.minimal`.
-        programs: most linear programs for bounds.
+        programs: most linear programs for bounds that are solved in floating point; 0: none at all.
+        program_work: what those in integers may compute before.
     """
 
     flows: flows.Limits = field(default_factory=flows.Limits)
     siphons: int = 500
     siphon_work: int = 1_000_000
     programs: int = MOST_PROGRAMS
+    program_work: int = MOST_WORK
 
 
 @dataclass(frozen=True, slots=True)
@@ -215,8 +218,9 @@ def analyse(
         initial,
         p_flows.vectors,
         coloured.found,
-        cycling=_cycling(p_flows, t_flows),
+        cycling=lambda: _cycling(p_flows, t_flows),
         programs=limits.programs,
+        work=limits.program_work,
     )
     parts, strong = components(g, len(net.places))
     t_covered = {skel.modes[k].transition for v in t_flows.vectors for k in v}
@@ -289,14 +293,15 @@ def bounds_and_sums(
     symbolic = Symbolic(net, start.evaluator)
     skel = skeleton(net, symbolic)
     coloured = coloured_invariants(skel, symbolic, start.marking, bool(storage))
-    p_flows, t_flows = _p_flows(skel, limits), _t_flows(skel, _SHORT)
+    p_flows = _p_flows(skel, limits)
     found = place_bounds(
         skel,
         start.initial,
         p_flows.vectors,
         coloured.found,
-        cycling=_cycling(p_flows, t_flows),
+        cycling=lambda: _cycling(p_flows, _t_flows(skel, _SHORT)),
         programs=limits.programs,
+        work=limits.program_work,
     )
     return found, (*_coloured_sums(coloured.found), *_sums(p_flows.vectors, start.initial))
 
