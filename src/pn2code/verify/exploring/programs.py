@@ -119,6 +119,21 @@ class Sizes:
         )
 
 
+@dataclass(slots=True)
+class Generated:
+    """What was generated last for a net and its predicates; those who explore both again need not generate it again.
+
+    Args:
+        sizes: what the places of that program hold; None: nothing has been generated yet.
+        files: its C.
+        host: what it is compiled with for a large space.
+    """
+
+    sizes: Sizes | None = None
+    files: tuple[OutputFile, ...] = ()
+    host: Host = HOST
+
+
 def generated(
     net: FlatNet,
     storage: Mapping[str, str],
@@ -166,6 +181,7 @@ def program(
     *,
     interrupted: Callable[[], bool] = lambda: False,
     quick: bool = False,
+    made: Generated | None = None,
 ) -> Iterator[Path | None]:
     """The explorer of a net, as long as the block lasts; None after a diagnostic, or when it was interrupted.
 
@@ -177,13 +193,16 @@ def program(
         predicates: what can be asked of its markings.
         interrupted: asked while compilers run.
         quick: rather compile quickly than run quickly, unless it has been compiled already.
+        made: what was generated for the same net and predicates; gets what is generated here.
     """
-    lowered = _lowered(net, storage, sizes, d, predicates)
-    if lowered is None:
-        yield None
-        return
-    files = emit_c.emit(lowered, pn2code.__version__)
-    best = _host(lowered)
-    host = QUICK if quick and not programs.is_kept(best, files) else best
-    with programs.program(host, files, d, interrupted=interrupted) as found:
+    made = Generated() if made is None else made
+    if made.sizes != sizes:
+        lowered = _lowered(net, storage, sizes, d, predicates)
+        if lowered is None:
+            yield None
+            return
+        made.files = emit_c.emit(lowered, pn2code.__version__)
+        made.host, made.sizes = _host(lowered), sizes
+    host = QUICK if quick and not programs.is_kept(made.host, made.files) else made.host
+    with programs.program(host, made.files, d, interrupted=interrupted) as found:
         yield found
