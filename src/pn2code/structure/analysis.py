@@ -10,8 +10,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from pn2code.base.frozen import frozen
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.evaluation.effects import Effects, outside
 from pn2code.semantics.evaluation.evaluate import Evaluator
@@ -36,7 +37,7 @@ from pn2code.structure.skeleton import Skeleton, skeleton
 from pn2code.structure.symbolic import Symbolic
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Limits:
     """Where the searches stop; they count work, so that the same net always gives the same answer.
 
@@ -55,7 +56,7 @@ class Limits:
     program_work: int = MOST_WORK
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PInvariant:
     """`sum of weight * tokens = constant`; None where the initial marking is not known."""
 
@@ -63,14 +64,14 @@ class PInvariant:
     constant: int | None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TInvariant:
     """If each of the modes (by index in `Skeleton.modes`) occurs so often, all places have as many tokens as before."""
 
     weights: Mapping[int, int]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Siphon:
     """A minimal siphon.
 
@@ -87,7 +88,7 @@ class Siphon:
     trap_is_marked: bool
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Elements:
     """Places and transitions that stand out.
 
@@ -111,7 +112,7 @@ class Elements:
     dead: Mapping[int, str]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Analysis:
     """What the structure says.
 
@@ -169,7 +170,7 @@ class Analysis:
         return True if self.siphons_complete else None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Start:
     evaluator: Evaluator | None
     marking: tuple[MultiSet | TimedMultiSet | None, ...]
@@ -254,7 +255,7 @@ def analyse(
     )
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Sum:
     """`sum of weight * marking` never changes.
 

@@ -11,8 +11,8 @@ tokens count with the worst case.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.structure import flows
 from pn2code.structure.coloured import ColouredInvariant
 from pn2code.structure.simplex import MarkingProgram, TooMuchWorkError
@@ -24,7 +24,7 @@ MOST_WORK = 1_000_000
 """Numbers that the exact linear programs may compute, some tenths of a second; beyond, floating point takes over."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Proof:
     """Why a place is bounded.
 
@@ -39,7 +39,7 @@ class Proof:
     initial: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ColourProof:
     """Why a place never has more than `most` tokens of one colour: an invariant, and the place's weight in it."""
 
@@ -48,7 +48,7 @@ class ColourProof:
     weight: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PlaceBound:
     """What is proven of a place.
 

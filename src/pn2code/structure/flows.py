@@ -19,11 +19,13 @@ from heapq import heapify, heappop, heappush
 from math import gcd
 from typing import Any
 
+from pn2code.base.frozen import frozen
+
 Row = Mapping[int, int]
 Vector = dict[int, int]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Limits:
     """Where the search for invariants stops.
 
@@ -40,7 +42,7 @@ class Limits:
     cells: int = 6_000_000
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Flows:
     """Semi-positive invariants.
 

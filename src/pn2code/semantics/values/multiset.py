@@ -7,8 +7,9 @@ TimedMultiSet.of([Timed(1, 3), Timed(1, 7)])     # 1`1@3 +++ 1`1@7
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from pn2code.base.frozen import frozen
 from pn2code.semantics.values.data import Timed, Value
 
 
@@ -16,7 +17,7 @@ class NotContained(ValueError):  # noqa: N818
     """A multi-set was to be taken from one that does not contain it."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MultiSet:
     """A multi-set of values.
 
@@ -73,7 +74,7 @@ class MultiSet:
         return MultiSet({value: factor * n for value, n in self.counts.items()})
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TimedMultiSet:
     """A multi-set of tokens with time stamps.
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import pn2code
+from pn2code.base.frozen import frozen
 from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission import c as emit_c
@@ -56,7 +57,7 @@ FEW = 2
 """Places that get more one by one, before all do that may need it."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Sizes:
     """What the places of a compiled net hold.
 
