@@ -26,7 +26,7 @@ def ir_nodes(item: object) -> Iterator[object]:
         node = waiting.pop()
         if isinstance(node, tuple):
             waiting += node[::-1]
-        elif (parts := _getter(node.__class__)) is not None:
+        elif (parts := _parts(node.__class__)) is not None:
             yield node
             waiting += parts(node)
 
@@ -38,12 +38,12 @@ _LEAVES = frozenset({"IrType", "Origin", "bool", "int", "str", "tuple[int, ...]"
 
 def parts_of(node: Any) -> Sequence[object]:
     """The fields of a node that may contain nodes, from the last to the first; nothing for what is no node."""
-    getter = _getter(node.__class__)
+    getter = _parts(node.__class__)
     return () if getter is None else getter(node)
 
 
 @cache
-def _getter(kind: type) -> Callable[[Any], Sequence[Any]] | None:
+def _parts(kind: type) -> Callable[[Any], Sequence[Any]] | None:
     """What gives the fields of a node that may contain nodes, from the last to the first; None for what is no node."""
     fields = getattr(kind, "__dataclass_fields__", {})
     if not fields:
