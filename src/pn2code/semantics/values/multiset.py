@@ -7,9 +7,8 @@ TimedMultiSet.of([Timed(1, 3), Timed(1, 7)])     # 1`1@3 +++ 1`1@7
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from pn2code.base.frozen import frozen
 from pn2code.semantics.values.data import Timed, Value
 
 
@@ -17,7 +16,7 @@ class NotContained(ValueError):  # noqa: N818
     """A multi-set was to be taken from one that does not contain it."""
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class MultiSet:
     """A multi-set of values.
 
@@ -74,7 +73,7 @@ class MultiSet:
         return MultiSet({value: factor * n for value, n in self.counts.items()})
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class TimedMultiSet:
     """A multi-set of tokens with time stamps.
 
