@@ -6,6 +6,7 @@ longest_first(asked, known)    # the same tests, files that take long before the
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -38,7 +39,9 @@ class _Purse:
         self._made.update(self.known.fixtures_of(*asked))
 
 
-def chosen(tests: Sequence[Asked], known: Durations, seconds: float) -> list[int]:
+def chosen(
+    tests: Sequence[Asked], known: Durations, seconds: float, most: float = math.inf
+) -> list[int]:
     """The tests of a quick run: of each file the cheapest, then of each function, the cheap ones first, one case.
 
     What is left of the time goes to further cases, again the cheap ones first.
@@ -46,7 +49,8 @@ def chosen(tests: Sequence[Asked], known: Durations, seconds: float) -> list[int
     Args:
         tests: all there are.
         known: what they take.
-        seconds: how long they may take together. One test of each file is chosen even if that takes longer.
+        seconds: how long they may take together. One test of each file is chosen even if all these take longer.
+        most: what the one test of a file may take; a file of which each takes longer has none.
 
     Returns:
         numbers of tests, in their order.
@@ -66,7 +70,7 @@ def chosen(tests: Sequence[Asked], known: Durations, seconds: float) -> list[int
         functions.add(function_of(asked.test))
 
     for n in by_price:
-        if file_of(tests[n].test) not in files:
+        if file_of(tests[n].test) not in files and prices[n] <= most:
             take(n)
     for is_one_each in (True, False):
         already = set(taken)

@@ -14,8 +14,8 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import NOWHERE, SourceText, Span
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
@@ -41,7 +41,7 @@ _TOKEN = Atom(core.Lit(1, INT, Span(SourceText("", NOWHERE), 0, 0)), -1)
 """Stands for one token, whatever its colour."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Size:
     """A number of tokens between two bounds; `high` None: without limit."""
 
@@ -64,7 +64,7 @@ ONE = Size(1, 1)
 UNKNOWN = Size(0, None)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Mode:
     """One of the ways in which a transition occurs, as far as numbers of tokens go.
 
@@ -84,7 +84,7 @@ class Mode:
     unknown: frozenset[int]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Varying:
     """An arc whose number of tokens is not constant."""
 
@@ -95,7 +95,7 @@ class Varying:
     size: Size
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Flow:
     """What one transition moves, symbolically: place -> sum."""
 
@@ -104,7 +104,7 @@ class Flow:
     put: Mapping[int, dict[Part, int]]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Skeleton:
     """The net without colours.
 
