@@ -6,7 +6,6 @@ longest_first(asked, known)    # the same tests, files that take long before the
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -39,9 +38,7 @@ class _Purse:
         self._made.update(self.known.fixtures_of(*asked))
 
 
-def chosen(
-    tests: Sequence[Asked], known: Durations, seconds: float, most: float = math.inf
-) -> list[int]:
+def chosen(tests: Sequence[Asked], known: Durations, seconds: float) -> list[int]:
     """The tests of a quick run: of each file the cheapest, then of each function, the cheap ones first, one case.
 
     What is left of the time goes to further cases, again the cheap ones first.
@@ -49,8 +46,7 @@ def chosen(
     Args:
         tests: all there are.
         known: what they take.
-        seconds: how long they may take together. One test of each file is chosen even if all these take longer.
-        most: what the one test of a file may take; a file of which each takes longer has none.
+        seconds: how long they may take together. One test of each file is chosen even if that takes longer.
 
     Returns:
         numbers of tests, in their order.
@@ -70,7 +66,7 @@ def chosen(
         functions.add(function_of(asked.test))
 
     for n in by_price:
-        if file_of(tests[n].test) not in files and prices[n] <= most:
+        if file_of(tests[n].test) not in files:
             take(n)
     for is_one_each in (True, False):
         already = set(taken)

@@ -12,7 +12,6 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 UNKNOWN_S = 0.05
@@ -73,12 +72,6 @@ class Durations:
         if found is None:
             found = self.functions.get(function_of(test))
         return self.files.get(file_of(test), UNKNOWN_S) if found is None else found
-
-    def files_known(self) -> set[str]:
-        """Those of which a test is known that is still there."""
-        return {
-            f for f in map(file_of, (*self.files, *self.functions, *self.tests)) if Path(f).exists()
-        }
 
     def fixtures_of(self, test: str, names: Iterable[str]) -> list[str]:
         """The known fixtures that a test shares with others, of those whose names it asks for."""

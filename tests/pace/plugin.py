@@ -16,15 +16,13 @@ from typing import Any
 import pytest
 
 from pace.choose import Asked, chosen, longest_first
-from pace.durations import Durations, file_of
+from pace.durations import Durations
 from pace.estimate import Estimate, clock
 
 TABLE = Path(__file__).with_name("durations.json")
 _RECORD = "pace/durations"
-_FAST_S = 30.0
+_FAST_S = 45.0
 """Of `--fast`, for each core; collecting the tests takes the rest of the minute."""
-_FAST_FILE_S = 6.0
-"""Files of which each test takes longer are left to a whole run: that is the time of a hundred other tests."""
 _STEP = 0.05
 """Where the output is no terminal there is a line for each such part of the work, ..."""
 _QUIET_S = 10.0
@@ -81,7 +79,7 @@ class Pace:
         """The part for `--fast`, and with several processes the order in which they end together."""
         asked = [Asked(item.nodeid, tuple(getattr(item, "fixturenames", ()))) for item in items]
         if self._config.getoption("fast"):
-            kept = chosen(asked, self._known, _FAST_S * self._cores(), _FAST_FILE_S)
+            kept = chosen(asked, self._known, _FAST_S * self._cores())
             wanted = set(kept)
             left = [item for n, item in enumerate(items) if n not in wanted]
             self._config.hook.pytest_deselected(items=left)
@@ -150,15 +148,6 @@ class Pace:
                 f"{len(tests):,} tests on {cores} core{'s' if cores > 1 else ''}, "
                 f"about {clock(self._estimate.left(0.0))}"
             )
-            left = self._known.files_known() - {file_of(test) for test in tests}
-            if (
-                self._config.getoption("fast")
-                and not self._config.getoption("file_or_dir")
-                and left
-            ):
-                self._write(
-                    f"left to a whole run, since each test takes long: {', '.join(sorted(left))}"
-                )
 
     def _says(self) -> bool:
         quiet = self._config.get_verbosity() != 0 or self._is_worker

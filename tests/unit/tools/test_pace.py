@@ -64,13 +64,6 @@ def test_a_quick_run_has_one_test_of_each_file() -> None:
     ]
 
 
-def test_files_of_long_tests_are_left_out() -> None:
-    assert names(chosen(TESTS, KNOWN, 0.0, 5.0)) == [
-        "test_a.py::test_one[2]",
-        "test_c.py::test_new",
-    ]
-
-
 def test_then_one_of_each_function_then_more() -> None:
     """What a fixture costs is paid once: after the first test that needs it the second is cheap."""
     least = 10.0 + 2 * UNKNOWN_S + 0.1
