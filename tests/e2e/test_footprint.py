@@ -28,6 +28,7 @@ def test_the_riveting_supervisor(built: Path, tmp_path: Path) -> None:
 
     assert found.is_good, found.report()
     assert found.text <= 60_000
+    assert found.ram <= 300_000 and 0 < found.arena < 20_000, found.report()
     assert found.path[0] == "main" and found.stack > 1000
     assert not {"fopen", "opendir", "readdir", "realpath"} & set(found.library)
 
