@@ -263,12 +263,9 @@ static void test_moves(void)
 /* A word of at most three characters that has arrived. */
 static void test_arrivals(void)
 {
-    static const pn_type_t word = { .kind = PN_KIND_STRING,
-                                    .name = "WORD",
-                                    .size = sizeof(pn_string_t),
-                                    .has_range = true,
-                                    .low = 0,
-                                    .high = 3 };
+    static const pn_type_t word = {
+        .kind = PN_KIND_STRING, .name = "WORD", .size = sizeof(pn_string_t), .has_range = true, .low = 0, .high = 3
+    };
     struct words {
         struct {
             pn_string_t value;

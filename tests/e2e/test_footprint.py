@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -68,3 +69,17 @@ def test_long_functions_are_found() -> None:
     body = "    x++;\n" * 59
     assert list(long_functions(f"void f(int x)\n{{\n{body}}}\n")) == [("f", 61)]
     assert list(long_functions(f"void f(int x)\n{{\n{body[9:]}}}\n")) == []
+
+
+def test_large_frames_get_a_warning(built: Path, tmp_path: Path) -> None:
+    """No error: records of the net may be large."""
+    folder = tmp_path / "program"
+    shutil.copytree(built, folder)
+    for most, is_warned in ((16_384, False), (64, True)):
+        (folder / "net_own.o").unlink()
+        done = subprocess.run(
+            ["make", "net_own.o", "CC=gcc", f"FRAME_MAX={most}"],
+            cwd=folder, capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        assert ("-Wstack-usage" in done.stderr) is is_warned
