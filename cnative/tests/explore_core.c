@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "../src/explore/explore_impl.h"
+#include "../src/explore/explore_run.h"
 
 static uint64_t s_random;
 

@@ -20,6 +20,7 @@
 #endif
 
 #include "explore_error.h"
+#include "explore_bounds.h"
 #include "query/explore_query.h"
 #include "search/explore_reduce.h"
 #include "pn/pn_file.h"

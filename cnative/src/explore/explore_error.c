@@ -6,6 +6,8 @@
  * of threads, and with breadth-first exploration none is nearer to the initial state.
  */
 #include "explore_error.h"
+#include "search/explore_successors.h"
+#include "state/explore_roots.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

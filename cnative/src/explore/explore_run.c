@@ -3,7 +3,7 @@
  */
 #define _POSIX_C_SOURCE 200809L
 
-#include "explore_impl.h"
+#include "explore_run.h"
 
 #include <string.h>
 #include <time.h>

@@ -6,6 +6,7 @@
  * numbers, in the order of the nodes and of their arcs.
  */
 #include "explore_blocks.h"
+#include "../search/explore_successors.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

@@ -4,6 +4,7 @@
  * are known.
  */
 #include "explore_rescan.h"
+#include "../search/explore_successors.h"
 
 #include <string.h>
 

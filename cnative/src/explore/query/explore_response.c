@@ -13,6 +13,7 @@
  * now = 0 and the time that goes by at the node before something occurs.
  */
 #include "explore_query.h"
+#include "../search/explore_successors.h"
 
 typedef struct wait {
     ex_queries_t *queries;

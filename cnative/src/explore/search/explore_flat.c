@@ -4,6 +4,7 @@
  * until it is their turn to be looked up, the lines of the tables that know their numbers are on the way.
  */
 #include "explore_search.h"
+#include "explore_successors.h"
 
 #include <string.h>
 

@@ -10,6 +10,9 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include "../state/explore_local.h"
+#include "explore_successors.h"
+#include "../explore_bounds.h"
+#include "../query/explore_early.h"
 #include "explore_search.h"
 
 #include <math.h>

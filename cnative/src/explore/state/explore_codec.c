@@ -10,7 +10,9 @@
  */
 #define _POSIX_C_SOURCE 200809L
 
-#include "../explore_impl.h"
+#include "../explore_run.h"
+#include "explore_roots.h"
+#include "explore_multiset.h"
 
 #include <string.h>
 

@@ -2,7 +2,7 @@
  * explore_derive.c - packed places that follow from others: the net proves that a sum of markings never changes, so one
  * of the places of the sum is no part of a vector. What the sum is, the initial marking says.
  */
-#include "../explore_impl.h"
+#include "../explore_run.h"
 
 enum { UNIT_BITS = 64 };
 

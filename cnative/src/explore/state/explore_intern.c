@@ -5,7 +5,7 @@
  * at in vain. A thread that has something new takes the next number, writes the thing down and only then, by one
  * compare-and-swap, enters it in the index. When another thread was faster with the same, the number is a hole.
  */
-#include "../explore_impl.h"
+#include "../explore_run.h"
 
 #include <string.h>
 

@@ -8,6 +8,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "explore_key.h"
+
 struct ex_run;
 
 #define EX_NO_NUMBER UINT32_MAX
@@ -61,5 +63,33 @@ bool ex_tuples_grow(ex_tuples_t *tuples);
 bool ex_bytes_grow(ex_bytes_t *bytes);
 uint64_t ex_tuples_bytes(const ex_tuples_t *tuples);
 uint64_t ex_bytes_bytes(const ex_bytes_t *bytes);
+
+/* Of a tuple of `lanes` lanes. */
+static inline uint64_t ex_tuple_hash(const uint64_t *lane, uint32_t lanes)
+{
+    ex_key_t key = { lane[0], (lanes > 1U) ? lane[1] : 0U };
+    if (lanes > 2U) {
+        const uint64_t last = (lanes > 3U) ? lane[3] : 0U;
+        const ex_wide_t more = (ex_wide_t)(lane[2] ^ 0x8ebc6af09c88c6e3U) * (last ^ 0x589965cc75374cc3U);
+        key.low ^= (uint64_t)more;
+        key.high += (uint64_t)(more >> 64U) ^ lane[2];
+    }
+    return ex_hash(&key);
+}
+
+/* For ex_tuples_number: its entry in the index is sent for; then, if it seems to be one, the tuple itself. */
+static inline void ex_tuples_prefetch(const ex_tuples_t *tuples, uint64_t hash)
+{
+    __builtin_prefetch(&tuples->index.entry[ex_scaled(hash, tuples->index.entries)], 0, 3);
+}
+
+static inline void ex_tuples_send(const ex_tuples_t *tuples, uint64_t hash)
+{
+    const ex_index_t *const index = &tuples->index;
+    const uint64_t entry = atomic_load_explicit(&index->entry[ex_scaled(hash, index->entries)], memory_order_relaxed);
+    if ((uint32_t)(entry >> 32U) == (uint32_t)hash) {
+        __builtin_prefetch(&tuples->lane[((uint64_t)(uint32_t)entry - 1U) * tuples->lanes], 0, 3);
+    }
+}
 
 #endif /* EXPLORE_INTERN_H */

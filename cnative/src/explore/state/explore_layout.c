@@ -6,7 +6,8 @@
  * later of states from the store, whose keys are then made anew. Beginning with each place for itself, the two parts
  * whose union adds the fewest combinations are united, until there are four.
  */
-#include "../explore_impl.h"
+#include "../explore_run.h"
+#include "../search/explore_successors.h"
 
 #include <string.h>
 

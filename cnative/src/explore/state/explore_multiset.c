@@ -5,7 +5,8 @@
  * own, and what the place holds is the number of that string and the stamps. Real stamps, of which hardly any is short,
  * are numbers of strings, too: most of them are in many multi-sets.
  */
-#include "../explore_impl.h"
+#include "../explore_run.h"
+#include "explore_multiset.h"
 
 #include <string.h>
 

@@ -3,7 +3,7 @@
  * are words, where the other places have theirs, how words are put together into the parts of a key, and what each
  * transition may change of it.
  */
-#include "../explore_impl.h"
+#include "../explore_run.h"
 
 #include <stdlib.h>
 #include <string.h>

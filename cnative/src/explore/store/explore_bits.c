@@ -4,7 +4,7 @@
  * A state whose bits are all set already is taken for known. How probable that is for a new state is measured now and
  * then: in a sample of words, the part of all triples of bits that are set.
  */
-#include "../explore_impl.h"
+#include "../explore_run.h"
 
 #include <math.h>
 

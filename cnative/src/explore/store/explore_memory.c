@@ -11,7 +11,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
-#include "../explore_impl.h"
+#include "../explore_run.h"
 
 enum {
     PAGE = 4096,

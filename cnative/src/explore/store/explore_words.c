@@ -3,6 +3,7 @@
  * state, and the store holds them as they are.
  */
 #include "../search/explore_search.h"
+#include "../search/explore_successors.h"
 #include "explore_words.h"
 
 #include <string.h>
