@@ -63,6 +63,8 @@ static inline void ex_arena_end(ex_worker_t *worker, size_t mark)
 
 typedef struct ex_run {
     ex_options_t options;
+    ex_memory_t memory;
+    ex_team_t team;
     ex_codec_t *codec;
     ex_store_t store; /* of approximations: of hashes, or `used` alone */
     ex_bits_t bits;
@@ -85,7 +87,6 @@ typedef struct ex_run {
     uint32_t shared_done;
     pthread_mutex_t error_lock;
     ex_error_t error; /* where why is EX_ERROR or EX_CAPACITY, or EX_MEMORY with a kind that is not NULL */
-    _Atomic uint64_t memory_used;
     /* Results of the exploration. */
     uint64_t nodes;
     uint64_t arcs;
@@ -98,7 +99,6 @@ typedef struct ex_run {
     double omission_probability;
     uint64_t approximate_bytes; /* of what stands for the store */
     bool has_bounds;
-    _Atomic int spill_error;        /* errno of a file of --spill that could not be had; 0: none */
     struct ex_level *level;         /* of explore_search.c */
     bool is_laid_again;             /* ex_layout_again has been done */
     struct ex_reduction *reduction; /* of explore_elements.c; NULL: none that needs a table */
@@ -121,8 +121,8 @@ static inline bool ex_is_pausing(const ex_run_t *run)
 {
     return atomic_load_explicit(&run->is_pausing, memory_order_relaxed);
 }
-/* Does all parts of a work, which do not depend on each other: in a pause with the help of the threads that wait. */
-void ex_together(ex_run_t *run, uint32_t parts, void (*one)(void *user, uint32_t part), void *user);
+/* Memory and team of a run of which the options are known. In a pause the threads that wait help with the parts. */
+void ex_equip(ex_run_t *run);
 /* With the gate locked: waits until something changes that others broadcast, or helps while tables grow. */
 void ex_wait(ex_run_t *run);
 /* With the gate locked, when a thread has become idle: the pause may begin. */
@@ -133,6 +133,11 @@ void ex_stop(ex_run_t *run, ex_why_t why);
 void ex_fail(ex_worker_t *worker, int64_t transition);
 /* Another part of the work begins; the name is for the progress lines. */
 void ex_phase(ex_run_t *run, const char *phase);
+/* Whether the store has keys of one word. */
+static inline bool ex_has_words(const ex_run_t *run)
+{
+    return (run->codec != NULL) && run->codec->is_word && !run->options.is_hashed;
+}
 /* Whether the states are stored as they are. */
 static inline bool ex_is_exact(const ex_run_t *run)
 {

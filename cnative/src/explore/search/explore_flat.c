@@ -58,7 +58,7 @@ bool ex_flat_make(ex_worker_t *worker)
         || (run->reduction != NULL) || pn_net.timed || (worker->local != NULL)) {
         return true;
     }
-    worker->search->flat = ex_alloc(worker->run, sizeof *worker->search->flat);
+    worker->search->flat = ex_alloc(&worker->run->memory, sizeof *worker->search->flat);
     return worker->search->flat != NULL;
 }
 

@@ -8,16 +8,17 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "../store/explore_memory.h"
+#include "../store/explore_team.h"
 #include "explore_key.h"
-
-struct ex_run;
 
 #define EX_NO_NUMBER UINT32_MAX
 
 /* Gives equal things equal numbers, from 0 on nearly without holes. Threads may do it at the same time; it never moves
  * what it has, but has to grow now and then, while nobody uses it. */
 typedef struct ex_index {
-    struct ex_run *run;
+    ex_memory_t *memory;
+    const ex_team_t *team;   /* help when a large table grows */
     _Atomic uint64_t *entry; /* low half: number + 1, 0: free; high half: of the hash */
     uint64_t entries;
     uint64_t limit;         /* numbers from which on it has to grow */
@@ -52,9 +53,9 @@ typedef struct ex_bytes {
     _Atomic uint64_t counted;
 } ex_bytes_t;
 
-bool ex_tuples_make(ex_tuples_t *tuples, struct ex_run *run, uint32_t words);
+bool ex_tuples_make(ex_tuples_t *tuples, ex_memory_t *memory, const ex_team_t *team, uint32_t words);
 void ex_tuples_free(ex_tuples_t *tuples);
-bool ex_bytes_make(ex_bytes_t *bytes, struct ex_run *run);
+bool ex_bytes_make(ex_bytes_t *bytes, ex_memory_t *memory, const ex_team_t *team);
 /* The number; EX_NO_NUMBER: it has to grow first. What is behind the last word is 0. `hash`: ex_tuple_hash. */
 uint32_t ex_tuples_number(ex_tuples_t *tuples, const uint64_t lane[EX_TUPLE_LANES], uint64_t hash);
 uint32_t ex_bytes_number(ex_bytes_t *bytes, uint32_t place, const unsigned char *byte, uint32_t length);

@@ -27,13 +27,13 @@ enum {
 bool ex_buffer_grow(ex_worker_t *worker, size_t size)
 {
     ex_scratch_t *scratch = worker->scratch;
-    unsigned char *larger = ex_alloc(worker->run, size * 2U);
+    unsigned char *larger = ex_alloc(&worker->run->memory, size * 2U);
     if (larger == NULL) {
         ex_stop(worker->run, EX_MEMORY);
         worker->failed = true;
         return false;
     }
-    ex_free(worker->run, scratch->buffer, scratch->buffer_size);
+    ex_free(&worker->run->memory, scratch->buffer, scratch->buffer_size);
     scratch->buffer = larger;
     scratch->buffer_size = size * 2U;
     return true;

@@ -20,7 +20,7 @@ typedef struct ex_bits {
     double last;          /* probability that the next one is */
 } ex_bits_t;
 
-bool ex_bits_make(ex_bits_t *bits, struct ex_run *run);
+bool ex_bits_make(ex_bits_t *bits, ex_memory_t *memory);
 /* `hash` has to be a good one, and is all that counts of a state. */
 ex_insertion_t ex_bits_insert(ex_bits_t *bits, uint64_t hash);
 bool ex_bits_hold(const ex_bits_t *bits, uint64_t hash);

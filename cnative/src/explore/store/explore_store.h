@@ -10,12 +10,14 @@
 
 #include "../state/explore_key.h"
 #include "explore_memory.h"
+#include "explore_team.h"
 
 #define EX_NO_SLOT    UINT64_MAX
 #define EX_SPARE_KEYS 1024U /* a store grows when less room than for so many is left below its limit */
 
 typedef struct ex_store {
-    struct ex_run *run;
+    ex_memory_t *memory;
+    const ex_team_t *team; /* help when a large table grows */
     bool is_word;          /* of keys of one word: see explore_words.h */
     unsigned char *bucket; /* lines of 64 bytes */
     uint64_t buckets;
@@ -35,8 +37,9 @@ typedef enum ex_insertion {
     EX_FULL /* nothing was done: it has to grow first (ex_pause) */
 } ex_insertion_t;
 
-/* `width`: bits of each word of a key. */
-bool ex_store_make(ex_store_t *store, struct ex_run *run, const uint32_t width[EX_KEY_WORDS], uint64_t keys);
+/* `is_word`: all keys are one word, of at most EX_MOST_WORD. `width`: bits of each word of a key. */
+bool ex_store_make(ex_store_t *store, ex_memory_t *memory, const ex_team_t *team, bool is_word,
+                   const uint32_t width[EX_KEY_WORDS], uint64_t keys);
 void ex_store_free(ex_store_t *store);
 /* Makes room, and words of keys as wide as they have to be; does nothing when all is well. False when there is no
  * memory (the store stays as it was, or has lost keys: the run ends). Nobody else uses it. */

@@ -44,7 +44,7 @@ bool ex_words_make(ex_worker_t *worker)
     if (!is_possible) {
         return true;
     }
-    ex_words_t *const own = ex_alloc(worker->run, sizeof *own);
+    ex_words_t *const own = ex_alloc(&worker->run->memory, sizeof *own);
     if (own == NULL) {
         return false;
     }
