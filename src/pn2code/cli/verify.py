@@ -227,6 +227,13 @@ def verify(
             help="Check a cell together with its shared files (docs/protocol.md).",
         ),
     ] = True,
+    unbounded_ok: Annotated[
+        bool,
+        typer.Option(
+            "--unbounded-ok",
+            help="Go on up to the limits where a place is known to grow without bound.",
+        ),
+    ] = False,
     as_json: JsonOption = False,
     in_full: Annotated[
         bool,
@@ -292,6 +299,7 @@ def verify(
                 questions=asked.questions,
                 predicates=asked.properties.predicates,
                 evidence=unnamed,
+                covering=not unbounded_ok,
                 progress=progress.update,
                 interrupted=interrupts.is_wanted,
             )
@@ -401,10 +409,11 @@ def _write_report(said: Said, subject: Subject | None, path: Path, d: Diagnostic
             medium=list(channel_model.rows(said.medium)),
             subject=subject.rows,
             remark=subject.remark,
+            counts=said.counts,
             deadline=said.deadline,
         )
     else:
-        body = report(said.net, said.found, now, said.answers, said.control)
+        body = report(said.net, said.found, now, said.answers, said.control, said.counts)
         if said.medium:
             body = f"{body.rstrip()}\n\n\n{channel_model.told(said.medium)}\n"
         body = f"{body.rstrip()}\n\n\n{closing(said)}\n"

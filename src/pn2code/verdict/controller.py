@@ -63,7 +63,7 @@ def look(
         capacities=capacities,
         properties=asked,
         evidence=wishes.evidence,
-        wishes=replace(wishes, quick=found.nodes <= QUICK_STATES),
+        wishes=replace(wishes, quick=found.nodes <= QUICK_STATES, covering=False),
         premises=Premises.of(partition, config, {g.place: g.says for g in opened.given}),
     )
     looked = control.examine(partition, plan, replace(limits, traces=0), d, found)
