@@ -9,6 +9,8 @@ import pytest
 
 from helpers.netbuilder import write
 from helpers.processes import pn2code
+from helpers.small_cell import NET as CELL
+from helpers.small_cell import write as write_cell
 
 pytestmark = pytest.mark.cc
 
@@ -106,3 +108,30 @@ def test_without_any_limit_it_ends(net: Path, tmp_path: Path) -> None:
         ["no", "inconclusive"],
     )
     assert said["properties"][0]["evidence"]["confirmed"]
+
+
+ENDLESS = (
+    CELL.replace("guard [n <= 3]", "")
+    .replace("out Pieces : n + 1", "out Pieces : n")
+    .replace("    trans Report\n", "    place Made\n    trans Report\n      out Made : ()\n")
+)
+"""The robot counts what it has done: the arc to `Made` should come from there."""
+
+
+def test_a_cell_in_which_an_arc_is_the_wrong_way_round(tmp_path: Path) -> None:
+    cell = write_cell(tmp_path / "cell", ENDLESS)
+    done = pn2code("verify", cell, "--max-states", "300", "--traces", tmp_path / "traces", "--json")
+    said = json.loads(done.stdout)
+    assert said["why"] == "infinite" and done.returncode == 3, done.stderr
+    assert [p["name"] for p in said["unbounded"]["places"]] == ["Top.Robot.Made"]
+    trace = said["unbounded"]["trace"]
+    assert pn2code("replay", trace, cell / "cell.cpn").returncode == 0
+
+
+def test_generate_says_it_before_anything_else(tmp_path: Path) -> None:
+    cell = write_cell(tmp_path / "cell", ENDLESS)
+    done = pn2code("generate", cell, "-o", tmp_path / "out")
+    assert done.returncode == 1
+    text = " ".join(done.stderr.split())
+    assert "place `Top.Robot.Made` grows without bound in the closed net: " in text
+    assert "`Top.Robot.Report`" in text and "is one drawn the wrong way round" in text

@@ -25,6 +25,7 @@ from pn2code.cli.options import (
     IntBitsOption,
     JsonOption,
     SetOption,
+    check_writable,
     finite,
     parse_values,
     print_diagnostics,
@@ -261,6 +262,8 @@ def verify(
     deadline = Deadline.of_command(max_seconds)
     _check_kind(draw_to, GRAPH_KINDS, "--draw")
     _check_kind(plot_to, PLOT_KINDS, "--plot")
+    for path, option in ((draw_to, "--draw"), (plot_to, "--plot"), (report_to, "--report")):
+        check_writable(path, option)
     d = Diagnostics()
     try:
         with deadline.enforced():

@@ -44,7 +44,7 @@ from pn2code.unfold.purity import impure
 
 WALK = 300
 """Steps of the longest walk; the first ones are shorter, so that short runs are found first."""
-WALKS = 200
+WALKS = 80
 """Walks of a whole search."""
 _SHORTEST = 20
 _BINDINGS = 20
