@@ -106,4 +106,10 @@ bool ex_write_graph(ex_run_t *run, const ex_graph_t *graph, const char *path);
 #define EX_BIT(set, i)     ((((set)[(i) >> 6U]) >> ((i) & 63U)) & 1U)
 #define EX_SET_BIT(set, i) ((set)[(i) >> 6U] |= (uint64_t)1U << ((i) & 63U))
 
+/* Whether runs end at a node: nothing can occur. Of a part, arcs may be missing. */
+static inline bool ex_ends_at(const ex_graph_t *graph, uint32_t node)
+{
+    return (graph->row[node] == graph->row[node + 1U]) && (graph->is_whole || (EX_BIT(graph->dead, node) != 0U));
+}
+
 #endif /* EXPLORE_GRAPH_H */
