@@ -117,3 +117,16 @@ def test_what_needs_all_markings(answers: dict[str, Any], name: str) -> None:
         "inconclusive",
         "the limit of states was reached",
     )
+
+
+def test_runs_are_found_when_the_memory_is_full(tmp_path: Path) -> None:
+    """The tables have taken all that was permitted; the way back needs a little more."""
+    net = write(NET, tmp_path / "part.cpn")
+    texts = [NO["always"], NO["never"], NO["bound, above"], NO["ctl AG"], OPEN["ctl that branches"]]
+    options = [word for text in texts for word in ("--property", text)]
+    done = pn2code("verify", net, "--memory", "16", "--traces", tmp_path, "--json", *options)
+    said = json.loads(done.stdout)
+    assert said["why"] == "memory"
+    *violated, open_ = said["properties"]
+    assert all(p["answer"] == "no" and p["evidence"]["confirmed"] for p in violated), done.stderr
+    assert (open_["answer"], open_["why"]) == ("inconclusive", "the limit of memory was reached")
