@@ -262,8 +262,6 @@ def verify(
     deadline = Deadline.of_command(max_seconds)
     _check_kind(draw_to, GRAPH_KINDS, "--draw")
     _check_kind(plot_to, PLOT_KINDS, "--plot")
-    for path, option in ((draw_to, "--draw"), (plot_to, "--plot"), (report_to, "--report")):
-        check_writable(path, option)
     d = Diagnostics()
     try:
         with deadline.enforced():
@@ -294,6 +292,8 @@ def verify(
         Pictures(draw_to, plot_to) as pictures,
         properties.unnamed_runs(asked, folder) as unnamed,
     ):
+        for path, option in ((draw_to, "--draw"), (plot_to, "--plot"), (report_to, "--report")):
+            check_writable(path, option)  # perhaps in the folder that was just made
         with Interrupts() as interrupts, ProgressLine(shown=not (as_json or quiet)) as progress:
             wishes = ExploreOptions(
                 traces=folder if most_traces else None,
