@@ -23,7 +23,7 @@ from pn2code.ml.core.types import INT
 from pn2code.net.dump import text_of
 from pn2code.net.enumerable import size as number_of_values
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatTransition
-from pn2code.net.uses import NetVariables
+from pn2code.net.uses import NetVariables, pattern_variables, walk
 from pn2code.semantics.evaluation.evaluate import Evaluator, Limits
 from pn2code.semantics.values.data import MlException, MlLimit, MlUnavailable
 from pn2code.structure.symbolic import Atom, Facts, Part, Sum, Symbolic, add, scaled
@@ -157,9 +157,15 @@ class Counter:
             self._known[e] = self._size(e, part.atom)
         return self._known[e]
 
-    def _size(self, e: core.Exp, atom: Atom) -> Size:
+    def _size(self, e: core.Exp, atom: Atom, local: frozenset[core.Symbol] = frozenset()) -> Size:
+        """Of an expression in which the patterns around it have given values to the local names."""
         evaluator = self.symbolic.evaluator
-        if evaluator is not None and not atom.serial and self.symbolic.is_timeless(e):
+        if (
+            evaluator is not None
+            and not atom.serial
+            and self.symbolic.is_timeless(e)
+            and not any(isinstance(x, core.Var) and x.symbol in local for x in walk(e))
+        ):
             found = self._by_evaluation(e, evaluator)
             if found is not None:
                 return found
@@ -167,10 +173,14 @@ class Counter:
             isinstance(e, core.Var)
             and e.symbol.colset is not None
             and e.symbol not in self._unchecked
+            and e.symbol not in local
         ):
             return _length(e.symbol.colset)
         if isinstance(e, core.Case):
-            sizes = [self._size(rule.body, atom) for rule in e.rules]
+            sizes = [
+                self._size(rule.body, atom, local.union(pattern_variables(rule.pattern)))
+                for rule in e.rules
+            ]
             highs = [s.high for s in sizes]
             high = None if None in highs else max(h for h in highs if h is not None)
             return Size(min(s.low for s in sizes), high)

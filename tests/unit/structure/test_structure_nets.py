@@ -491,6 +491,26 @@ def test_sizes_of_small_colour_sets_are_found_by_evaluation() -> None:
     assert upper(a) == {"A": 1, "B": 2}
 
 
+def test_what_a_pattern_gives_a_name_is_not_a_value_that_can_be_tried() -> None:
+    """The part of a `case` in which a pattern binds a name has a size that is not known."""
+    a = study("""
+        fun half n = if n mod 2 = 0 then SOME (n div 2) else NONE;
+        fun pair 1 = (1, [1, 2]) | pair m = (m, [m]);
+        place A : INT = 1`4 ++ 1`3
+        place S : SMALL = 1`1
+        place B : INT
+        place C : INT
+        trans t
+          in A : n
+          in S : m
+          out B : case half n of SOME part => 1`part | NONE => empty
+          out C : case pair m of (1, found) => found | (one, _) => 1`one ++ 1`one
+    """)
+    kinds = {v.place: v.size for v in a.skeleton.varying}
+    assert all(not size.exact for size in kinds.values())
+    assert {a.net.places[place].short for place in kinds} == {"B"}, "C gets two, whatever `m` is"
+
+
 def test_lists_are_tokens_or_multisets() -> None:
     a = study("""
         place Q : LIST = [1, 2]
