@@ -10,7 +10,7 @@ is the whole of it.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -34,6 +34,8 @@ from pn2code.robot_scripts import translate as lower_robot
 from pn2code.semantics.evaluation.constants import compute
 from pn2code.verify.controller.proofs import prove
 from pn2code.verify.exploring.place_capacity import PlaceCapacity, with_rooms
+
+Examine = Callable[[FlatNet, CellConfig | None, Diagnostics], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,6 +67,7 @@ def generate(
     values: Mapping[str, str] | None = None,
     int_bits: int = 31,
     checked: bool = True,
+    examine: Examine | None = None,
 ) -> Generated | None:
     """Everything from files to files in memory; None when an error was reported.
 
@@ -72,6 +75,8 @@ def generate(
 
     The supervisor of a cell is checked (docs/execution.md), and its places get room for what is proven to come; without
     `checked` nothing is refused for that.
+
+    `examine` looks at net and cell before anything that takes long; nothing is done after an error of it.
 
     What a net may have but cannot do here (sockets, processes) is an error: a supervisor must not stop there.
     """
@@ -86,6 +91,8 @@ def generate(
     if net is None or d.has_errors:
         return None
     partition = divided(net, config, d)
+    if partition is not None and examine is not None:
+        examine(net, config, d)
     if partition is None or d.has_errors:
         return None
 

@@ -5,9 +5,13 @@ from __future__ import annotations
 import subprocess
 from pathlib import Path
 
-from helpers.netbuilder import write
+import pytest
+
+from helpers.netbuilder import flat, write
 from helpers.pnml_nets import load, philosophers, size
 from helpers.processes import pn2code
+from pn2code.diagnostics import Diagnostics
+from pn2code.unfold.unfold import unfold
 
 
 def convert(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
@@ -51,3 +55,67 @@ def test_what_cannot_be_written_leaves_nothing(tmp_path: Path) -> None:
     assert convert(net, "-o", tmp_path / "x.pnml", "--unfold").returncode == 0
     done = convert(net, "-o", tmp_path / "none" / "x.pnml", "--unfold")
     assert done.returncode == 2 and "cannot write" in done.stderr
+
+
+MANY = """
+net Many
+  standard
+  colset C = int with 0..400;
+  var a, b: C
+  place X : C = 1`0
+  place Y : C = 1`0
+  place Both : C
+  trans Up guard [a < 400]
+    in X : a
+    out X : a + 1
+  trans Side guard [a < 400]
+    in Y : a
+    out Y : a + 1
+  trans Meet
+    in X : a
+    in Y : b
+    out Both : a
+"""
+
+
+def test_unfolding_has_a_limit_of_time(tmp_path: Path) -> None:
+    """401 times 401 bindings take longer than no time at all; nothing is written then, and it says so."""
+    net = write(MANY, tmp_path / "many.cpn")
+    out = tmp_path / "many.pnml"
+    done = pn2code("convert", net, "--unfold", "-o", out, "--max-seconds", "0.000001")
+    assert done.returncode == 3
+    assert "warning[time-over]: the time was up before the net was converted" in done.stderr
+    assert f"`{out}` was not written" in " ".join(done.stderr.split())
+    assert not out.exists()
+
+
+def test_unfolding_says_how_far_it_is(tmp_path: Path) -> None:
+    said: list[tuple[int, int]] = []
+    u = unfold(flat(MANY.replace("400", "9")), Diagnostics(), progress=lambda *n: said.append(n))
+    assert u is not None
+    assert said == sorted(said) and len(u.places) - 1 <= said[-1][0] <= len(u.places)
+    assert 0 < said[-1][1] <= len(u.transitions)
+
+
+@pytest.mark.parametrize(
+    ("verb", "option", "more"),
+    [
+        ("convert", "-o", ("--unfold",)),
+        ("verify", "--report", ()),
+        ("verify", "--draw", ()),
+        ("verify", "--plot", ()),
+    ],
+)
+def test_files_that_cannot_be_written_are_refused_first(
+    tmp_path: Path, verb: str, option: str, more: tuple[str, ...]
+) -> None:
+    """Before anything is explored or unfolded, which this net would take long for."""
+    net = write(MANY.replace("400", "5000"), tmp_path / "many.cpn")
+    for name in ("nowhere/net", "folder"):
+        ending = ".pnml" if verb == "convert" else ".svg"
+        path = tmp_path / f"{name}{ending}"
+        if name == "folder":
+            path.mkdir()
+        done = pn2code(verb, net, option, path, *more)
+        assert done.returncode == 2
+        assert "cannot write" in done.stderr

@@ -111,3 +111,19 @@ def test_random_properties(explorers: Explorers, name: str) -> None:
     )
     net.judge(found)
     assert {a.answer for a in found.answers} == {"yes", "no"}
+
+
+@pytest.mark.parametrize("name", OWN)
+def test_what_a_part_says_is_so_of_the_whole(explorers: Explorers, name: str) -> None:
+    """However early a limit ends the exploration: what is answered then is the answer, and its run shows it."""
+    net = Net.of(OWN[name][0])
+    author = Author(Random(f"part of {name}"), net.flat)
+    texts = [author.property() for _ in range(amount(30, 200))]
+    whole = net.ask(explorers, texts, f"whole-{name}")
+    for states in (2, 3, 5, 9):
+        found = net.ask(explorers, texts, f"part-{name}-{states}", "--max-states", states)
+        for text, true, said in zip(texts, whole.answers, found.answers, strict=True):
+            if said.answer != "inconclusive":
+                assert said.answer == true.answer, (states, text)
+            problem = confirm.problem(net.flat, {}, found.properties, said)
+            assert problem is None, (states, text, problem)

@@ -219,8 +219,7 @@ static bool read_options(int argc, char **argv, ex_options_t *options)
 
 static void on_signal(int number)
 {
-    (void)number;
-    ex_stop(&s_run, EX_INTERRUPTED); /* atomic operations alone */
+    ex_stop(&s_run, (number == SIGUSR1) ? EX_INFINITE : EX_INTERRUPTED); /* atomic operations alone */
 }
 
 static void catch_signals(void)
@@ -232,6 +231,8 @@ static void catch_signals(void)
     (void)sigemptyset(&action.sa_mask);
     (void)sigaction(SIGINT, &action, NULL);
     (void)sigaction(SIGTERM, &action, NULL);
+    action.sa_flags = SA_RESTART;
+    (void)sigaction(SIGUSR1, &action, NULL); /* the states have no end: it answers what it can, and ends */
     action.sa_handler = SIG_IGN;
     action.sa_flags = 0;
     (void)sigaction(SIGXFSZ, &action, NULL); /* a file that must not become larger is one that cannot be written */
@@ -335,9 +336,10 @@ static void end_watch(watch_t *watch)
 const char *ex_why_text(ex_why_t why)
 {
     static const char *const s_texts[] = {
-        [EX_COMPLETE] = "complete",       [EX_DECIDED] = "decided",   [EX_APPROXIMATE] = "approximation",
-        [EX_STATES] = "states",           [EX_SECONDS] = "seconds",   [EX_MEMORY] = "memory",
-        [EX_INTERRUPTED] = "interrupted", [EX_CAPACITY] = "capacity", [EX_ERROR] = "error",
+        [EX_COMPLETE] = "complete", [EX_DECIDED] = "decided",         [EX_APPROXIMATE] = "approximation",
+        [EX_STATES] = "states",     [EX_SECONDS] = "seconds",         [EX_MEMORY] = "memory",
+        [EX_INFINITE] = "infinite", [EX_INTERRUPTED] = "interrupted", [EX_CAPACITY] = "capacity",
+        [EX_ERROR] = "error",
     };
     return s_texts[why];
 }
@@ -516,6 +518,7 @@ static int explore(ex_run_t *run)
     case EX_STATES:
     case EX_SECONDS:
     case EX_MEMORY:
+    case EX_INFINITE:
     case EX_INTERRUPTED:
     default: return EXIT_TRUNCATED;
     }

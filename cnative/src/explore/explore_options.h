@@ -57,6 +57,7 @@ typedef enum ex_why {
     EX_STATES,
     EX_SECONDS,
     EX_MEMORY,
+    EX_INFINITE, /* whoever started it knows that there is no end */
     EX_INTERRUPTED,
     EX_CAPACITY, /* a place has too little room, or an arena: the program can be built or started with more */
     EX_ERROR     /* an inscription raised an exception */

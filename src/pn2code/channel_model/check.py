@@ -125,6 +125,7 @@ def medium(
     rules: Rules | None = None,
     crashes: Crashes = CRASHES,
     cell_states: int | None = 0,
+    most: int | None = None,
     wishes: ExploreOptions | None = None,
 ) -> Iterator[Answer]:
     """All checks of a cell; none if it has no channels.
@@ -137,6 +138,7 @@ def medium(
         rules: of the protocol; None: as it is implemented.
         crashes: in the exchanges.
         cell_states: of the cell's own net; None: too many to explore it with its medium.
+        most: of them with its medium that are looked at; None: as many as the limits permit.
         wishes: who is told of the progress, and who may interrupt; None: nobody.
     """
     rules = rules or Rules()
@@ -147,7 +149,11 @@ def medium(
     left_out = [c.file for c in partition.channels if c not in own]
     if cell_states is not None:
         fitting = replace(run.wishes, quick=cell_states <= QUICK_STATES)
-        yield whole(partition, storage, replace(run, wishes=fitting), rules, left_out)
+        ends = [n for n in (limits.max_states, most) if n is not None]
+        own_limits = replace(limits, max_states=min(ends, default=None))
+        yield whole(
+            partition, storage, replace(run, limits=own_limits, wishes=fitting), rules, left_out
+        )
     else:
         yield too_large()
     seen: dict[Topology, str] = {}
@@ -321,6 +327,9 @@ def _evidence(
             )
 
 
+_STUCK = "an end cannot be reached from every state"
+
+
 def _verdict(
     net: MediumNet, found: Exploration | None, runs: tuple[Evidence, ...], judged: bool
 ) -> tuple[Verdict, str]:
@@ -330,8 +339,10 @@ def _verdict(
         return "no", ""
     if found.fired[net.ending]:
         return "no", "there is a fault of the exchange, but no run to it was kept"
+    if judged and found.dead_count:
+        return "no", _STUCK
     if not found.complete:
         return "inconclusive", f"the exploration is not complete: {clause(found.why)}"
-    if judged and (found.dead_count or any(a["answer"] != "yes" for a in found.answers)):
-        return "no", "an end cannot be reached from every state"
+    if judged and any(a["answer"] != "yes" for a in found.answers):
+        return "no", _STUCK
     return "yes", ""

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 import pn2code
+from pn2code.base.deadline import Deadline, TimeIsOverError
+from pn2code.base.progress_line import Line
 from pn2code.base.whole_file import whole_file
 from pn2code.cli.nets import open_net, playing
 from pn2code.cli.options import (
@@ -15,11 +18,14 @@ from pn2code.cli.options import (
     Format,
     FormatOption,
     SetOption,
+    check_writable,
+    finite,
     parse_values,
     print_diagnostics,
     stop,
 )
 from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.verify.codes import TIME_OVER
 
 if TYPE_CHECKING:
     from pn2code.net.flat import FlatNet
@@ -34,6 +40,8 @@ EPILOG = """Examples:
   pn2code convert net.cpn -o net.pml     (a model for SPIN)
 """
 
+_PACE_S = 0.5
+"""Between two tellings of progress."""
 _FORMATS = (".pnml", ".pml", ".promela", ".cpn")
 
 
@@ -54,12 +62,22 @@ def convert(
             "--unfold", help="Write a place/transition net, with a place for each colour."
         ),
     ] = False,
+    max_seconds: Annotated[
+        float | None,
+        typer.Option(
+            metavar="S",
+            min=0.0,
+            callback=finite,
+            help="Stop after S seconds, without a file.",
+        ),
+    ] = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,
 ) -> None:
     """Convert a net to PNML or to a Promela model for SPIN, or a PNML net to a net of CPN Tools."""
-    from pn2code.convert.codes import CONVERT_FORMAT, UNSUPPORTED_IN_CPN
+    from pn2code.convert.codes import CONVERT_FORMAT
 
+    deadline = Deadline.of_command(max_seconds)
     d = Diagnostics()
     kind = output.suffix.lower()
     if kind not in _FORMATS:
@@ -70,7 +88,36 @@ def convert(
             hint="let the name end in .pnml, .pml or .cpn",
         )
         stop(d, form)
-    opened = open_net(net, parse_values(settings), form)
+    check_writable(output, "-o")
+    try:
+        with deadline.enforced(), Line(first="reading ...") as line:
+            _convert(net, output, kind, parse_values(settings), unfold, d, form, line)
+    except TimeIsOverError:
+        d.warning(
+            TIME_OVER,
+            f"the time was up before the net was converted, so `{output}` was not written",
+            Origin(str(net)),
+            hint="give it more time with `--max-seconds`, or make colour sets smaller: unfolding makes a "
+            "transition for each binding",
+        )
+        print_diagnostics(d.sorted(), form)
+        raise typer.Exit(Exit.INCONCLUSIVE) from None
+
+
+def _convert(
+    net: Path,
+    output: Path,
+    kind: str,
+    values: dict[str, str],
+    unfold: bool,
+    d: Diagnostics,
+    form: Format,
+    line: Line,
+) -> None:
+    """Reads the net and writes the file."""
+    from pn2code.convert.codes import UNSUPPORTED_IN_CPN
+
+    opened = open_net(net, values, form)
     document = opened.examined.document
     assert document is not None
     if kind == ".cpn" and (document.tool != "PNML" or unfold):
@@ -82,7 +129,8 @@ def convert(
         )
         stop(d, form)
     with playing(form):
-        text = _text(kind, opened.flat, document, unfold, net, d)
+        text = _text(kind, opened.flat, document, unfold, net, d, line)
+    line.clear()
     if text is None:
         stop(d, form)
     print_diagnostics(d.sorted(), form)
@@ -95,7 +143,13 @@ def convert(
 
 
 def _text(
-    kind: str, flat: FlatNet, document: Document, unfolded: bool, net: Path, d: Diagnostics
+    kind: str,
+    flat: FlatNet,
+    document: Document,
+    unfolded: bool,
+    net: Path,
+    d: Diagnostics,
+    line: Line,
 ) -> str | None:
     """The file's contents; None after errors."""
     from pn2code.convert import cpn, pnml_plain, pnml_symmetric, promela
@@ -110,7 +164,16 @@ def _text(
     where = {} if several else {i: (x, -y) for i, (x, y) in positions(document).items()}
     if kind == ".pnml" and not (unfolded or plain):
         return pnml_symmetric.emit(flat, d, title=net.stem, positions=where)
-    u = unfold(flat, d)
+    shown = time.monotonic()
+
+    def tell(places: int, transitions: int) -> None:
+        nonlocal shown
+        if time.monotonic() - shown > _PACE_S:
+            shown = time.monotonic()
+            line.say(f"unfolding: {places:,} places  {transitions:,} transitions")
+
+    line.say("unfolding ...")
+    u = unfold(flat, d, progress=tell)
     if u is None:
         return None
     if kind == ".pnml":

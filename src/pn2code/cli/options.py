@@ -51,6 +51,28 @@ def finite(number: float | None) -> float | None:
     return number
 
 
+def check_writable(path: Path | None, option: str) -> None:
+    """Refuses a file that could not be written in the end, before any work is done for it; None: there is none.
+
+    Raises:
+        typer.BadParameter: it is a folder, or its folder is missing or must not be written.
+    """
+    if path is None:
+        return
+    folder = path.parent
+    why = ""
+    if path.is_dir():
+        why = "it is a folder"
+    elif not folder.is_dir():
+        why = f"there is no folder `{folder}`"
+    elif path.exists() and not path.is_file():
+        return  # a device or a pipe
+    elif not os.access(folder, os.W_OK) or (path.exists() and not os.access(path, os.W_OK)):
+        why = "permission denied"
+    if why:
+        raise typer.BadParameter(f"cannot write `{path}`: {why}", param_hint=option)
+
+
 def parse_values(settings: list[str]) -> dict[str, str]:
     """`NAME=VALUE` options as CPN ML texts; a value is CPN ML (`true`, `~3`, `"text"`)."""
     values = {}

@@ -105,6 +105,7 @@ def run(
     from pn2code.run.cell import RunOptions, run_cell
     from pn2code.run.engine import Observer
     from pn2code.run.progress import Progress
+    from pn2code.verdict.input_files import tokens
 
     d = Diagnostics()
     console = Console(highlight=False)
@@ -128,7 +129,7 @@ def run(
         if backend is BackendChoice.BULLET:
             observers.append(album)
         try:
-            result = run_cell(cell, options, d, observers)
+            result = run_cell(cell, options, d, observers, tokens)
         except (OutputFolderError, BackendUnavailableError) as problem:
             typer.echo(f"pn2code: {problem}", err=True)
             raise typer.Exit(Exit.USAGE) from None

@@ -25,6 +25,7 @@ from pn2code.cli.options import (
     IntBitsOption,
     JsonOption,
     SetOption,
+    check_writable,
     finite,
     parse_values,
     print_diagnostics,
@@ -227,6 +228,13 @@ def verify(
             help="Check a cell together with its shared files (docs/protocol.md).",
         ),
     ] = True,
+    unbounded_ok: Annotated[
+        bool,
+        typer.Option(
+            "--unbounded-ok",
+            help="Go on up to the limits where a place is known to grow without bound.",
+        ),
+    ] = False,
     as_json: JsonOption = False,
     in_full: Annotated[
         bool,
@@ -284,6 +292,8 @@ def verify(
         Pictures(draw_to, plot_to) as pictures,
         properties.unnamed_runs(asked, folder) as unnamed,
     ):
+        for path, option in ((draw_to, "--draw"), (plot_to, "--plot"), (report_to, "--report")):
+            check_writable(path, option)  # perhaps in the folder that was just made
         with Interrupts() as interrupts, ProgressLine(shown=not (as_json or quiet)) as progress:
             wishes = ExploreOptions(
                 traces=folder if most_traces else None,
@@ -292,6 +302,7 @@ def verify(
                 questions=asked.questions,
                 predicates=asked.properties.predicates,
                 evidence=unnamed,
+                covering=not unbounded_ok,
                 progress=progress.update,
                 interrupted=interrupts.is_wanted,
             )
@@ -401,10 +412,11 @@ def _write_report(said: Said, subject: Subject | None, path: Path, d: Diagnostic
             medium=list(channel_model.rows(said.medium)),
             subject=subject.rows,
             remark=subject.remark,
+            counts=said.counts,
             deadline=said.deadline,
         )
     else:
-        body = report(said.net, said.found, now, said.answers, said.control)
+        body = report(said.net, said.found, now, said.answers, said.control, said.counts)
         if said.medium:
             body = f"{body.rstrip()}\n\n\n{channel_model.told(said.medium)}\n"
         body = f"{body.rstrip()}\n\n\n{closing(said)}\n"

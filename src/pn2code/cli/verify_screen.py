@@ -20,15 +20,16 @@ from pn2code.semantics.game.token_game import GameError
 from pn2code.trace.script import TraceRefusedError
 from pn2code.verdict import channel_model
 from pn2code.verdict.whole import Said
-from pn2code.verify.answers import basis, why_disabled
+from pn2code.verify.answers import basis, outcome, why_disabled
+from pn2code.verify.answers.outcome import error_text
 from pn2code.verify.answers.path import play, steps, text
-from pn2code.verify.answers.reasons import clause
+from pn2code.verify.answers.properties import kind as kind_of
 from pn2code.verify.controller.control_types import TITLES
 from pn2code.verify.exploring.result import Exploration, Trace
 from pn2code.verify.report import control_text
 from pn2code.verify.report.properties_text import said as said_of
 from pn2code.verify.report.properties_text import told
-from pn2code.verify.report.text import bounded_places, error_text, report
+from pn2code.verify.report.text import bounded_places, report
 
 MOST_LINES = 40
 """Of one screen."""
@@ -65,7 +66,10 @@ class _Item:
 def full(said: Said) -> str:
     """The report, then all runs."""
     net, found = said.net, said.found
-    parts = [report(net, found, None, said.answers, said.control).rstrip(), _figures(found)]
+    parts = [
+        report(net, found, None, said.answers, said.control, said.counts).rstrip(),
+        _figures(found),
+    ]
     with suppress(TimeIsOverError), said.deadline.enforced():
         if said.control is not None:
             parts += control_text.told(net, said.storage, said.control, most=SHOWN_STEPS)
@@ -93,9 +97,9 @@ def _told(said: Said, trace: Trace, goal: str) -> str:
 
 
 def _figures(found: Exploration) -> str:
-    partial = "" if found.complete else f" TRUNCATED: {clause(found.why)}."
+    partial = "" if found.complete else " TRUNCATED, see above."
     if found.why == "decided":
-        partial = f" Ended early: {clause(found.why)}."
+        partial = " Ended early, see above."
     return (
         f"{found.nodes:,} markings and {found.arcs:,} arcs{' of the reduced space' * found.is_reduced} "
         f"in {found.seconds:.2f} s "
@@ -113,7 +117,7 @@ def screen(said: Said) -> str:
     closed = ", as a closed net" if said.control is not None else ""
     lines = [f"State space of {said.net.file}{closed}", ""]
     if not said.found.complete:
-        partial = f"PARTIAL: {clause(said.found.why)}. {basis.partial(said.found)}"
+        partial = f"PARTIAL: {outcome.header(said.net, said.found, said.counts)}"
         lines += [*textwrap.wrap(partial, _WIDTH), ""]
     lines += _sizes(said)
     lines += _as_it_runs(said)
@@ -221,11 +225,10 @@ def _most(net: FlatNet, found: Exploration) -> str:
 
 def _items(said: Said) -> Iterator[_Item]:
     for check in said.control.checks if said.control else ():
-        kind = "open" if check.answer == "unknown" else "bad" if check.fails else "good"
         run = next((run for run in check.evidence if run.file is not None), None)
         loop = None if run is None else run.loop
         yield _Item(
-            TITLES[check.name], kind, check.says, None if run is None else run.file, loop=loop
+            TITLES[check.name], check.kind, check.says, None if run is None else run.file, loop=loop
         )
     for m in said.medium:
         kind = {"yes": "good", "no": "bad"}.get(m.answer, "open")
@@ -233,7 +236,7 @@ def _items(said: Said) -> Iterator[_Item]:
         says = {"open": f"not known: {m.why}", "bad": channel_model.shown(m)}.get(kind, m.says)
         yield _Item(f"{m.check[:1].upper()}{m.check[1:]}", kind, says, None, lines)
     for a in said.answers:
-        kind = "open" if a.answer == "inconclusive" else "good" if a.is_expected else "bad"
+        kind = kind_of(a)
         says = f"not known: {a.why}" if kind == "open" else said_of(a)
         says += f" [the closed net: {a.net}]" if a.net is not None else ""
         e = a.evidence
@@ -378,20 +381,4 @@ def _cut(line: str, indented: int = 0) -> str:
 
 def closing(said: Said) -> str:
     """The last line."""
-    kinds = [i.kind for i in _items(said)]
-    bad, is_open = kinds.count("bad"), kinds.count("open")
-    found = said.found
-    if found.error is not None and found.why == "error":
-        return f"Verdict: NO. {error_text(said.net, found)} in a reachable marking."
-    if bad:
-        are = "are not as they" if bad != 1 else "is not as it"
-        return f"Verdict: NO. {bad} of {len(kinds)} answers {are} should be."
-    if said.errors:
-        return "Verdict: NO. There are errors, see below."
-    if is_open:
-        return f"Verdict: NOT KNOWN. {is_open} of {len(kinds)} answers {'are' if is_open != 1 else 'is'} not known."
-    if kinds:
-        return f"Verdict: YES. All {len(kinds)} answers are as they should be."
-    if found.complete:
-        return "Verdict: COMPLETE. All reachable markings were seen, and there are no properties to check."
-    return f"Verdict: NOT COMPLETE. {clause(found.why)[:1].upper()}{clause(found.why)[1:]}."
+    return outcome.closing(said.net, said.found, said.counts)

@@ -91,7 +91,7 @@ class Binder:
                 " ".join(written.holds.text.split()),
                 kind,
                 written.expect,
-                asked,
+                m.simplest(asked),
                 tuple(map(self._fair_text, fair)),
                 written.holds.origin,
                 written.of_net,

@@ -44,6 +44,8 @@ class Op:
 
 Formula = Atom | Op
 
+_BOOLEAN = frozenset({"not", "and", "or", "implies", "iff"})
+
 TRUE = Atom("true")
 DEAD = Atom("dead")
 
@@ -165,6 +167,31 @@ class Response:
 
 
 Asked = Invariant | Bound | Branching | Linear | Response
+
+
+def simplest(asked: Asked) -> Asked:
+    """The same question about single nodes, where it is one: such a node may decide it before all are known.
+
+    Each node lies on a maximal path, so that `ltl G p` is about all nodes, unless only fair paths count.
+    """
+    match asked:
+        case Branching(Op("AG", (p,))) | Linear(Op("G", (p,)), ()) if is_of_nodes(p):
+            return Invariant(p)
+        case Branching(Op("EF", (p,))) if is_of_nodes(p):
+            return Invariant(negation(p), wanted=False)
+        case Branching(Op("not", (Op("EF", (p,)),))) if is_of_nodes(p):
+            return Invariant(negation(p))
+        case Branching(Op("not", (Op("AG", (p,)),))) if is_of_nodes(p):
+            return Invariant(p, wanted=False)
+        case _:
+            return asked
+
+
+def is_of_nodes(f: Formula) -> bool:
+    """Whether it is a condition on single nodes: without operators of time, and steps."""
+    if isinstance(f, Atom):
+        return not looks_at_steps(f)
+    return f.operator in _BOOLEAN and all(map(is_of_nodes, f.parts))
 
 
 def formulas(asked: Asked) -> tuple[Formula, ...]:

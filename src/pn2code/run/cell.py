@@ -14,9 +14,9 @@ import re
 import shutil
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -26,10 +26,11 @@ from pn2code.cell.codes import CELL_MISSING
 from pn2code.cell.config import CellConfig
 from pn2code.cell.names import counted
 from pn2code.channels import GRACE_S, SharedDirectory, specs_of
-from pn2code.diagnostics import Diagnostics, Origin, SourceText
+from pn2code.diagnostics import Diagnostics, Note, Origin, SourceText
 from pn2code.diagnostics.codes import register
 from pn2code.emission.output import OutputFile
 from pn2code.emission.write import OutputFolderError, write
+from pn2code.net.flat import FlatNet
 from pn2code.report.rows import rows_tsv
 from pn2code.report.summary import summarise
 from pn2code.robot import scene
@@ -124,10 +125,29 @@ class RunResult:
     prepared: Prepared
 
 
-def prepare(path: Path, options: RunOptions, d: Diagnostics) -> Prepared | None:
-    """Generates and builds the programs of a cell, reads its geometry. None when there are errors."""
+Tokens = Callable[[FlatNet, CellConfig, Diagnostics], object]
+"""Reads the input files of a cell and reports what is wrong in them."""
+
+
+def prepare(
+    path: Path, options: RunOptions, d: Diagnostics, tokens: Tokens | None = None
+) -> Prepared | None:
+    """Generates and builds the programs of a cell, reads its geometry. None when there are errors.
+
+    `tokens` reads the input files before anything that takes long.
+    """
+
+    def examine(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> None:
+        if config is not None and tokens is not None:
+            examine_inputs(net, config, options.input, tokens, d)
+
     generated = pipeline.generate(
-        path, d, layout=options.layout, values=options.values, checked=options.checked
+        path,
+        d,
+        layout=options.layout,
+        values=options.values,
+        checked=options.checked,
+        examine=examine,
     )
     if generated is None:
         return None
@@ -169,9 +189,16 @@ def _scripts(
 
 
 def run_cell(
-    path: Path, options: RunOptions, d: Diagnostics, observers: list[Observer] | None = None
+    path: Path,
+    options: RunOptions,
+    d: Diagnostics,
+    observers: list[Observer] | None = None,
+    tokens: Tokens | None = None,
 ) -> RunResult | None:
-    """Runs a cell in lock-step and writes trace, rows and summary; None when it could not start."""
+    """Runs a cell in lock-step and writes trace, rows and summary; None when it could not start.
+
+    `tokens` reads the input files before anything that takes long; without, the supervisor says what is wrong in them.
+    """
     started = time.perf_counter()
     if options.input is not None and not options.input.exists():
         at = Origin(str(options.input))
@@ -182,7 +209,7 @@ def run_cell(
             hint="correct the path after --input",
         )
         return None
-    prepared = prepare(path, options, d)
+    prepared = prepare(path, options, d, tokens)
     if prepared is None:
         return None
     with ExitStack() as stack:
@@ -279,7 +306,7 @@ def _report_start(ended: Exit, inputs: Path, options: RunOptions, d: Diagnostics
         f"the supervisor did not start: {reason}",
         at,
         notes=list(others)[:8],
-        hint="correct the input file, or give another one with --input"
+        hint=_CORRECT
         if usage
         else "`./supervisor --help` in the folder of the program says what it needs",
     )
@@ -322,6 +349,51 @@ def shared_directory(name: str) -> Iterator[Path]:
         shutil.rmtree(folder, ignore_errors=True)
 
 
+def examine_inputs(
+    net: FlatNet, config: CellConfig, given: Path | None, tokens: Tokens, d: Diagnostics
+) -> None:
+    """Reports what the supervisor would refuse in the input files of a run; `given`: as `RunOptions.input`."""
+    if given is not None and not given.is_dir() and len(config.inputs) != 1:
+        _tell_number(config, given, d)
+        return
+    shown: dict[str, str] = {}
+    entries = []
+    for entry in config.inputs:
+        folder = config.folder if given is None else given
+        file = given if given is not None and not given.is_dir() else folder / entry.file
+        shown[str(file.absolute())] = str(file)
+        entries.append(replace(entry, file=str(file.absolute())))
+        if not file.is_file():
+            d.error(
+                RUN_INPUT,
+                f"there is no input file `{file}`",
+                Origin(str(file)),
+                notes=[Note(f"the marking of `{entry.place}` comes from this file", entry.origin)],
+                hint=_CORRECT,
+            )
+    own = Diagnostics()
+    tokens(net, replace(config, inputs=tuple(entries)), own)
+    for problem in own.errors:
+        at = replace(problem.origin, file=shown.get(problem.origin.file, problem.origin.file))
+        what = f"the supervisor would not start: {problem.message}"
+        d.error(RUN_INPUT, what, at, notes=list(problem.notes), hint=_CORRECT)
+
+
+_CORRECT = "correct the input file, or give another one with --input"
+
+
+def _tell_number(config: CellConfig, given: Path, d: Diagnostics) -> None:
+    """That one file is given to a cell that has another number of them."""
+    d.error(
+        RUN_INPUT,
+        f"the cell has {len(config.inputs)} input files, but one file is given",
+        Origin(str(given)),
+        hint="give a folder that holds " + ", ".join(f"`{i.file}`" for i in config.inputs)
+        if config.inputs
+        else "the cell reads no input: leave out --input",
+    )
+
+
 @contextmanager
 def _inputs(config: CellConfig, options: RunOptions, d: Diagnostics) -> Iterator[Path | None]:
     """The folder with the input files: the cell's own, one given, or one made around a single file."""
@@ -330,14 +402,7 @@ def _inputs(config: CellConfig, options: RunOptions, d: Diagnostics) -> Iterator
         yield config.folder if given is None else given
         return
     if len(config.inputs) != 1:
-        d.error(
-            RUN_INPUT,
-            f"the cell has {len(config.inputs)} input files, but one file is given",
-            Origin(str(given)),
-            hint="give a folder that holds " + ", ".join(f"`{i.file}`" for i in config.inputs)
-            if config.inputs
-            else "the cell reads no input: leave out --input",
-        )
+        _tell_number(config, given, d)
         yield None
         return
     with tempfile.TemporaryDirectory(prefix="pn2code-input-") as folder:

@@ -12,7 +12,7 @@ Example: philosophers `with p1 | .. | p5` in a place `Think` give places `Think[
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -43,8 +43,11 @@ def unfold(
     *,
     max_places: int = MAX_PLACES,
     max_transitions: int = MAX_TRANSITIONS,
+    progress: Callable[[int, int], None] = lambda places, transitions: None,
 ) -> Unfolding | None:
     """The net as a place/transition net; None after an error.
+
+    `progress` is told how many places and transitions there are, for each binding that is looked at.
 
     Raises:
         GameError: a declaration or an initial marking raises an exception.
@@ -54,7 +57,7 @@ def unfold(
     if len(d.errors) > before:
         return None
     game = Game(net)
-    closure = _Closure(net, game, max_places, max_transitions)
+    closure = _Closure(net, game, max_places, max_transitions, progress)
     try:
         closure.run()
     except _TooLargeError as large:
@@ -168,7 +171,15 @@ class _Search(Enabling):
 
 
 class _Closure:
-    def __init__(self, net: FlatNet, game: Game, max_places: int, max_transitions: int) -> None:
+    def __init__(
+        self,
+        net: FlatNet,
+        game: Game,
+        max_places: int,
+        max_transitions: int,
+        progress: Callable[[int, int], None],
+    ) -> None:
+        self.progress = progress
         self.net = net
         self.game = game
         self.colours = game.colours
@@ -247,6 +258,7 @@ class _Closure:
 
     def enter(self, t: FlatTransition, binding: Binding) -> None:
         pre: dict[Token, int] = {}
+        self.progress(self.count, len(self.elements))
         try:
             demands = self.search.demands(t, binding)
         except GameError as error:

@@ -9,6 +9,7 @@ from pn2code.cell.divide import divide
 from pn2code.channel_model.check import WHOLE, Answer, Evidence, medium
 from pn2code.channel_model.faults import SAYS
 from pn2code.diagnostics import Diagnostics
+from pn2code.verdict.controller import LEAST_STATES
 from pn2code.verdict.opened import OpenNet
 from pn2code.verify.answers import basis
 from pn2code.verify.answers.properties import Verdict
@@ -34,7 +35,7 @@ def look(
 
     Args:
         opened: the net.
-        found: its own state space. Where that is too large, that with the medium is as well.
+        found: its own state space. Where that is too large, that with the medium is as well, and a part is seen.
         limits: of each exploration.
         wishes: who is told of the progress, and who may interrupt.
         d: gets the errors.
@@ -46,12 +47,15 @@ def look(
     if partition is None:
         return ()
     is_small = found.complete or found.why in ("decided", "approximation")
+    is_open = not is_small and limits.deadline.is_over()
     answers = medium(
         partition,
         opened.storage,
         limits,
         d,
-        cell_states=found.nodes if is_small else None,
+        cell_states=None if is_open else found.nodes,
+        # All of it will not be seen where the cell was not, but what is wrong in a part is wrong.
+        most=None if is_small else max(found.nodes, LEAST_STATES),
         wishes=ExploreOptions(progress=wishes.progress, interrupted=wishes.interrupted),
     )
     premise = Premises.of(partition, opened.config).replies.premise

@@ -19,6 +19,8 @@ from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.result import Exploration
 
+LEAST_STATES = 1_000
+"""Of the cell that are looked at where its closed net was not seen to the end."""
 QUICK_STATES = 5_000
 """Of the net: beyond that it pays to have the compiler work longer."""
 
@@ -36,7 +38,7 @@ def look(
 
     Args:
         opened: the net.
-        found: its state space. Where that is too large, the one that the checks need is as well.
+        found: its state space. Where that is too large, the one that the checks need is as well, and a part is seen.
         limits, wishes: of the exploration.
         folder: where traces go.
         d: gets the errors.
@@ -49,9 +51,13 @@ def look(
     if partition is None:
         return None
     # An approximate exploration came to its end; the checks make an exact one of their own.
-    is_hopeless = not found.complete and found.why not in ("decided", "approximation")
-    if is_hopeless and (found.why in ("interrupted", "error") or not opened.flat.timed):
+    is_partial = not found.complete and found.why not in ("decided", "approximation")
+    if is_partial and (found.why in ("interrupted", "error") or limits.deadline.is_over()):
         return control.not_looked(found.why, partition, declared(partition, config, d), found)
+    if is_partial and not opened.flat.timed:
+        # All of it will not be seen either, but what is wrong in a part is wrong.
+        most = max(found.nodes, LEAST_STATES)
+        limits = replace(limits, max_states=min(most, limits.max_states or most))
     capacities = declared(partition, config, d)
     if capacities is None:
         return None
@@ -63,7 +69,7 @@ def look(
         capacities=capacities,
         properties=asked,
         evidence=wishes.evidence,
-        wishes=replace(wishes, quick=found.nodes <= QUICK_STATES),
+        wishes=replace(wishes, quick=found.nodes <= QUICK_STATES, covering=False),
         premises=Premises.of(partition, config, {g.place: g.says for g in opened.given}),
     )
     looked = control.examine(partition, plan, replace(limits, traces=0), d, found)

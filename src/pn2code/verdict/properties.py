@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 import tempfile
 from collections.abc import Iterator, Mapping, Sequence
@@ -25,11 +26,13 @@ from pn2code.verdict.asked import Asked, as_text
 from pn2code.verdict.opened import OpenNet
 from pn2code.verify.answers import confirm
 from pn2code.verify.answers.lasso import write_loop
-from pn2code.verify.answers.properties import Answer, answers, drawn
+from pn2code.verify.answers.properties import Answer, Evidence, answers, drawn
 from pn2code.verify.codes import TRACE_UNWRITABLE
 from pn2code.verify.controller.cell_answers import of_cell
 from pn2code.verify.controller.control_types import Control
 from pn2code.verify.exploring import nondeterminism
+from pn2code.verify.exploring.covering import Covering
+from pn2code.verify.exploring.covering import write as write_covering
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits, Reduction
 from pn2code.verify.exploring.programs import Sizes
@@ -38,6 +41,9 @@ from pn2code.verify.exploring.result import Exploration
 _CALLED = {"yes": "true", "no": "false", "inconclusive": "not known"}
 _WITH_RUNS = ("complete", "decided", "states", "memory", "error")
 """Ends of an exploration after which there was time to look for the runs, and the way to each marking is known."""
+
+MOST_PUMPED = 100_000
+"""Steps of a run that exceeds a bound by repeating its rounds; a longer one is not written."""
 
 
 def of_bindings(
@@ -131,6 +137,7 @@ def _bindings_of_cell(
             predicates=split.properties.predicates,
             sizes=Sizes.start(split.net, opened.storage),
             quick=True,
+            covering=False,  # its programs choose otherwise than the token game
         )
         kept = (Reduction.TIME,) if opened.flat.timed else ()
         limits = replace(limits, reductions=kept, graph=True, approximation=None)
@@ -198,6 +205,8 @@ def answered(
         control: what a cell was looked at in; None: the net is no cell.
     """
     plain = answers(asked.plain, found.answers, found)
+    if found.covering is not None:
+        plain = tuple(_pumped(a, found.covering, opened, folder) for a in plain)
     if nondeterminism.draws(opened.flat):
         plain, more = tuple(map(drawn, plain)), tuple(map(drawn, more))
     if control is not None and (partition := divided(opened, d)) is not None:
@@ -228,6 +237,23 @@ def answered(
                 hint="give another folder with `--traces DIR`",
             )
     return tuple(looked)
+
+
+def _pumped(a: Answer, run: Covering, opened: OpenNet, folder: Path) -> Answer:
+    """The answer about an upper bound of a place that grows: so many rounds of the run exceed it."""
+    asked = a.about.asked
+    if a.answer != "inconclusive" or not isinstance(asked, m.Bound) or asked.high is None:
+        return a
+    rounds = run.rounds_to(asked.place, asked.high)
+    if rounds is None:
+        return a
+    steps = len(run.prefix) + rounds * len(run.round)
+    found = replace(a, answer="no", why="")
+    if steps > MOST_PUMPED:
+        return replace(found, is_pumped=True)
+    trace = folder / f".pn2code-{os.getpid()}-{a.about.name!r:.40}.trace.jsonl".replace("/", "-")
+    written = write_covering(opened.flat, opened.storage, run, trace, rounds)
+    return replace(found, evidence=Evidence(trace, steps, None)) if written else found
 
 
 def _has_run(asked: m.Asked) -> bool:

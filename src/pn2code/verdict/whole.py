@@ -18,7 +18,9 @@ from pn2code.verdict import channel_model as medium
 from pn2code.verdict import controller, properties
 from pn2code.verdict.asked import Asked, gather
 from pn2code.verdict.opened import OpenNet
-from pn2code.verify.answers.properties import Answer, Verdict, verdict
+from pn2code.verify.answers import outcome
+from pn2code.verify.answers.outcome import Counts
+from pn2code.verify.answers.properties import Answer, Verdict, kind
 from pn2code.verify.answers.reasons import raised
 from pn2code.verify.codes import STATE_ERROR, TRACE_UNWRITABLE
 from pn2code.verify.controller.control_types import Control
@@ -31,6 +33,8 @@ from pn2code.verify.exploring.result import row as exploration_row
 
 MOST_COLOURS = 200
 """Of a multi-set bound, unless all is wanted: a place with a colour for each marking has millions."""
+
+_KINDS = {"yes": "good", "no": "bad"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,17 +91,23 @@ class Said:
     deadline: Deadline = NEVER
 
     @property
+    def kinds(self) -> list[str]:
+        """How each answer came out, "good", "bad" or "open": checks of the supervisor, of the files, properties."""
+        return [
+            *(check.kind for check in (self.control.checks if self.control else ())),
+            *(_KINDS.get(a.answer, "open") for a in self.medium),
+            *map(kind, self.answers),
+        ]
+
+    @property
+    def counts(self) -> Counts:
+        """How many came out how."""
+        return Counts.of(self.kinds, self.errors, asked=bool(self.answers))
+
+    @property
     def verdict(self) -> Verdict:
-        """The worst answer: where nothing is asked, whether all markings were seen."""
-        if self.errors:
-            return "no"
-        own: Verdict = "yes" if self.found.complete else "inconclusive"
-        found = {
-            verdict(self.answers) if self.answers else own,
-            controller.verdict(self.control),
-            medium.verdict(self.medium),
-        }
-        return "no" if "no" in found else "inconclusive" if "inconclusive" in found else "yes"
+        """The worst answer: where no property is asked, whether all markings were seen counts as well."""
+        return outcome.verdict(self.found, self.counts)
 
     def row(self) -> dict[str, Any]:
         """As plain data: what `pn2code verify --json` prints (docs/verify.md)."""

@@ -88,6 +88,10 @@ static void number_block(ex_graph_t *graph, const ex_block_t *block, uint32_t fi
             const uint64_t target = (*found & ~EX_NUMBERED) >> EX_LABEL_BITS;
             uint32_t number = (uint32_t)target;
             if ((*found & EX_NUMBERED) == 0U) {
+                if ((graph->number[target] == 0U) && (graph->nodes == graph->node_room)) {
+                    found++;
+                    continue; /* of a part: there are enough */
+                }
                 if (graph->number[target] == 0U) {
                     graph->slot[graph->nodes] = target;
                     graph->parent[graph->nodes] = node;
@@ -167,11 +171,14 @@ static bool build(ex_run_t *run, ex_graph_t *graph)
     return is_fine;
 }
 
+/* Nodes of a graph that is a part. */
+#define MOST_OF_PART ((uint64_t)200000U)
+
 bool ex_graph(ex_run_t *run)
 {
     const double began = ex_clock();
-    const uint64_t nodes = run->nodes;
     const bool is_whole = (atomic_load(&run->why) == EX_COMPLETE);
+    const uint64_t nodes = (is_whole || (run->nodes < MOST_OF_PART)) ? run->nodes : MOST_OF_PART;
     if ((nodes == 0U) || (nodes >= (uint64_t)EX_NO_NODE) || (pn_net.transition_count > (uint32_t)UINT16_MAX)) {
         ex_stop(run, EX_MEMORY); /* so large a graph cannot be held */
         return false;
@@ -193,7 +200,7 @@ bool ex_graph(ex_run_t *run)
     graph->late = pn_net.timed ? ex_alloc(&run->memory, ((nodes / 64U) + 1U) * sizeof *graph->late) : NULL;
     bool is_fine = (graph->slot != NULL) && (graph->number != NULL) && (graph->parent != NULL) && (graph->row != NULL)
                    && (graph->dead != NULL) && ((graph->late != NULL) || !pn_net.timed)
-                   && reserve_arcs(run, graph, run->arcs);
+                   && reserve_arcs(run, graph, is_whole ? run->arcs : nodes);
     ex_phase(run, "graph");
     is_fine = is_fine && build(run, graph) && (!is_whole || (graph->nodes == nodes));
     if (run->options.write_graph == NULL) {

@@ -110,5 +110,10 @@ bool ex_write_graph(ex_run_t *run, const ex_graph_t *graph, const char *path);
 bool ex_graph(ex_run_t *run);
 /* Members of the report: "dead": [...], "graph": {...} or null, "traces": [...]; without a graph too. */
 void ex_graph_json(ex_run_t *run, FILE *out);
+/* Whether runs end at a node: nothing can occur. Of a part, arcs may be missing. */
+static inline bool ex_ends_at(const ex_graph_t *graph, uint32_t node)
+{
+    return (graph->row[node] == graph->row[node + 1U]) && (graph->is_whole || (EX_BIT(graph->dead, node) != 0U));
+}
 
 #endif /* EXPLORE_GRAPH_H */

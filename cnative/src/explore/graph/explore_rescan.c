@@ -10,6 +10,10 @@
 
 enum { BATCH = 64 };
 
+/* Where the tables have taken all the memory: so many nodes are gone through, with so much more of it. */
+#define FEW     ((uint64_t)1U << 20U)
+#define RESERVE ((uint64_t)32U << 20U)
+
 /* Successors whose lines of the store are on their way. */
 typedef struct search {
     ex_run_t *run;
@@ -122,12 +126,17 @@ uint32_t ex_rescan(ex_run_t *run, ex_graph_t *graph, ex_rescan_t visit, void *us
 
 bool ex_rescan_make(ex_run_t *run, ex_graph_t *graph)
 {
-    *graph = (ex_graph_t){ .node_room = run->nodes };
+    const bool is_full = atomic_load(&run->why) == (int)EX_MEMORY;
+    const uint64_t nodes = (is_full && (run->nodes > FEW)) ? FEW : run->nodes;
+    *graph = (ex_graph_t){ .node_room = nodes };
     if ((run->nodes == 0U) || (run->nodes >= (uint64_t)EX_NO_NODE)) {
         return false;
     }
-    graph->slot = ex_alloc(&run->memory, run->nodes * sizeof *graph->slot);
-    graph->parent = ex_alloc(&run->memory, run->nodes * sizeof *graph->parent);
-    graph->dead = ex_alloc(&run->memory, ((run->nodes / 64U) + 1U) * sizeof *graph->dead);
+    if (is_full) { /* there is nothing left of what was permitted */
+        run->memory.limit += (run->memory.limit / 8U) + RESERVE;
+    }
+    graph->slot = ex_alloc(&run->memory, nodes * sizeof *graph->slot);
+    graph->parent = ex_alloc(&run->memory, nodes * sizeof *graph->parent);
+    graph->dead = ex_alloc(&run->memory, ((nodes / 64U) + 1U) * sizeof *graph->dead);
     return (graph->slot != NULL) && (graph->parent != NULL) && (graph->dead != NULL);
 }

@@ -290,7 +290,7 @@ static bool find_reached(ex_product_t *p)
             if (!ex_is_readable(p, edge, node)) {
                 continue;
             }
-            if ((graph->row[node] == end) && ex_is_allowed(edge, EX_NO_TRANSITION)) {
+            if (ex_ends_at(graph, node) && ex_is_allowed(edge, EX_NO_TRANSITION)) {
                 reach(p, (node * p->states) + edge->to, &used);
             }
             for (uint64_t arc = graph->row[node]; arc < end; arc++) {

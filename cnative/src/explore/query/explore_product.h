@@ -71,13 +71,14 @@ static inline uint32_t ex_next_of(const ex_product_t *p, ex_cursor_t *cursor, ui
     const uint32_t node = cursor->state / p->states;
     const uint64_t row = graph->row[node];
     const uint32_t arcs = (uint32_t)(graph->row[node + 1U] - row);
+    const bool is_end = ex_ends_at(graph, node);
     const uint32_t end = p->automaton->first[(cursor->state % p->states) + 1U];
     for (; cursor->edge < end; cursor->edge++, cursor->arc = 0U) {
         const ex_edge_t *const edge = &p->automaton->edge[cursor->edge];
         if ((cursor->arc == 0U) && !ex_is_readable(p, edge, node)) {
             continue;
         }
-        if ((arcs == 0U) && (cursor->arc == 0U) && ex_is_allowed(edge, EX_NO_TRANSITION)) {
+        if (is_end && (cursor->arc == 0U) && ex_is_allowed(edge, EX_NO_TRANSITION)) {
             cursor->arc = 1U;
             *label = EX_NO_TRANSITION;
             return (node * p->states) + edge->to;

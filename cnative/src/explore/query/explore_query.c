@@ -134,11 +134,59 @@ static void mark_automaton(ex_queries_t *queries, const ex_automaton_t *automato
 }
 
 /* Marks the items on which the questions rest that can be answered. */
+/* Whether a part of the graph tells for each of its nodes whether it is in an item: not of what can occur there, since
+ * arcs may be missing. */
+static bool is_known_in_part(const ex_queries_t *queries, uint32_t number)
+{
+    const ex_item_t *const item = &queries->item[number];
+    switch (item->kind) {
+    case EX_ITEM_TRUE:
+    case EX_ITEM_DEAD:
+    case EX_ITEM_INITIAL:
+    case EX_ITEM_PRED:
+    case EX_ITEM_WITHIN: return true;
+    case EX_ITEM_NOT:
+    case EX_ITEM_AND:
+    case EX_ITEM_OR: return is_known_in_part(queries, item->a) && is_known_in_part(queries, item->b);
+    case EX_ITEM_ENABLED:
+    case EX_ITEM_EX:
+    case EX_ITEM_AX:
+    case EX_ITEM_EF:
+    case EX_ITEM_AF:
+    case EX_ITEM_EG:
+    case EX_ITEM_AG:
+    case EX_ITEM_EU:
+    case EX_ITEM_AU:
+    case EX_ITEM_EXA:
+    default: return false;
+    }
+}
+
+/* Whether a run in a part of the graph may decide a question: one that violates a formula or a response. Whether a run
+ * is fair is not known there. */
+static bool is_of_part(const ex_queries_t *queries, const ex_question_t *question)
+{
+    const ex_automaton_t *const automaton = question->automaton;
+    const ex_event_t *const first = &question->first;
+    const ex_event_t *const second = &question->second;
+    if ((question->kind == EX_ASK_FIRINGS) || (question->kind == EX_ASK_TIME)) {
+        return (first->is_transition || is_known_in_part(queries, first->number))
+               && (second->is_transition || is_known_in_part(queries, second->number));
+    }
+    bool is_fine = (question->kind == EX_ASK_LASSO) && (automaton->fair_count == 0U);
+    for (uint32_t i = 0U; is_fine && (i < automaton->edges); i++) {
+        for (uint32_t k = 0U; is_fine && (k < automaton->edge[i].literals); k++) {
+            is_fine = is_known_in_part(queries, automaton->edge[i].literal[k].item);
+        }
+    }
+    return is_fine;
+}
+
 static void mark_needed(ex_queries_t *queries)
 {
     for (uint32_t i = 0U; i < queries->questions; i++) {
         const ex_question_t *const question = &queries->question[i];
-        if (!ex_is_kept(queries, question)) {
+        if (!ex_is_kept(queries, question) || (queries->is_part && !is_of_part(queries, question))) {
             continue;
         }
         switch (question->kind) {
@@ -470,11 +518,73 @@ static void write_trace(ex_run_t *run, ex_question_t *question, uint32_t number)
     }
 }
 
+/* What has stopped the run stops it no more. */
+static void revive(ex_run_t *run)
+{
+    for (uint32_t i = 0U; i < run->options.threads; i++) {
+        run->worker[i].cx.error = PN_OK;
+        run->worker[i].failed = false;
+        ex_unload(&run->worker[i]);
+    }
+    atomic_store(&run->is_stopping, false);
+}
+
+/* A run of a part of the graph that was found to violate a question; else the question stays open. */
+static void answer_in_part(ex_queries_t *queries, ex_question_t *question)
+{
+    const ex_answer_t violated = (question->kind == EX_ASK_LASSO) ? EX_YES : EX_NO;
+    answer(queries, question);
+    if (question->answer != violated) {
+        question->way.is_failed = true;
+        question->node = EX_NO_NODE;
+        question->value_kind = EX_NO_VALUE;
+        ex_doubt(queries->run, question);
+    }
+}
+
+/* After an exploration that came to a limit: whether the first nodes have a run that violates what is asked of runs. */
+static void answer_by_part(ex_run_t *run)
+{
+    ex_queries_t *const queries = run->queries;
+    const int why = atomic_load(&run->why);
+    const uint64_t pauses = run->pauses;
+    bool is_asked = false;
+    for (uint32_t i = 0U; i < queries->questions; i++) {
+        is_asked = is_asked || is_of_part(queries, &queries->question[i]);
+    }
+    if (!is_asked || (why < (int)EX_STATES) || (why > (int)EX_INFINITE) || !ex_is_exact(run) || (run->reduction != NULL)
+        || !run->options.has_graph || run->is_seen_whole) {
+        return;
+    }
+    revive(run);
+    queries->is_part = true;
+    const bool is_made = ex_graph(run) && (run->pauses == pauses); /* else a table has grown, and slots have moved */
+    int now = atomic_load(&run->why);
+    if (now <= (int)EX_INFINITE) {
+        atomic_store(&run->why, why); /* that this found no room is not why the run has ended */
+    }
+    if (is_made) {
+        find_sets(queries);
+    }
+    for (uint32_t i = 0U; is_made && (i < queries->questions); i++) {
+        ex_question_t *const question = &queries->question[i];
+        if (is_of_part(queries, question) && (question->answer == EX_UNKNOWN)) {
+            answer_in_part(queries, question);
+            write_trace(run, question, i);
+        }
+    }
+    now = atomic_load(&run->why);
+    if (now <= (int)EX_INFINITE) {
+        atomic_store(&run->why, why);
+    }
+}
+
 void ex_queries_answer(ex_run_t *run)
 {
     ex_queries_t *const queries = run->queries;
     if ((run->graph == NULL) || !run->graph->is_whole) {
         ex_early_answer(run);
+        answer_by_part(run);
         return;
     }
     find_sets(queries);

@@ -149,8 +149,9 @@ typedef struct ex_queries {
     ex_item_t *item;
     uint32_t questions;
     ex_question_t *question;
-    bool needs_enabled;          /* what is enabled in a state may decide a question */
-    _Atomic uint32_t open;       /* questions that no state has decided; those that no single state can decide count */
+    bool is_part;          /* the graph is a part of the whole one: a run in it is certain, that there is none is not */
+    bool needs_enabled;    /* what is enabled in a state may decide a question */
+    _Atomic uint32_t open; /* questions that no state has decided; those that no single state can decide count */
     _Atomic uint32_t open_early; /* without those */
     pthread_mutex_t lock;
     uint32_t *owner;            /* by transition; 0: the supervisor's. NULL: not told */

@@ -106,7 +106,7 @@ static bool spread(wait_t *w)
     while (used > 0U) {
         used -= 1U;
         const uint32_t node = w->stack[used];
-        w->is_endless = w->is_endless || (w->graph->row[node] == w->graph->row[node + 1U]);
+        w->is_endless = w->is_endless || ex_ends_at(w->graph, node);
         for (uint64_t arc = w->graph->row[node]; arc < w->graph->row[node + 1U]; arc++) {
             const uint32_t target = w->graph->target[arc];
             if (!goes_on(w, arc)) {
@@ -134,13 +134,16 @@ static void pass_on(wait_t *w, uint32_t node, uint64_t *used)
     for (uint64_t arc = w->graph->row[node]; arc < w->graph->row[node + 1U]; arc++) {
         const uint32_t target = w->graph->target[arc];
         const double since = w->since[node] - shift_of(w, node, w->graph->label[arc]);
-        if (!goes_on(w, arc)) {
+        const bool is_over = !goes_on(w, arc);
+        if (is_over || !w->graph->is_whole) { /* of a part it is not known how waits go on */
             const double length = now_of(w, target) - since;
             if ((w->last == EX_NO_NODE) || (length > w->longest)) {
                 w->longest = length;
                 w->last = node;
                 w->last_arc = arc;
             }
+        }
+        if (is_over) {
             continue;
         }
         const bool is_new = (EX_BIT(w->begins, target) == 0U) && (w->before[target] == EX_NO_NODE);

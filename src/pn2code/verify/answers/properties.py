@@ -12,6 +12,7 @@ from pn2code.verify.answers import basis
 from pn2code.verify.answers.reasons import clause
 from pn2code.verify.exploring.result import Exploration
 
+_LIMITS = ("states", "seconds", "memory")
 Verdict = Literal["yes", "no", "inconclusive"]
 
 
@@ -58,6 +59,8 @@ class Answer:
     cell: bool = False
     net: Verdict | None = None
     net_why: str = ""
+    is_pumped: bool = False
+    """a run shows it that is too long to be written: it repeats a round that can be repeated for ever"""
     assumes: tuple[str, ...] = ()
     """what a "yes" about a cell rests on that no state of it shows"""
 
@@ -69,7 +72,8 @@ class Answer:
     @property
     def rests_on(self) -> str | None:
         """What has to be seen for this answer: a word of `basis`; None: there is no answer."""
-        return basis.of_property(self.about, self.answer, has_run=self.evidence is not None)
+        has_run = self.evidence is not None or self.is_pumped
+        return basis.of_property(self.about, self.answer, has_run=has_run)
 
     def row(self) -> dict[str, Any]:
         """For `--json`."""
@@ -114,6 +118,8 @@ def answers(
     """
     nothing: Mapping[str, Any] = {"answer": "unknown", "why": found.why}
     padded = [*said, *[nothing] * (len(properties.properties) - len(said))]
+    if found.covering is not None:  # no limit would have been high enough
+        padded = [{**one, "why": found.why} if one.get("why") in _LIMITS else one for one in padded]
     return tuple(_answer(p, one) for p, one in zip(properties.properties, padded, strict=True))
 
 
@@ -144,6 +150,11 @@ def drawn(answer: Answer) -> Answer:
     if answer.answer == "inconclusive" or answer.rests_on in (basis.MARKING, basis.RUN):
         return answer
     return Answer(answer.about, "inconclusive", clause("chance"))
+
+
+def kind(a: Answer) -> str:
+    """How it came out: "good", "bad" or "open"."""
+    return "open" if a.answer == "inconclusive" else "good" if a.is_expected else "bad"
 
 
 def verdict(found: Sequence[Answer]) -> Verdict:

@@ -117,6 +117,11 @@ class Check:
         """Whether the supervisor is wrong."""
         return self.answer == "no" and not self.is_accepted
 
+    @property
+    def kind(self) -> str:
+        """How it came out: "good", "bad" or "open"."""
+        return "open" if self.answer == "unknown" else "bad" if self.fails else "good"
+
     def row(self) -> dict[str, Any]:
         """For programs: docs/execution.md."""
         return {

@@ -77,7 +77,7 @@ def prove(
     if config is None or not checked:
         found = rooms.rooms(partition, capacities, structural, None)
         if config is None:
-            rooms.warn_assumed(net, found, d)
+            rooms.warn_assumed(net, found, d, rooms.growing(net, storage, found))
         rooms.refuse_large(net, found, d)
         if d.has_errors:
             return None
@@ -105,7 +105,8 @@ def prove(
         other = (
             f"the file of `{given[0]}` brings a token that the net does not have" if given else ""
         )
-        rooms.refuse(net, found, other or clause(why or ""), d)
+        run = rooms.growing(net, storage, found)
+        rooms.refuse(net, found, other or clause(why or ""), d, run)
     rooms.refuse_large(net, found, d)
     if d.has_errors:
         return None

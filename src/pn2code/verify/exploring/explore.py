@@ -31,9 +31,10 @@ from pn2code.verify.codes import (
     SPILL_FULL,
     TIME_OVER,
 )
-from pn2code.verify.exploring import nondeterminism, programs
+from pn2code.verify.exploring import covering, nondeterminism, programs
 from pn2code.verify.exploring.grace import Grace, processor_time
 from pn2code.verify.exploring.limits import Limits, default_memory
+from pn2code.verify.exploring.meanwhile import Meanwhile
 from pn2code.verify.exploring.programs import Generated, Sizes
 from pn2code.verify.exploring.reductions import OF_ELEMENTS, Chosen, possible, refuse
 from pn2code.verify.exploring.result import Exploration
@@ -49,6 +50,10 @@ _TABLES = {
     "--dependency": "dependencies",
     "--queries": "questions",
 }
+INFINITE = "infinite"
+"""Why an exploration has ended: a covering run was found, so there is no end of markings."""
+_LIMITS = ("states", "seconds", "memory", INFINITE)
+"""Ends of an exploration after which it is asked whether there would have been another one."""
 LEAST_SECONDS = 1e-6
 """No time at all is a limit, too; the explorer wants a positive one."""
 
@@ -77,6 +82,7 @@ class ExploreOptions:
         sizes: what the places of the compiled net hold at first; None: what their structure and initial marking say.
         generated: what an exploration of the same net with the same predicates has generated; gets what this one has.
         quick: rather compile quickly than explore quickly.
+        covering: look for a run that shows that a place grows without bound, and end when there is one.
         pace: seconds between two tellings of progress.
         progress, interrupted: how the outside hears and says that it has been enough.
     """
@@ -94,6 +100,7 @@ class ExploreOptions:
     sizes: Sizes | None = None
     generated: Generated | None = None
     quick: bool = False
+    covering: bool = False
     pace: float = 0.5
     progress: Progress = _nothing
     interrupted: Callable[[], bool] = _never
@@ -119,6 +126,28 @@ def explore(
         GameError: a declaration or an initial marking raises an exception.
     """
     wishes = wishes or ExploreOptions()
+    with Meanwhile(net, storage) as search:
+        found = _explored(net, storage, limits, d, wishes, search if wishes.covering else None)
+        is_open = found is not None and not found.seen.markings and found.why in _LIMITS
+        if found is None or not wishes.covering or not is_open:
+            return found
+        run = search.last(limits.deadline)
+    if run is None:
+        return found
+    if wishes.traces is not None:
+        trace = wishes.traces / f"{wishes.stem}.unbounded.trace.jsonl"
+        run = covering.kept(run, net, storage, trace)
+    return replace(found, why=INFINITE, covering=run)
+
+
+def _explored(
+    net: FlatNet,
+    storage: Mapping[str, str],
+    limits: Limits,
+    d: Diagnostics,
+    wishes: ExploreOptions,
+    search: Meanwhile | None,
+) -> Exploration | None:
     deadline = limits.deadline
     began = time.perf_counter()
     try:
@@ -167,7 +196,7 @@ def explore(
             options = _options(own, chosen, sizes, wishes)
             options += ["--still"] if nondeterminism.draws(net) else []
             telling = replace(wishes, progress=_nothing) if is_first else wishes
-            found = _run_with_tables(net, program, options, chosen, telling, deadline, d)
+            found = _run_with_tables(net, program, options, chosen, telling, deadline, d, search)
         if found is None:
             return None
         if is_first and _is_too_much(found, own, limits):
@@ -280,6 +309,7 @@ def _run_with_tables(
     wishes: ExploreOptions,
     deadline: Deadline,
     d: Diagnostics,
+    search: Meanwhile | None,
 ) -> dict[str, Any] | None:
     """Like `_run`, with files of binding elements (for reductions) and of questions as long as it runs."""
     tables = {
@@ -308,7 +338,7 @@ def _run_with_tables(
                 )
                 return None
             options += [option, name]
-        return _run(net, program, options, wishes, deadline, d)
+        return _run(net, program, options, wishes, deadline, d, search)
     finally:
         for table in made:
             table.unlink(missing_ok=True)
@@ -332,8 +362,9 @@ def _run(
     wishes: ExploreOptions,
     deadline: Deadline,
     d: Diagnostics,
+    search: Meanwhile | None,
 ) -> dict[str, Any] | None:
-    """One process from its start to its last word."""
+    """One process from its start to its last word; it ends when `search` has found a covering run."""
     process = subprocess.Popen(
         [str(program), *options],
         stdin=subprocess.DEVNULL,
@@ -346,12 +377,14 @@ def _run(
     said: list[str] = []
     report: list[bytes] = []
     listeners = (
-        threading.Thread(target=_listen, args=(process.stderr, wishes, said), daemon=True),
+        threading.Thread(target=_listen, args=(process.stderr, wishes, said, search), daemon=True),
         threading.Thread(target=_read, args=(process.stdout, report), daemon=True),
     )
     for listener in listeners:
         listener.start()
-    told = is_late = False
+    told = is_late = is_endless = False
+    if search is not None:
+        search.is_heard = False
     grace = Grace(deadline, lambda: processor_time(process.pid))
     try:
         while True:
@@ -361,6 +394,9 @@ def _run(
             if not told and wishes.interrupted():
                 told = True
                 process.send_signal(signal.SIGINT)
+            if search is not None and search.found and search.is_heard and not is_endless:
+                is_endless = True
+                process.send_signal(signal.SIGUSR1)
             if grace.is_over():  # in an inscription that takes too long, or for ever
                 is_late = True
                 process.kill()
@@ -403,7 +439,9 @@ def _read(stream: IO[bytes], report: list[bytes]) -> None:
         report.append(stream.read())
 
 
-def _listen(stream: IO[bytes], wishes: ExploreOptions, said: list[str]) -> None:
+def _listen(
+    stream: IO[bytes], wishes: ExploreOptions, said: list[str], search: Meanwhile | None
+) -> None:
     with stream:
         for line in stream:
             text = line.decode("utf-8", "replace").rstrip()
@@ -413,6 +451,8 @@ def _listen(stream: IO[bytes], wishes: ExploreOptions, said: list[str]) -> None:
                 progress = None
             if isinstance(progress, dict):
                 wishes.progress(progress)
+                if search is not None:
+                    search.note(int(progress.get("states", 0)))
             elif text and len(said) < KEPT_ERRORS:
                 said.append(text)
 

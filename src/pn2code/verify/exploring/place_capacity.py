@@ -12,20 +12,25 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from pn2code.base.deadline import Deadline
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.ir import nodes as ir
 from pn2code.lowering.nets.packing import colours
 from pn2code.net.flat import FlatNet
+from pn2code.semantics.game.enabling import GameError
 from pn2code.structure.bounds import PlaceBound
 from pn2code.structure.report import Names, weighted
 from pn2code.verify.codes import CAPACITY_ASSUMED, CAPACITY_LARGE, CAPACITY_UNPROVED
+from pn2code.verify.exploring.covering import Covering, Search
 from pn2code.verify.exploring.result import Exploration
 
 DECLARED = "declared"
 SPACE = "state space"
 ASSUMED = "assumed"
 _LISTED = 5
+SEARCH_SECONDS = 5.0
+"""Of the search for a run that shows that a place grows without bound."""
 MOST_TOKENS = 1 << 20
 """Of a place: for more, no program is generated."""
 
@@ -104,7 +109,38 @@ def with_rooms(net: ir.NetIR, found: Sequence[PlaceCapacity]) -> ir.NetIR:
 # --- what is said of them ------------------------------------------------------------------------
 
 
-def refuse(net: FlatNet, found: Sequence[PlaceCapacity], why: str, d: Diagnostics) -> None:
+def growing(
+    net: FlatNet, storage: Mapping[str, str], found: Sequence[PlaceCapacity]
+) -> Covering | None:
+    """A run that shows that places without a bound grow for ever in the closed net; None: none was come upon."""
+    among = {
+        place.index for place, room in zip(net.places, found, strict=True) if room.bound is None
+    }
+    if not among:
+        return None
+    deadline = Deadline.after(SEARCH_SECONDS)
+    try:
+        return Search(net, storage, among).look(deadline.is_over)
+    except GameError:
+        return None  # whoever plays the net says so
+
+
+def _grows(net: FlatNet, run: Covering, place: int) -> str:
+    """That a place grows, as a sentence; "" if it does not in this run."""
+    if place not in {index for index, _ in run.grows}:
+        return ""
+    return (
+        f"place `{net.places[place].name}` grows without bound in the closed net: {run.steps(net)}"
+    )
+
+
+def refuse(
+    net: FlatNet,
+    found: Sequence[PlaceCapacity],
+    why: str,
+    d: Diagnostics,
+    run: Covering | None = None,
+) -> None:
     """Reports each place whose room is assumed.
 
     Args:
@@ -112,9 +148,20 @@ def refuse(net: FlatNet, found: Sequence[PlaceCapacity], why: str, d: Diagnostic
         found: of its places.
         why: why the state space does not tell, as a clause; "" if it was not asked.
         d: gets the errors.
+        run: what `growing` has found.
     """
     for place, room in zip(net.places, found, strict=True):
         if room.bound is None:
+            grows = _grows(net, run, place.index) if run is not None else ""
+            if grows:
+                d.error(
+                    CAPACITY_UNPROVED,
+                    grows,
+                    place.origins[0],
+                    hint="look at the arcs of this place: is one drawn the wrong way round, or missing? Only if the "
+                    f'cell cannot do this, declare the most tokens in cell.toml: [capacity] "{place.short}" = N',
+                )
+                continue
             d.error(
                 CAPACITY_UNPROVED,
                 f"nothing proves how many tokens place `{place.name}` can hold",
@@ -140,8 +187,18 @@ def refuse_large(net: FlatNet, found: Sequence[PlaceCapacity], d: Diagnostics) -
             )
 
 
-def warn_assumed(net: FlatNet, found: Sequence[PlaceCapacity], d: Diagnostics) -> None:
-    """One warning for all places whose room is assumed."""
+def warn_assumed(
+    net: FlatNet, found: Sequence[PlaceCapacity], d: Diagnostics, run: Covering | None = None
+) -> None:
+    """One warning for all places whose room is assumed, and before it what `growing` has found."""
+    if run is not None:
+        place = net.places[run.grows[0][0]]
+        d.warning(
+            CAPACITY_ASSUMED,
+            _grows(net, run, place.index),
+            place.origins[0],
+            hint="look at the arcs of this place: is one drawn the wrong way round, or missing?",
+        )
     assumed = [p.name for p, room in zip(net.places, found, strict=True) if room.bound is None]
     if assumed:
         some = ", ".join(f"`{name}`" for name in assumed[:_LISTED])

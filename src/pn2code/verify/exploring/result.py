@@ -14,6 +14,7 @@ from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.report import value_text
 from pn2code.semantics.values.colour_json import from_json
 from pn2code.semantics.values.colours import TEXTS
+from pn2code.verify.exploring.covering import Covering
 
 FAIRNESS = ("impartial", "fair", "just", "none")
 
@@ -92,7 +93,7 @@ class Exploration:
 
     Args:
         complete: whether all that was wanted was done; else `why` says what was in the way: "states", "seconds",
-            "memory", "interrupted", "error", "approximation".
+            "memory", "interrupted", "error", "approximation", "infinite" (see `covering`).
         seen: what is complete, also where not all is.
         error: of "error": `message`, `where`, `transition` (index or None), `node` (None: not known),
             `binding` (texts, when it is an occurrence that raises it), `trace` (as those of `traces`, or None).
@@ -110,6 +111,7 @@ class Exploration:
         answers: what the explorer says of each question, in order.
         arena: bytes for lists and strings: "start" (before the first marking), "firing" (one occurrence), "marking";
             None where bounds are not known.
+        covering: of "infinite": the run that shows that places grow without bound.
     """
 
     complete: bool
@@ -135,6 +137,7 @@ class Exploration:
     symmetries: tuple[str, ...] = ()
     answers: tuple[Mapping[str, Any], ...] = ()
     arena: Mapping[str, int] | None = None
+    covering: Covering | None = None
 
     @property
     def is_reduced(self) -> bool:
@@ -296,7 +299,20 @@ def row(net: FlatNet, found: Exploration) -> dict[str, Any]:
         "symmetries": list(found.symmetries),
         "approximation": dict(found.approximation) if found.approximation else None,
         "error": dict(found.error) if found.error else None,
+        "unbounded": _covering_row(net, found.covering),
         "traces": [{"node": t.node, "file": str(t.file), "steps": t.steps} for t in found.traces],
+    }
+
+
+def _covering_row(net: FlatNet, run: Covering | None) -> dict[str, Any] | None:
+    """The places that grow without bound, and the run: `prefix` steps, then a `round` that can be repeated."""
+    if run is None:
+        return None
+    return {
+        "places": [{"name": net.places[p].name, "adds": more} for p, more in run.grows],
+        "prefix": len(run.prefix),
+        "round": [net.transitions[e.transition].name for e in run.round],
+        "trace": str(run.file) if run.file is not None else None,
     }
 
 

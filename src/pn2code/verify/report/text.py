@@ -16,8 +16,9 @@ import pn2code
 from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet, FlatPlace
 from pn2code.verify.answers import basis
+from pn2code.verify.answers.outcome import Counts, header
 from pn2code.verify.answers.properties import Answer
-from pn2code.verify.answers.reasons import clause, raised
+from pn2code.verify.answers.properties import kind as kind_of
 from pn2code.verify.controller.control_types import Control
 from pn2code.verify.exploring.result import Exploration, Graph, cut, multiset_text
 from pn2code.verify.report import control_text, properties_text
@@ -37,6 +38,7 @@ def report(
     written: datetime | None,
     answers: Sequence[Answer] = (),
     control: Control | None = None,
+    counts: Counts | None = None,
 ) -> str:
     """The whole text.
 
@@ -46,8 +48,10 @@ def report(
         written: the date it carries; None: none, so that equal spaces give equal reports.
         answers: of properties that were asked.
         control: the checks of a cell's supervisor.
+        counts: how all answers have come out; None: as these answers to properties.
     """
-    parts = [_head(net, found, written), _statistics(found)]
+    counts = counts or Counts.of(map(kind_of, answers))
+    parts = [_head(net, found, written, counts), _statistics(found)]
     if found.bounds is not None:
         parts.append(_boundedness(net, found))
     if found.graph is not None:
@@ -62,22 +66,11 @@ def report(
     return "\n\n\n".join(parts) + "\n"
 
 
-def error_text(net: FlatNet, found: Exploration) -> str:
-    """What raises the exception of `found.error`: the transition, and the binding if it is an occurrence."""
-    error = found.error
-    assert error is not None
-    index, binding = error.get("transition"), error.get("binding")
-    what = f"`{net.transitions[index].name}`" if index is not None else error["where"]
-    if binding:
-        what += f" with {', '.join(f'{k} = {v}' for k, v in binding.items())}"
-    return f"{what} raises {raised(error['message'])}"
-
-
 def _section(title: str) -> list[str]:
     return [f" {title}", _RULE]
 
 
-def _head(net: FlatNet, found: Exploration, written: datetime | None) -> str:
+def _head(net: FlatNet, found: Exploration, written: datetime | None, counts: Counts) -> str:
     lines = ["CPN Tools state space report for:", net.file]
     if written is not None:
         lines.append(f"Report generated: {written:%a %b %e %H:%M:%S %Y}")
@@ -89,7 +82,7 @@ def _head(net: FlatNet, found: Exploration, written: datetime | None) -> str:
         "programs, with the net.",
     ]
     if not found.complete:
-        lines += textwrap.wrap(f"PARTIAL: {clause(found.why)}. {basis.partial(found)}", _WIDTH)
+        lines += textwrap.wrap(f"PARTIAL: {header(net, found, counts)}", _WIDTH)
     lines += [f"{name + ':':<12}{what}." for name, what in basis.complete(found)]
     if found.approximation is not None:
         lines.append(

@@ -19,13 +19,14 @@ from pn2code.semantics.game.token_game import GameError
 from pn2code.trace.script import TraceRefusedError
 from pn2code.verify.answers import basis
 from pn2code.verify.answers.assumptions import assumed
+from pn2code.verify.answers.outcome import Counts, error_text, header
 from pn2code.verify.answers.path import Step, steps
 from pn2code.verify.answers.properties import Answer
-from pn2code.verify.answers.reasons import clause
+from pn2code.verify.answers.properties import kind as kind_of
 from pn2code.verify.controller.control_types import TITLES, Control
 from pn2code.verify.exploring.result import Exploration, Trace, cut, multiset_text
 from pn2code.verify.report import control_text, properties_text
-from pn2code.verify.report.text import bounded_places, error_text, left_out
+from pn2code.verify.report.text import bounded_places, left_out
 
 MOST_STEPS = 200
 """Of a longer trace only the first steps are shown."""
@@ -70,6 +71,7 @@ def webpage(
     medium: Sequence[Mapping[str, Any]] = (),
     subject: Sequence[tuple[str, str, str]] = (),
     remark: str = "",
+    counts: Counts | None = None,
     deadline: Deadline = NEVER,
 ) -> str:
     """The whole page.
@@ -83,6 +85,7 @@ def webpage(
         control: the checks of a cell's supervisor.
         medium: those of its shared files, as rows: `name`, `said`, `remarks`, `answer`, `kind`, `runs` (lines each).
         subject: what was looked at: what it is, its name, its SHA-256 or value.
+        counts: how all answers have come out; None: as these answers to properties.
         remark: why the subject lacks something; "": it does not.
         deadline: when it is over no run is played any more.
     """
@@ -92,6 +95,7 @@ def webpage(
         "Medium": list(medium),
         "Properties": [_property(player, a) for a in answers],
     }
+    counts = counts or Counts.of(map(kind_of, answers))
     fair = [f"`{a.about.name}`: {', '.join(a.about.fair)}" for a in answers if a.about.fair]
     # Names and inscriptions are strangers' texts: all of them are escaped.
     env = Environment(
@@ -110,7 +114,7 @@ def webpage(
         sha256=net.sha256,
         written=f"{written:%Y-%m-%d %H:%M}",
         what="Verification" if any(tables.values()) else "State space",
-        verdicts=[*_summary(tables), *_verdicts(net, found)],
+        verdicts=[*_summary(tables), *_verdicts(net, found, counts)],
         tables=tables,
         subject=list(subject),
         remark=remark,
@@ -152,7 +156,7 @@ def _property(player: _Player, a: Answer) -> dict[str, Any]:
         "said": properties_text.said(a),
         "remarks": properties_text.remarks(a),
         "answer": {"inconclusive": "not known"}.get(a.answer, a.answer),
-        "kind": "open" if a.answer == "inconclusive" else "good" if a.is_expected else "bad",
+        "kind": kind_of(a),
         "run": None,
     }
     if a.evidence is not None:
@@ -178,7 +182,7 @@ def _controller_runs(player: _Player, control: Control) -> Iterator[dict[str, An
         yield {"name": TITLES[check.name], "run": shown}
 
 
-def _verdicts(net: FlatNet, found: Exploration) -> list[dict[str, str]]:
+def _verdicts(net: FlatNet, found: Exploration, counts: Counts) -> list[dict[str, str]]:
     said = []
     if found.complete:
         said.append(
@@ -188,7 +192,7 @@ def _verdicts(net: FlatNet, found: Exploration) -> list[dict[str, str]]:
             }
         )
     else:
-        text = f"Partial: {clause(found.why)}. {basis.partial(found)}"
+        text = f"Partial: {header(net, found, counts)}"
         said.append({"kind": "open", "text": text})
     if found.approximation is not None:
         kind, omitted = found.approximation["kind"], found.approximation["omission_probability"]

@@ -1,0 +1,117 @@
+"""How a verification has come out: the sentence at the head of a report and the one at its end, from the same answers.
+
+counts = Counts(good=3, bad=0, open=1)
+header(net, found, counts)       # "it ended early, since ...", or "" where everything was seen
+closing(net, found, counts)      # "Verdict: NOT KNOWN. 1 of 4 answers is not known."
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Literal
+
+from pn2code.net.flat import FlatNet
+from pn2code.verify.answers import basis
+from pn2code.verify.answers.reasons import clause, raised
+from pn2code.verify.exploring.result import Exploration
+
+Word = Literal["yes", "no", "inconclusive"]
+_OPEN_YET = "nothing that was asked of this state space was open any more"
+
+
+@dataclass(frozen=True, slots=True)
+class Counts:
+    """How many answers are as they should be, are not, and are not known.
+
+    Args:
+        good, bad, open: those.
+        errors: what else is wrong.
+        asked: whether there are properties among them: else the state space itself is what was asked for.
+    """
+
+    good: int = 0
+    bad: int = 0
+    open: int = 0
+    errors: int = 0
+    asked: bool = False
+
+    @staticmethod
+    def of(kinds: Iterable[str], errors: int = 0, *, asked: bool = False) -> Counts:
+        """From words "good", "bad" and "open"."""
+        kinds = list(kinds)
+        good, bad, open_ = (kinds.count(x) for x in ("good", "bad", "open"))
+        return Counts(good, bad, open_, errors, asked)
+
+    @property
+    def all(self) -> int:
+        """All answers."""
+        return self.good + self.bad + self.open
+
+
+def verdict(found: Exploration, counts: Counts) -> Word:
+    """The worst of all: where no property is asked, whether all markings were seen counts as well."""
+    if counts.bad or counts.errors or _has_raised(found):
+        return "no"
+    if counts.open or not (counts.asked or found.complete):
+        return "inconclusive"
+    return "yes"
+
+
+def header(net: FlatNet, found: Exploration, counts: Counts) -> str:
+    """Why the report is about a part only, and what that means, without a word before it; "": it is about all."""
+    if found.complete:
+        return ""
+    return f"{_why(found, counts)}. {endless(net, found)}{basis.partial(found)}"
+
+
+def closing(net: FlatNet, found: Exploration, counts: Counts) -> str:
+    """The last line: it says what `verdict` says."""
+    if _has_raised(found):
+        return f"Verdict: NO. {error_text(net, found)} in a reachable marking."
+    if counts.bad:
+        are = "are not as they" if counts.bad != 1 else "is not as it"
+        return f"Verdict: NO. {counts.bad} of {counts.all} answers {are} should be."
+    if counts.errors:
+        return "Verdict: NO. There are errors, see below."
+    if counts.open:
+        are = "are" if counts.open != 1 else "is"
+        return f"Verdict: NOT KNOWN. {counts.open} of {counts.all} answers {are} not known."
+    if counts.all and (counts.asked or found.complete):
+        return f"Verdict: YES. All {counts.all} answers are as they should be."
+    if found.complete:
+        return "Verdict: COMPLETE. All reachable markings were seen, and there are no properties to check."
+    why = _why(found, counts)
+    known = f"All {counts.all} answers are as they should be, but " if counts.all else ""
+    return f"Verdict: NOT COMPLETE. {known}{why if known else why[:1].upper() + why[1:]}."
+
+
+def endless(net: FlatNet, found: Exploration) -> str:
+    """The places that grow without bound, and the run that shows it, in a sentence with a blank after it; or ""."""
+    run = found.covering
+    if run is None:
+        return ""
+    names = ", ".join(f"`{name}`" for name in run.places(net))
+    what = f"Place {names} grows" if len(run.grows) == 1 else f"Places {names} grow"
+    file = f" (run: {run.file})" if run.file is not None else ""
+    return f"{what} without bound: {run.steps(net)}{file}. "
+
+
+def error_text(net: FlatNet, found: Exploration) -> str:
+    """What raises the exception of `found.error`: the transition, and the binding if it is an occurrence."""
+    error = found.error
+    assert error is not None
+    index, binding = error.get("transition"), error.get("binding")
+    what = f"`{net.transitions[index].name}`" if index is not None else error["where"]
+    if binding:
+        what += f" with {', '.join(f'{k} = {v}' for k, v in binding.items())}"
+    return f"{what} raises {raised(error['message'])}"
+
+
+def _has_raised(found: Exploration) -> bool:
+    return found.error is not None and found.why == "error"
+
+
+def _why(found: Exploration, counts: Counts) -> str:
+    """As `clause`, but that everything was decided is only said where no answer is missing."""
+    return _OPEN_YET if found.why == "decided" and counts.open else clause(found.why)

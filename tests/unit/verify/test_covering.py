@@ -1,0 +1,131 @@
+"""Covering runs: those that are there are found and can be repeated; nothing is said of places that have a bound."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from random import Random
+
+import pytest
+
+from helpers.netbuilder import flat
+from helpers.random_nets import random_net
+from pn2code.net.flat import FlatNet
+from pn2code.semantics.evaluation.files import Files
+from pn2code.semantics.game.graph import state_space
+from pn2code.semantics.game.token_game import Game, GameError
+from pn2code.verify.exploring.covering import Covering, Search, write
+
+HEAD = """
+    net One
+      standard
+      colset TI = int timed;
+      globref fired = 0;
+      var n: INT;
+      place A : INT = 1`1
+      place B : INT
+      place C
+      place D
+"""
+ROUND = """
+      trans Go
+        in A : n
+        out B : n
+        out C : ()
+      trans Back
+        in B : n
+        out A : n
+"""
+TIMED = """
+      place Clock : TI = 1`0
+      trans Tick delay @+1
+        in Clock : n
+        out Clock : n
+        out C : ()
+"""
+
+GROWING = {
+    "a cycle": ROUND,
+    "somebody takes from it": ROUND + "      trans Use\n        in C : ()\n        out D : ()\n",
+    "an empty place is tested, and stays empty": ROUND.replace(
+        "in B : n", "in B : n\n        inhibit D"
+    ),
+    "another place is reset": ROUND.replace("in B : n", "in B : n\n        reset D"),
+    "others of lower priority take from it": ROUND
+    + "      trans Use priority 2000\n        in C : ()\n        out D : ()\n",
+    "others of higher priority do not": ROUND + "      trans Use priority 100\n        in D : ()\n",
+    "code that depends on its input": ROUND.replace(
+        "trans Back", "trans Back code input (n); action ()"
+    ),
+    "time goes on": TIMED,
+}
+BOUNDED = {
+    "a cycle that loses what it gains": ROUND.replace("in B : n", "in B : n\n        in C : ()"),
+    "a transition that wants it empty": ROUND.replace("in A : n", "in A : n\n        inhibit C"),
+    "a round that empties it": ROUND.replace("in B : n", "in B : n\n        reset C"),
+    "a higher priority takes five at once": ROUND
+    + "      trans Use priority 100\n        in C : 5`()\n        in A : n\n        out D : ()\n",
+    "the clock stands still for who takes five": TIMED
+    + "      trans Use\n        in C : 5`()\n        in A : n\n        out A : n\n        out C : 5`()\n",
+    "a guard that counts steps": ROUND.replace("trans Go", "trans Go guard [step () < 40]"),
+    "a guard that looks at a reference": ROUND.replace(
+        "trans Go", "trans Go guard [!fired < 40] code action (fired := !fired + 1)"
+    ),
+    "a guard that looks at the clock": TIMED.replace("trans Tick", "trans Tick guard [time () < 40]"),
+    "colours that never come again": ROUND.replace("out A : n", "out A : n + 1"),
+}  # fmt: skip
+
+
+def looked(net: FlatNet, walks: int = 40) -> Covering | None:
+    return Search(net, {}).look(walks=walks)
+
+
+@pytest.mark.parametrize("case", GROWING)
+def test_a_place_that_grows(case: str, tmp_path: Path) -> None:
+    """The trace has as many rounds as are wanted, and the token game has played each step of it."""
+    net = flat(HEAD + GROWING[case])
+    run = looked(net)
+    assert run is not None
+    assert "One" not in run.places(net) and run.places(net)[0] in ("Top.C", "Top.D")
+    place, more = run.grows[0]
+    rounds = run.rounds_to(place, 50)
+    assert rounds is not None
+    assert write(net, {}, run, tmp_path / "run.trace.jsonl", rounds)
+    lines = (tmp_path / "run.trace.jsonl").read_text().splitlines()
+    assert len(lines) - 2 == len(run.prefix) + rounds * len(run.round)
+    assert json.loads(lines[-1])["why"] == "steps"
+    assert run.holds[0] + rounds * more > 50 >= run.holds[0] + (rounds - 1) * more
+    assert f"each round adds {more} to `{run.places(net)[0]}`" in run.steps(net)
+
+
+@pytest.mark.parametrize("case", BOUNDED)
+def test_a_place_that_does_not(case: str) -> None:
+    """Each of these has a round that adds a token, or seems to; what keeps it from being repeated is another thing."""
+    assert looked(flat(HEAD + BOUNDED[case])) is None
+
+
+def test_only_places_that_are_asked_for() -> None:
+    net = flat(HEAD + ROUND)
+    (c,) = (p.index for p in net.places if p.short == "C")
+    others = {p.index for p in net.places} - {c}
+    assert Search(net, {}, {c}).look(walks=10) is not None
+    assert Search(net, {}, others).look(walks=10) is None
+
+
+def test_the_search_can_be_ended() -> None:
+    assert Search(flat(HEAD + ROUND), {}).look(lambda: True) is None
+
+
+def test_random_nets_with_finitely_many_markings() -> None:
+    """Where the token game has seen all markings, there is no covering run."""
+    finite = 0
+    for seed in range(160):
+        net = flat(random_net(Random(seed)))
+        try:
+            space = state_space(Game(net, {}, files=Files(None)), max_nodes=150, max_arcs=1_500)
+        except GameError:
+            continue
+        if space.complete:
+            finite += 1
+            assert looked(net, walks=4) is None, seed
+    assert finite > 30
