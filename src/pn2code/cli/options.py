@@ -75,6 +75,17 @@ SetOption = Annotated[
     ),
 ]
 
+OUTPUT_FLAGS = ("-o", "--out", "--output")
+"""Where results go, in every verb that writes them."""
+
+UncheckedOption = Annotated[
+    bool,
+    typer.Option(
+        "--unchecked",
+        help="Take the supervisor without checking it against its execution scheme (docs/execution.md).",
+    ),
+]
+
 FilesOption = Annotated[
     Path | None,
     typer.Option(

@@ -293,6 +293,7 @@ def verify(
                 predicates=asked.properties.predicates,
                 evidence=unnamed,
                 progress=progress.update,
+                stage=progress.stage,
                 interrupted=interrupts.is_wanted,
             )
             with playing(form):

@@ -57,6 +57,10 @@ def _nothing(_: Mapping[str, Any]) -> None:
     """For those who do not care."""
 
 
+def _silent(_: str) -> None:
+    """For those who do not care."""
+
+
 def _never() -> bool:
     return False
 
@@ -78,6 +82,7 @@ class ExploreOptions:
         quick: rather compile quickly than explore quickly.
         pace: seconds between two tellings of progress.
         progress, interrupted: how the outside hears and says that it has been enough.
+        stage: hears in words what is explored next, where several things are.
     """
 
     traces: Path | None = None
@@ -95,6 +100,7 @@ class ExploreOptions:
     pace: float = 0.5
     progress: Progress = _nothing
     interrupted: Callable[[], bool] = _never
+    stage: Callable[[str], None] = _silent
 
 
 def explore(
