@@ -23,7 +23,7 @@ from pn2code.cli.options import (
     SetOption,
     UncheckedOption,
     parse_values,
-    print_diagnostics,
+    print_but_known,
     stop,
 )
 from pn2code.conform.cell import Conformance, conform_cell
@@ -99,7 +99,7 @@ def conform(
     else:
         for line in _lines(found):
             typer.echo(line)
-    print_diagnostics(d.sorted(), form)
+    print_but_known(d, net, form)
     if found.deviates:
         raise typer.Exit(Exit.MODEL)
     if not found.complete:

@@ -16,7 +16,7 @@ from pn2code.cli.options import (
     SetOption,
     UncheckedOption,
     parse_values,
-    print_diagnostics,
+    print_but_known,
     stop,
 )
 from pn2code.diagnostics import Diagnostics
@@ -56,7 +56,7 @@ def generate(
     result = pipeline.generate(net, d, values=parse_values(settings), checked=not unchecked)
     if result is None:
         stop(d, form)
-    print_diagnostics(d.sorted(), form)
+    print_but_known(d, net, form)
     folder = output or Path("generated") / result.partition.net.name
     try:
         written = write(folder, result.files, check=check)

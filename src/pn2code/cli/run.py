@@ -18,7 +18,7 @@ from pn2code.cli.options import (
     UncheckedOption,
     finite,
     parse_values,
-    print_diagnostics,
+    print_but_known,
     stop,
 )
 from pn2code.diagnostics import Diagnostics
@@ -146,7 +146,7 @@ def run(
             charts.draw(result.record, names, limits, out)
     if result is None:
         stop(d, form)
-    print_diagnostics(d.sorted(), form)
+    print_but_known(d, cell, form)
     console.print(summaries.page(result.summary))
     console.print(f"results in {out}/", style="dim")
     if result.record.verdict != "finished":
