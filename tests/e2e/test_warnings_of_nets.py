@@ -55,3 +55,15 @@ def test_one_warning_is_one(tmp_path: Path) -> None:
     net = write(NET.replace("right", "other"), tmp_path / "cell.cpn")
     options = ("-o", str(tmp_path / "out"))
     assert "There is a warning about the net itself" in said("generate", net, *options)
+
+
+@pytest.mark.cc
+@pytest.mark.parametrize(
+    ("page", "lack"),
+    [("    place A = 1\n", "transitions"), ("    trans T\n", "places"), ("", "transitions")],
+)
+def test_a_net_in_which_nothing_can_happen(page: str, lack: str, tmp_path: Path) -> None:
+    net = write(f"net cell\n  standard\n  page Top\n{page}", tmp_path / "cell.cpn")
+    warning = f"warning[net-empty]: the net has no {lack}: its only marking is the initial one"
+    assert warning in said("check", net)
+    assert warning in said("verify", net, "-o", str(tmp_path / "traces"))
