@@ -4,11 +4,14 @@
  *
  * Prints `fine`, or what is wrong.
  */
+#include <pthread.h>
 #include <sched.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-#include "../src/explore/explore_impl.h"
+#include "../src/explore/state/explore_intern.h"
+#include "../src/explore/store/explore_store.h"
 
 static uint64_t s_random;
 
@@ -57,13 +60,6 @@ static ex_key_t numbered(uint64_t i, const uint32_t width[EX_KEY_WORDS])
     return (ex_key_t){ word[0] | ((uint64_t)word[1] << 32U), word[2] | ((uint64_t)word[3] << 32U) };
 }
 
-static void make_run(ex_run_t *run, uint64_t memory)
-{
-    (void)memset(run, 0, sizeof *run);
-    run->options.memory = memory;
-    run->options.threads = 1U + (uint32_t)draw(3U); /* that make large tables grow */
-}
-
 typedef struct part {
     void (*one)(void *user, uint32_t part);
     void *user;
@@ -78,12 +74,12 @@ static void *do_part(void *user)
 }
 
 /* What the threads of an exploration do in a pause: here each part has one of its own. */
-void ex_together(ex_run_t *run, uint32_t parts, void (*one)(void *user, uint32_t part), void *user)
+static void together(void *self, uint32_t parts, void (*one)(void *user, uint32_t part), void *user)
 {
     enum { MOST = 16 };
     pthread_t thread[MOST];
     part_t part[MOST];
-    (void)run;
+    (void)self;
     check(parts <= (uint32_t)MOST, "too many parts");
     for (uint32_t i = 0U; i < parts; i++) {
         part[i] = (part_t){ .one = one, .user = user, .number = i };
@@ -92,6 +88,18 @@ void ex_together(ex_run_t *run, uint32_t parts, void (*one)(void *user, uint32_t
     for (uint32_t i = 0U; i < parts; i++) {
         (void)pthread_join(thread[i], NULL);
     }
+}
+
+/* Memory of so many bytes, and threads that make large tables grow. */
+typedef struct ground {
+    ex_memory_t memory;
+    ex_team_t team;
+} ground_t;
+
+static ground_t ground_of(uint64_t bytes)
+{
+    const ex_team_t team = { .threads = 1U + (uint32_t)draw(3U), .together = together };
+    return (ground_t){ .memory = { .limit = bytes }, .team = team };
 }
 
 /* --- the store ---------------------------------------------------------------------------------------------------- */
@@ -114,13 +122,9 @@ static const uint32_t s_word_widths[EX_KEY_WORDS] = { 32U, 31U, 0U, 0U };
 /* Words of the keys of such widths, or keys of one word; half of the keys come later than the others. */
 static void try_store(const uint32_t width[EX_KEY_WORDS], uint64_t keys)
 {
-    static ex_codec_t codec;
-    ex_run_t run;
     ex_store_t store;
-    make_run(&run, (uint64_t)1U << 30U);
-    codec.is_word = (width == s_word_widths);
-    run.codec = &codec;
-    check(ex_store_make(&store, &run, width, 16U), "no memory");
+    ground_t ground = ground_of((uint64_t)1U << 30U);
+    check(ex_store_make(&store, &ground.memory, &ground.team, width == s_word_widths, width, 16U), "no memory");
     uint64_t inserted = 0U;
     (void)memset(s_plain, 0, sizeof s_plain);
     for (uint64_t step = 0U; step < (3U * keys); step++) {
@@ -155,7 +159,7 @@ static void try_store(const uint32_t width[EX_KEY_WORDS], uint64_t keys)
     }
     check(count_slots(&store) == inserted, "another number of slots than of keys");
     ex_store_free(&store);
-    check(atomic_load(&run.memory_used) == 0U, "memory is counted that was given back");
+    check(atomic_load(&ground.memory.used) == 0U, "memory is counted that was given back");
 }
 
 static void try_stores(void)
@@ -168,12 +172,11 @@ static void try_stores(void)
         try_store(s_layouts[i], (uint64_t)20000U + draw(60000U));
     }
     try_store(s_word_widths, (uint64_t)20000U + draw(60000U));
-    ex_run_t run;
     ex_store_t store;
-    make_run(&run, (uint64_t)1U << 28U);
+    ground_t ground = ground_of((uint64_t)1U << 28U);
     const uint32_t narrow[EX_KEY_WORDS] = { 4U, 4U, 0U, 0U };
     const uint32_t wide[EX_KEY_WORDS] = { 20U, 9U, 0U, 0U };
-    check(ex_store_make(&store, &run, narrow, 64U), "no memory");
+    check(ex_store_make(&store, &ground.memory, &ground.team, false, narrow, 64U), "no memory");
     uint64_t inserted = 0U;
     bool is_wide = false;
     for (uint64_t i = 0U; i < 50000U; i++) {
@@ -226,21 +229,21 @@ static void *insert_all(void *user)
     return NULL;
 }
 
-static void try_threads_on(ex_codec_t *codec)
+static void try_threads_on(bool is_word)
 {
     const uint64_t count = 60000U;
-    ex_run_t run;
     ex_store_t store;
     ex_tuples_t tuples;
     ex_bytes_t bytes;
     pthread_t thread[WORKERS];
     job_t job[WORKERS];
-    make_run(&run, (uint64_t)1U << 30U);
-    run.codec = codec;
+    ground_t ground = ground_of((uint64_t)1U << 30U);
     (void)memset(&tuples, 0, sizeof tuples);
     (void)memset(&bytes, 0, sizeof bytes);
-    check(ex_store_make(&store, &run, codec->is_word ? s_word_widths : s_widths, (count * 5U) / 4U)
-              && ex_tuples_make(&tuples, &run, 5U) && ex_bytes_make(&bytes, &run),
+    check(ex_store_make(&store, &ground.memory, &ground.team, is_word, is_word ? s_word_widths : s_widths,
+                        (count * 5U) / 4U)
+              && ex_tuples_make(&tuples, &ground.memory, &ground.team, 5U)
+              && ex_bytes_make(&bytes, &ground.memory, &ground.team),
           "no memory");
     while ((tuples.index.limit < (count + WORKERS)) || (bytes.index.limit < (count + WORKERS))) {
         /* As if they were nearly full. */
@@ -283,10 +286,8 @@ static void try_threads_on(ex_codec_t *codec)
 
 static void try_threads(void)
 {
-    static ex_codec_t s_codec;
-    try_threads_on(&s_codec);
-    s_codec.is_word = true;
-    try_threads_on(&s_codec);
+    try_threads_on(false);
+    try_threads_on(true);
 }
 
 /* --- meetings ----------------------------------------------------------------------------------------------------- */
@@ -316,18 +317,18 @@ static void *insert_at_once(void *user)
     return NULL;
 }
 
-static void try_meetings_on(ex_codec_t *codec)
+static void try_meetings_on(bool is_word)
 {
     const uint64_t count = 200000U;
-    ex_run_t run;
     ex_store_t store;
     pthread_t thread[TOGETHER];
     meeting_t meeting[TOGETHER];
     _Atomic uint64_t come;
     atomic_init(&come, 0U);
-    make_run(&run, (uint64_t)1U << 30U);
-    run.codec = codec;
-    check(ex_store_make(&store, &run, codec->is_word ? s_word_widths : s_widths, (count * 5U) / 4U), "no memory");
+    ground_t ground = ground_of((uint64_t)1U << 30U);
+    check(ex_store_make(&store, &ground.memory, &ground.team, is_word, is_word ? s_word_widths : s_widths,
+                        (count * 5U) / 4U),
+          "no memory");
     for (uint32_t i = 0U; i < (uint32_t)TOGETHER; i++) {
         meeting[i] = (meeting_t){ .store = &store, .come = &come, .count = count };
         check(pthread_create(&thread[i], NULL, insert_at_once, &meeting[i]) == 0, "no thread");
@@ -344,10 +345,8 @@ static void try_meetings_on(ex_codec_t *codec)
 
 static void try_meetings(void)
 {
-    static ex_codec_t s_codec;
-    try_meetings_on(&s_codec);
-    s_codec.is_word = true;
-    try_meetings_on(&s_codec);
+    try_meetings_on(false);
+    try_meetings_on(true);
 }
 
 /* --- numbers ------------------------------------------------------------------------------------------------------ */
@@ -355,13 +354,14 @@ static void try_meetings(void)
 static void try_numbers(void)
 {
     const uint64_t count = 150000U;
-    ex_run_t run;
     ex_tuples_t tuples;
     ex_bytes_t bytes;
-    make_run(&run, (uint64_t)1U << 30U);
+    ground_t ground = ground_of((uint64_t)1U << 30U);
     (void)memset(&tuples, 0, sizeof tuples);
     (void)memset(&bytes, 0, sizeof bytes);
-    check(ex_tuples_make(&tuples, &run, 5U) && ex_bytes_make(&bytes, &run), "no memory");
+    check(ex_tuples_make(&tuples, &ground.memory, &ground.team, 5U)
+              && ex_bytes_make(&bytes, &ground.memory, &ground.team),
+          "no memory");
     uint32_t *const number = calloc(count, sizeof *number);
     uint32_t *const name = calloc(count, sizeof *name);
     check((number != NULL) && (name != NULL), "no memory");
@@ -404,18 +404,17 @@ static void try_numbers(void)
 
 static void try_memory(void)
 {
-    ex_run_t run;
     ex_store_t store;
     const uint64_t limit = (uint64_t)6U << 20U;
-    make_run(&run, limit);
-    check(ex_store_make(&store, &run, s_widths, 64U), "no memory");
+    ground_t ground = ground_of(limit);
+    check(ex_store_make(&store, &ground.memory, &ground.team, false, s_widths, 64U), "no memory");
     uint64_t inserted = 0U;
     for (uint64_t i = 1U;; i++) {
         const ex_key_t key = numbered(i, s_widths);
         check(ex_store_insert(&store, &key, ex_hash(&key), NULL) == EX_NEW, "not new");
         inserted++;
         atomic_store(&store.used, inserted);
-        check(atomic_load(&run.memory_used) <= limit, "more memory than allowed");
+        check(atomic_load(&ground.memory.used) <= limit, "more memory than allowed");
         if (((inserted + EX_SPARE_KEYS) >= store.limit) && !ex_store_grow(&store, s_widths)) {
             break;
         }

@@ -248,10 +248,10 @@ static void try_graph(ex_run_t *run)
     for (uint32_t t = 0U; s_is_fine && !g.is_acyclic && (t < (uint32_t)TRANSITIONS); t++) {
         check(g.fairness[t] == fairness_of(t), "fairness");
     }
-    ex_free(run, g.component, (uint64_t)g.nodes * sizeof *g.component);
-    ex_free_table(run, g.is_live, TRANSITIONS, sizeof *g.is_live);
-    ex_free_table(run, g.fairness, TRANSITIONS, sizeof *g.fairness);
-    check(atomic_load(&run->memory_used) == 0U, "memory is kept");
+    ex_free(&run->memory, g.component, (uint64_t)g.nodes * sizeof *g.component);
+    ex_free_table(&run->memory, g.is_live, TRANSITIONS, sizeof *g.is_live);
+    ex_free_table(&run->memory, g.fairness, TRANSITIONS, sizeof *g.fairness);
+    check(atomic_load(&run->memory.used) == 0U, "memory is kept");
 }
 
 int main(int argc, char **argv)
@@ -263,7 +263,7 @@ int main(int argc, char **argv)
     s_run.worker = s_worker;
     s_worker[0].run = &s_run;
     s_worker[1].run = &s_run;
-    s_run.options.memory = (uint64_t)1U << 30U;
+    s_run.memory.limit = (uint64_t)1U << 30U;
     for (unsigned long i = 0U; i < count; i++) {
         s_run.options.threads = 1U + (uint32_t)(i % 2U);
         try_graph(&s_run);

@@ -260,6 +260,46 @@ static void test_moves(void)
 }
 
 /* Numbers as bytes: what is read is what was written, in the shortest form, which is the only one that is read. */
+/* A word of at most three characters that has arrived. */
+static void test_arrivals(void)
+{
+    static const pn_type_t word = {
+        .kind = PN_KIND_STRING, .name = "WORD", .size = sizeof(pn_string_t), .has_range = true, .low = 0, .high = 3
+    };
+    struct words {
+        struct {
+            pn_string_t value;
+            bool full;
+        } Word;
+    } words;
+    static const pn_bag_t place = {
+        .origin = "place `Word`", .type = &word, .capacity = 1U, PN_BAG_SLOT(struct words, Word)
+    };
+    pn_arena_t arena;
+    pn_ctx_t cx;
+    marking_t m;
+    (void)memset(&m, 0, sizeof m);
+    (void)memset(&words, 0, sizeof words);
+    pn_arena_init(&arena, NULL, 0U); /* numbers need none */
+    pn_ctx_init(&cx, &arena, 1U);
+    pn_arena_seal(&arena);
+    const pn_leaf_t number = { .kind = PN_LEAF_INT, .integer = 2 };
+    CHECK(pn_bag_put(&cx, &s_plain, &m, &number, 1U) && is_text(json(&s_plain, &m), "[[1, 2]]"));
+    CHECK(pn_ok(&cx));
+
+    pn_arena_init(&arena, s_memory, 512U);
+    pn_arena_seal(&arena);
+    const pn_leaf_t longer = { .kind = PN_LEAF_STRING, .text = "longer", .length = 6U };
+    const pn_leaf_t fine = { .kind = PN_LEAF_STRING, .text = "abc", .length = 3U };
+    for (uint32_t i = 0U; i < 100U; i++) { /* it is sent again and again */
+        CHECK(!pn_bag_put(&cx, &place, &words, &longer, 1U) && (cx.error == PN_ERR_COLOUR));
+        pn_clear_error(&cx);
+    }
+    CHECK(pn_arena_mark(&arena) == 0U);
+    CHECK(pn_bag_put(&cx, &place, &words, &fine, 1U) && (pn_arena_mark(&arena) > 0U));
+    CHECK(words.Word.full && (words.Word.value.length == 3U) && is_text(words.Word.value.bytes, "abc"));
+}
+
 static void test_bytes(void)
 {
     static const int64_t integers[] = { 0, -1, 1, 63, -64, 64, -65, 8191, 8192, INT64_MAX, INT64_MIN };
@@ -351,6 +391,7 @@ int main(int argc, char **argv)
     test_numbers();
     test_arena();
     test_moves();
+    test_arrivals();
     test_bytes();
     test_trace();
     (void)puts((s_failures == 0) ? "ok" : "failed");

@@ -1,11 +1,12 @@
 /* SPDX-License-Identifier: MIT
  * walk.c - a random walk through a net for comparison with the token game: after each step everything is printed.
  *
- *     walk SEED STEPS
+ *     walk SEED STEPS [ARENA]
  *
  * prints JSON lines {"t": now, "enabled": [[transition, binding], ...], "marking": {...}, "chosen": i}, `chosen` being
  * -1 at the end, or {"error": name}. Every marking is encoded, decoded and encoded again, and collected, on the way,
- * and its successors are made in both ways, if the net has two; what references hold is saved and restored, too.
+ * and its successors are made in both ways, if the net has two; what references hold is saved and restored, too. The
+ * arena has ARENA bytes: those that a deployed program would have.
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -244,7 +245,7 @@ static bool step(pn_ctx_t *cx, void *marking, void *copy, void *binding)
 
 int main(int argc, char **argv)
 {
-    if (argc != 3) {
+    if ((argc != 3) && (argc != 4)) {
         return 2;
     }
     const uint64_t seed = strtoull(argv[1], NULL, 10);
@@ -257,7 +258,8 @@ int main(int argc, char **argv)
     }
     pn_arena_t arena;
     pn_ctx_t cx;
-    pn_arena_init(&arena, s_memory, sizeof s_memory);
+    const size_t size = (argc == 4) ? (size_t)strtoull(argv[3], NULL, 10) : sizeof s_memory;
+    pn_arena_init(&arena, s_memory, (size < sizeof s_memory) ? size : sizeof s_memory);
     pn_ctx_init(&cx, &arena, seed);
     if (pn_marking_init(&pn_net, &cx, marking)) {
         for (uint64_t i = 0U; (i <= steps) && step(&cx, marking, copy, binding); i++) {

@@ -21,8 +21,8 @@ from pn2code.cell.locate import locate
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics, Severity
 from pn2code.division import divided
+from pn2code.emission import arena_size, manifest, runtime
 from pn2code.emission import c as emit_c
-from pn2code.emission import manifest, runtime
 from pn2code.emission import supervisor as emit_supervisor
 from pn2code.emission import tdl as emit_tdl
 from pn2code.emission.output import OutputFile
@@ -32,7 +32,6 @@ from pn2code.net.flat import FlatNet
 from pn2code.net.reached import unused_functions
 from pn2code.robot_scripts import translate as lower_robot
 from pn2code.semantics.evaluation.constants import compute
-from pn2code.verify.controller import arena
 from pn2code.verify.controller.proofs import prove
 from pn2code.verify.exploring.place_capacity import PlaceCapacity, with_rooms
 
@@ -47,7 +46,7 @@ class Generated:
         config: the cell, None for a net without one.
         digest: SHA-256 of the net and of what the cell contributes to the programs.
         rooms: how many tokens each place can hold, and why.
-        arena: bytes that the supervisor has for lists and strings.
+        arena: bytes that the supervisor has for lists, strings and the moves of a firing.
     """
 
     files: tuple[OutputFile, ...]
@@ -101,7 +100,10 @@ def generate(
         return None
 
     version = pn2code.__version__
-    net_files = emit_c.emit(with_rooms(ir, proofs.rooms), version)
+    deployed = with_rooms(ir, proofs.rooms)
+    net_files = emit_c.emit(deployed, version)
+    arriving = [c.place for c in partition.channels] + [i.place for i in partition.inputs]
+    arena = arena_size.of(deployed, net_files[0].text, arriving, proofs.arena)
     files = [
         *net_files,
         *emit_supervisor.emit(
@@ -111,7 +113,7 @@ def generate(
             digest=digest,
             version=version,
             verdicts=proofs.verdicts,
-            arena=proofs.arena,
+            arena=arena,
             net_c=net_files[0].text,
         ),
         *emit_tdl.emit(robots, source=Path(net.file).name, digest=digest, version=version),
@@ -125,7 +127,7 @@ def generate(
         config=config,
         digest=digest,
         rooms=proofs.rooms,
-        arena=proofs.arena or arena.LEAST,
+        arena=arena.bytes,
     )
 
 

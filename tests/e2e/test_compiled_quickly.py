@@ -6,10 +6,12 @@ import pytest
 
 from helpers.netbuilder import flat
 from pn2code.diagnostics import Diagnostics
+from pn2code.emission.output import OutputFile
+from pn2code.ir import nodes as ir
 from pn2code.net.flat import FlatNet
 from pn2code.verify.exploring import explore as explore_module
 from pn2code.verify.exploring import programs
-from pn2code.verify.exploring.explore import explore
+from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.result import Exploration
 
@@ -74,6 +76,29 @@ def test_a_second_time_where_the_first_was_too_short(
     assert (compiled, found.why) == (ways, why)
     if why == "complete":
         assert (found.nodes, found.seen.components) == (NODES, True)
+
+
+def test_the_same_net_is_generated_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where a place turns out to hold more: the next exploration begins with what was enough for the last one."""
+    emit, texts = programs.emit_c.emit, []
+
+    def counted(net: ir.NetIR, version: str) -> tuple[OutputFile, ...]:
+        made = emit(net, version)
+        texts.append(made[0].text)
+        return made
+
+    monkeypatch.setattr(programs.emit_c, "emit", counted)
+    filling = flat(
+        "net Filling\n  standard\n  var n: INT;\n  place P : INT = 1`40\n  place Q : INT\n"
+        "  trans T guard [n > 0]\n    in P : n\n    out P : n - 1\n    out Q : n"
+    )
+    made = programs.Generated()
+    found = [
+        explore(filling, {}, Limits(), Diagnostics(), ExploreOptions(generated=made))
+        for _ in range(2)
+    ]
+    assert [x and (x.nodes, x.complete) for x in found] == [(41, True), (41, True)]
+    assert len(texts) == len(set(texts)) > 1
 
 
 def test_few_transitions_are_compiled_once(compiled: list[bool]) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -28,6 +29,7 @@ def test_the_riveting_supervisor(built: Path, tmp_path: Path) -> None:
 
     assert found.is_good, found.report()
     assert found.text <= 60_000
+    assert found.ram <= 300_000 and 0 < found.arena < 20_000, found.report()
     assert found.path[0] == "main" and found.stack > 1000
     assert not {"fopen", "opendir", "readdir", "realpath"} & set(found.library)
 
@@ -67,3 +69,17 @@ def test_long_functions_are_found() -> None:
     body = "    x++;\n" * 59
     assert list(long_functions(f"void f(int x)\n{{\n{body}}}\n")) == [("f", 61)]
     assert list(long_functions(f"void f(int x)\n{{\n{body[9:]}}}\n")) == []
+
+
+def test_large_frames_get_a_warning(built: Path, tmp_path: Path) -> None:
+    """No error: records of the net may be large."""
+    folder = tmp_path / "program"
+    shutil.copytree(built, folder)
+    for most, is_warned in ((16_384, False), (64, True)):
+        (folder / "net_own.o").unlink()
+        done = subprocess.run(
+            ["make", "net_own.o", "CC=gcc", f"FRAME_MAX={most}"],
+            cwd=folder, capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        assert ("-Wstack-usage" in done.stderr) is is_warned

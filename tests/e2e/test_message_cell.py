@@ -170,7 +170,7 @@ def test_lists_and_strings_have_room(tmp_path: Path) -> None:
     assert made is not None and not d.items, [str(i) for i in d]
     (config,) = [f.text for f in made.files if f.path == "cell_config.c"]
     assert "memory: yes; " in config and "is worked out on the way" in config
-    assert "PN_ARENA_DEFAULT_SIZE" not in config
+    assert made.arena > 12_500_000 and f"s_arena[{made.arena}U" in config
     found = conform_cell(cell, d)
     assert found is not None and found.supervisor is not None and not found.deviates, found
     assert found.supervisor.sent == 1

@@ -20,7 +20,7 @@ from pn2code.base.resources import cnative_folder
 from pn2code.cell.config import CellConfig
 from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
-from pn2code.emission import c_flags
+from pn2code.emission import arena_size, c_flags
 from pn2code.emission.c import emit
 from pn2code.ir.nodes import NetIR
 from pn2code.lowering.nets.net import lower
@@ -43,6 +43,8 @@ WARNINGS = (
 )  # fmt: skip
 SANITIZERS = ("-g1", "-O0", "-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 FAST = ("-O1",)
+ARENA = "arena"
+"""The file with the bytes that a net's lists, strings and moves get."""
 DELIVERED = programs.FLAGS
 """Those with which users have explorers and simulators; the tests mostly have others."""
 RUNTIME = (
@@ -129,8 +131,11 @@ class Workshop:
     def build(self, net: NetIR, folder: Path, host: str = "walk", *flags: str) -> Path:
         """The host over a net; generated files stay in the folder."""
         folder.mkdir(parents=True, exist_ok=True)
-        for file in emit(net, "test"):
+        files = emit(net, "test")
+        for file in files:
             (folder / file.path).write_text(file.text)
+        size = arena_size.of(net, files[0].text, (), None)
+        (folder / ARENA).write_text(str(size.bytes if size.is_proven else arena_size.DEFAULT))
         self.compile(folder / "net.c", folder / "net.o", folder, *flags)
         return self.link(folder / host, folder / "net.o", *sorted(self.runtime.glob(f"{host}*.o")))
 
@@ -162,9 +167,10 @@ def agrees(
 ) -> int:
     """Walk in the program and follow in the token game; gives the number of steps that were the same.
 
-    An exception of the net must be raised in both at the same step.
+    An exception of the net must be raised in both at the same step. The program has no more memory than a deployed one.
     """
-    lines = run(program, seed, steps, environment=environment)
+    arena = (program.parent / ARENA).read_text()
+    lines = run(program, seed, steps, arena, environment=environment)
     try:
         game = Game(flat, dict(storage or {}), seed=seed)
     except GameError as error:

@@ -132,7 +132,8 @@ typedef struct pn_transition {
      * business. Returns false when the sink stopped it. */
     bool (*enumerate)(pn_ctx_t *cx, const void *marking, uint32_t self, pn_binding_sink_t sink, void *user);
     /* Fires an enabled binding and stores the code segment's outputs in it. On error (context error set, false) the
-     * marking is unchanged. `binding` is the host's copy (pn_binding_size) of what the sink was given. */
+     * marking is unchanged; not so where there is `successors`: such hosts fire in copies only. `binding` is the
+     * host's copy (pn_binding_size) of what the sink was given. */
     bool (*fire)(pn_ctx_t *cx, void *marking, uint32_t self, void *binding);
     /* Where the functions are those of all instances of a page, the places that are this instance's: a struct of the
      * generated net. */

@@ -20,6 +20,7 @@
 #endif
 
 #include "explore_error.h"
+#include "explore_bounds.h"
 #include "query/explore_query.h"
 #include "search/explore_reduce.h"
 #include "pn/pn_file.h"
@@ -266,7 +267,7 @@ static void show_progress(ex_run_t *run, watch_t *watch)
                   "{\"states\": %" PRIu64 ", \"arcs\": %" PRIu64 ", \"rate\": %.0f, \"frontier\": %" PRIu64
                   ", \"depth\": %" PRIu64 ", \"mib\": %.1f, \"seconds\": %.3f, \"phase\": \"%s\"}\n",
                   progress.states, progress.arcs, rate, progress.frontier, progress.depth,
-                  (double)atomic_load(&run->memory_used) / (double)MEBI, now - run->started,
+                  (double)atomic_load(&run->memory.used) / (double)MEBI, now - run->started,
                   (phase != NULL) ? phase : "explore");
     (void)fflush(stderr);
     watch->states = progress.states;
@@ -429,7 +430,7 @@ static void print_report(ex_run_t *run)
         (void)printf("null");
     }
     print_reductions(options);
-    const int spill_error = atomic_load(&run->spill_error);
+    const int spill_error = atomic_load(&run->memory.spill_error);
     if (spill_error != 0) {
         (void)printf(",\n \"spill_error\": ");
         print_string(strerror(spill_error));
@@ -459,8 +460,8 @@ static bool make(ex_run_t *run)
     if ((pn_net.root_count > 0U)) {
         run->options.threads = 1U; /* they are shared by all evaluations */
     }
-    run->fired = ex_alloc(run, ((uint64_t)pn_net.transition_count + 1U) * sizeof *run->fired);
-    run->worker = ex_alloc(run, options->threads * sizeof *run->worker);
+    run->fired = ex_alloc(&run->memory, ((uint64_t)pn_net.transition_count + 1U) * sizeof *run->fired);
+    run->worker = ex_alloc(&run->memory, options->threads * sizeof *run->worker);
     if ((run->fired == NULL) || (run->worker == NULL) || !ex_codec_make(run)) {
         return false;
     }
@@ -468,7 +469,7 @@ static bool make(ex_run_t *run)
         ex_worker_t *worker = &run->worker[i];
         worker->run = run;
         worker->index = i;
-        worker->fired = ex_alloc(run, ((uint64_t)pn_net.transition_count + 1U) * sizeof *worker->fired);
+        worker->fired = ex_alloc(&run->memory, ((uint64_t)pn_net.transition_count + 1U) * sizeof *worker->fired);
         if ((worker->fired == NULL) || !ex_scratch_make(worker) || !ex_bounds_make(worker)
             || ((run->queries != NULL) && !ex_early_make(worker))) {
             return false;
@@ -534,6 +535,7 @@ int main(int argc, char **argv)
         (void)fprintf(stderr, "explore: the net was generated for another version of the runtime; generate it again\n");
         return EXIT_USAGE;
     }
+    ex_equip(run);
     if ((run->options.queries != NULL) && !ex_queries_read(run)) {
         return EXIT_USAGE;
     }

@@ -6,7 +6,9 @@
  * the least and the most are the conjunction and the disjunction of all states, 64 at a time. Other places are looked
  * at once for each multi-set that they ever held (explore_intern.c has them all), however many states there are.
  */
-#include "explore_impl.h"
+#include "explore_run.h"
+#include "state/explore_multiset.h"
+#include "explore_bounds.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

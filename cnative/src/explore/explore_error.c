@@ -6,6 +6,8 @@
  * of threads, and with breadth-first exploration none is nearer to the initial state.
  */
 #include "explore_error.h"
+#include "search/explore_successors.h"
+#include "state/explore_roots.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -151,7 +153,7 @@ void ex_follow_error(ex_run_t *run)
 {
     const ex_error_t met = run->error;
     ex_graph_t graph;
-    ex_raised_t *const raised = ex_alloc(run, sizeof *raised);
+    ex_raised_t *const raised = ex_alloc(&run->memory, sizeof *raised);
     const uint32_t node = ((raised != NULL) && ex_rescan_make(run, &graph)) ? find(run, &graph) : EX_NO_NODE;
     if ((node != EX_NO_NODE) && follow(run, &graph, node, raised)) {
         run->raised = raised;

@@ -3,7 +3,7 @@
  */
 #define _POSIX_C_SOURCE 200809L
 
-#include "explore_impl.h"
+#include "explore_run.h"
 
 #include <string.h>
 #include <time.h>
@@ -84,8 +84,9 @@ static bool do_part(ex_run_t *run)
     return true;
 }
 
-void ex_together(ex_run_t *run, uint32_t parts, void (*one)(void *user, uint32_t part), void *user)
+static void together(void *self, uint32_t parts, void (*one)(void *user, uint32_t part), void *user)
 {
+    ex_run_t *const run = self;
     if (!run->is_growing || (parts == 1U)) { /* nobody waits; the gate may be open */
         for (uint32_t i = 0U; i < parts; i++) {
             one(user, i);
@@ -104,6 +105,12 @@ void ex_together(ex_run_t *run, uint32_t parts, void (*one)(void *user, uint32_t
         (void)pthread_cond_wait(&run->gate_changed, &run->gate);
     }
     run->shared = NULL;
+}
+
+void ex_equip(ex_run_t *run)
+{
+    run->memory = (ex_memory_t){ .limit = run->options.memory, .folder = run->options.spill };
+    run->team = (ex_team_t){ .threads = run->options.threads, .together = together, .self = run };
 }
 
 void ex_wait(ex_run_t *run)

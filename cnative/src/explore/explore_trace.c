@@ -5,6 +5,7 @@
 #define _POSIX_C_SOURCE 200809L /* getpid */
 
 #include "graph/explore_graph.h"
+#include "search/explore_successors.h"
 #include "search/explore_reduce.h"
 
 #include <inttypes.h>

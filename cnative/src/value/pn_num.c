@@ -259,9 +259,10 @@ int64_t pn_real_floor(pn_ctx_t *cx, double x)
     return pn_int_checked(cx, pn_wide_floor(cx, x));
 }
 
+/* As SML/NJ has it: its sum rounds, so that 3.0000000000000004 is 3 and 1E~20 is 0. */
 int64_t pn_wide_ceil(pn_ctx_t *cx, double x)
 {
-    return to_integer(cx, ceil(x));
+    return -1 - to_integer(cx, floor(-1.0 - x));
 }
 
 int64_t pn_real_ceil(pn_ctx_t *cx, double x)

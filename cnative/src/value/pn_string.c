@@ -105,7 +105,7 @@ bool pn_string_is_suffix(pn_string_t part, pn_string_t s)
 bool pn_string_is_substring(pn_string_t part, pn_string_t s)
 {
     if (part.length == 0U) {
-        return true;
+        return s.length > 0U; /* as SML/NJ has it */
     }
     for (uint32_t at = 0U; (at + part.length) <= s.length; at++) {
         if (memcmp(part.bytes, &s.bytes[at], part.length) == 0) {

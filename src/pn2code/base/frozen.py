@@ -3,7 +3,7 @@
 Python 3.11's dataclasses compile six functions for each class, about a millisecond; with some hundred node classes that
 was half of the start-up time. A frozen class compiles one, its `__init__`, when the first object is made; the rest is
 shared. They are dataclasses in every other way: `fields`, `replace`, `match`, subclasses. What they do not have:
-`__post_init__`, `init=False`, key-word-only fields, class variables.
+`__post_init__`, `init=False`, key-word-only fields, class variables, comparisons and the like of their own.
 
 Example:
 
@@ -35,6 +35,12 @@ _KIND: Any = _Sample.__dataclass_fields__["field"]._field_type  # type: ignore[a
 _PARAMETERS: Any = _Sample.__dataclass_params__  # type: ignore[attr-defined]
 
 
+_SHARED = frozenset(
+    {"__init__", "__eq__", "__hash__", "__repr__", "__reduce__", "__setattr__", "__delattr__"}
+)
+"""What all frozen classes have from here."""
+
+
 @dataclass_transform(frozen_default=True, field_specifiers=(dataclasses.field,))
 def frozen(cls: type[T]) -> type[T]:
     """Make a class a frozen, slotted dataclass that compares and hashes by value."""
@@ -50,6 +56,9 @@ def frozen(cls: type[T]) -> type[T]:
     for name in ("__dict__", "__weakref__"):
         content.pop(name, None)
     metaclass: Any = type(cls)
+    if _SHARED & content.keys():
+        names = ", ".join(sorted(_SHARED & content.keys()))
+        raise TypeError(f"{cls.__name__}: its own {names}: not for @frozen; use @dataclass")
     made: Any = metaclass(
         cls.__name__,
         cls.__bases__,

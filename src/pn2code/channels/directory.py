@@ -26,6 +26,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Self
 
+from pn2code.base.frozen import frozen
 from pn2code.channels.message import (
     EMPTY,
     MAX_PAYLOAD,
@@ -70,7 +71,7 @@ class PeerState(Enum):
     """a new session has begun: the supervisor that this side knew is gone"""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Peer:
     """State of the other side; `reason` in words for STOPPED."""
 
@@ -79,14 +80,14 @@ class Peer:
     pid: int | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Written:
     """The message was published with this seq."""
 
     seq: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class NotWritten:
     """The message was not published: `channel-overrun` (I3) or `channel-value` (it does not fit the channel)."""
 
@@ -108,7 +109,7 @@ class _ChannelState:
     reported: str | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _StatusFile:
     state: str
     session: str

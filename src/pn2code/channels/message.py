@@ -9,9 +9,9 @@ from __future__ import annotations
 import re
 import zlib
 from collections.abc import Sequence
-from dataclasses import dataclass
 from enum import Enum
 
+from pn2code.base.frozen import frozen
 from pn2code.cell.partition import ChannelKind, Partition
 from pn2code.cell.scalars import Scalar, scalars_of
 from pn2code.channels.scalars import (
@@ -32,7 +32,7 @@ MAX_PAYLOAD = 4055
 """Most bytes of line 1 that are written: line 2 fits behind it, however long its seq."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ChannelSpec:
     """One channel: a place that two parties share.
 
@@ -67,7 +67,7 @@ class Reason(Enum):
     OVERWRITTEN = "overwritten"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Message:
     """A message that was validated. `seq` is None for one without line 2 (written by hand or by another program)."""
 
@@ -76,7 +76,7 @@ class Message:
     seq: int | None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Refused:
     """A message that is not taken: why, what was found, and in words. `first`: not reported before."""
 

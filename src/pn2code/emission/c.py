@@ -31,6 +31,12 @@ def emit(net: NetIR, version: str) -> tuple[OutputFile, ...]:
 
 
 class _Emitter(Transitions):
+    def __init__(self, net: NetIR, version: str) -> None:
+        super().__init__(net, version)
+        self._mentioned: dict[
+            int, frozenset[str]
+        ] = {}  # by id of a body, all of which belong to the net
+
     def _holder(self, p: ir.Place) -> dict[str, object]:
         """The C type that holds the tokens of a place."""
         is_slot = p.index in self._slots
@@ -243,15 +249,25 @@ class _Emitter(Transitions):
             if g.is_reference or self._types.holds_reference(g.type)
         }
         for b in bodies:
-            for node in ir_nodes(b):
-                table = getattr(node, "table", "")
-                is_looked_at = not isinstance(node, ir.Op) or op_needs_table(node)
-                if isinstance(table, str) and table and is_looked_at:
-                    roots.add(table)
-                if isinstance(node, ir.Op) and node.name == "Colset.all":
-                    roots.add(f"type {node.type}")
+            roots |= self._tables_in(b)
         needed = self._closure(roots)
         return [key for key in self._descriptors if key in needed]
+
+    def _tables_in(self, body: object) -> frozenset[str]:
+        """The tables that a body mentions itself."""
+        known = self._mentioned.get(id(body))
+        if known is not None:
+            return known
+        found: set[str] = set()
+        for node in ir_nodes(body):
+            table = getattr(node, "table", "")
+            is_looked_at = not isinstance(node, ir.Op) or op_needs_table(node)
+            if isinstance(table, str) and table and is_looked_at:
+                found.add(table)
+            if isinstance(node, ir.Op) and node.name == "Colset.all":
+                found.add(f"type {node.type}")
+        self._mentioned[id(body)] = frozenset(found)
+        return self._mentioned[id(body)]
 
     def run(self) -> tuple[OutputFile, ...]:
         net = self._net

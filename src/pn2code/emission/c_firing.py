@@ -71,6 +71,7 @@ class DirectFiring(Statements):
         descriptors: of all colour sets and types.
         tables: for each variable of the binding the key of its descriptor, "" where its value is not known to be of it.
         place_tables: for each place the key.
+        puts_back: whether the marking is as before where a place is full; without, the caller throws it away.
     """
 
     def __init__(
@@ -83,8 +84,10 @@ class DirectFiring(Statements):
         descriptors: Mapping[str, Descriptor],
         tables: tuple[str, ...],
         place_tables: tuple[str, ...],
+        puts_back: bool,
     ) -> None:
         super().__init__(types, expressions, scope, real_time)
+        self._puts_back = puts_back
         self._descriptors = descriptors
         self._tables = tables
         self._place_tables = place_tables
@@ -115,7 +118,16 @@ class DirectFiring(Statements):
             self.note(f"{take.note or self._x.place_names[take.place]}: stays where it is")
         self._look_at_slots()
         self._take(takes)
-        self._put_all(puts, takes)
+        if self._puts_back:
+            self._put_all(puts, takes)
+        elif puts:
+            self._put_in_turn(puts)
+            if not self._slot_moves:
+                self.line("return fits;")
+                return
+            self.line("if (!fits) {")
+            self.line("    return false;")
+            self.line("}")
         self._change_slots()
         self.line("return true;")
 
@@ -204,14 +216,10 @@ class DirectFiring(Statements):
         change.
         """
         if not any(move.is_packed for move in puts):
-            for i, move in enumerate(puts):
-                self.note(move.note)
-                start = "bool fits = " if i == 0 else "fits = "
-                self.line(f"{start}{self._call(move)}{' && fits' if i else ''};")
+            self._put_in_turn(puts)
             return [(move, "") for move in puts]
         if len(puts) == 1:
-            self.note(puts[0].note)
-            self.line(f"const bool fits = {self._call(puts[0])};")
+            self._put_in_turn(puts)
             return []
         done = []
         for i, move in enumerate(puts):
@@ -221,6 +229,15 @@ class DirectFiring(Statements):
             done.append((move, name))
         self.line(f"const bool fits = {' && '.join(name for _, name in done)};")
         return [(move, name if move.is_packed else "") for move, name in done]
+
+    def _put_in_turn(self, puts: list[_Move]) -> None:
+        for i, move in enumerate(puts):
+            self.note(move.note)
+            if len(puts) == 1:
+                self.line(f"const bool fits = {self._call(move)};")
+            else:
+                start = "bool fits = " if i == 0 else "fits = "
+                self.line(f"{start}{self._call(move)}{' && fits' if i else ''};")
 
     def _moves(self, s: ir.TakeAll | ir.PutAll) -> None:
         known = self.sums[s.place, s.multiset]

@@ -10,6 +10,13 @@ from __future__ import annotations
 STANDARD = "-std=c11"
 FLOATS = ("-ffp-contract=off", "-fno-fast-math")
 """Sums of products are rounded as in the token game, on every processor. They come after the user's flags."""
+FRAMES = ("stack-usage", "frame-larger-than")
+"""Warnings about stack frames, the better one first: gcc knows both, clang the second."""
+FRAME_MAX = 16_384
+"""Bytes of a stack frame from which on there is a warning; the largest of the runtime has 12,560."""
+COVERAGE_RUNS = 20
+COVERAGE_STEPS = 1_000
+"""How many random runs `make coverage` makes besides a dry run, and how many firings each has at most."""
 LARGE = 1_000_000
 """Characters of generated C from which compiling it for speed takes longer than is gained; some 200 transitions."""
 QUICKER = ("-O1", "-fno-inline")

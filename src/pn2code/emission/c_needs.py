@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from pn2code.emission.c_expressions import op_needs_context
 from pn2code.ir import nodes as ir
-from pn2code.ir.calls import ir_nodes
+from pn2code.ir.calls import ir_nodes, parts_of
 from pn2code.ir.nodes import Ir, Rep, Stmt
 
 
@@ -68,7 +68,7 @@ def _used(item: object, known: frozenset[int] | None) -> Iterator[int]:
                 yield local.uid
             case ir.ForList(until=until) if until is not None:
                 yield until.uid
-        waiting.extend(getattr(item, name) for name in getattr(item, "__dataclass_fields__", ()))
+        waiting.extend(parts_of(item))
 
 
 def uses_context(

@@ -248,6 +248,7 @@ class Transitions(Frame):
                 descriptors=self._descriptors,
                 tables=tuple("" if v.is_output else v.table for v in t.variables),
                 place_tables=tuple(p.table for p in self._net.places),
+                puts_back=not self._net.has_successors,
             )
             direct.used, direct.bags, direct.timed = printer.used, printer.bags, printer.timed
             direct.tables_of_places = printer.tables_of_places

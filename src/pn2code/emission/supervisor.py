@@ -8,6 +8,7 @@ supervisor owns every transition of the net.
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +16,8 @@ from pathlib import Path
 from pn2code.cell.partition import Channel, ChannelKind, OwnerKind, Partition
 from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
 from pn2code.diagnostics import Origin
-from pn2code.emission import c_flags, needs
+from pn2code.emission import arena_size, c_flags, needs
+from pn2code.emission.arena_size import ArenaSize
 from pn2code.emission.environment import c_float, c_int, render
 from pn2code.emission.output import Block, OutputFile
 from pn2code.net.flat import FlatPlace
@@ -117,7 +119,7 @@ def emit(
     digest: str,
     version: str,
     verdicts: Sequence[str] = (),
-    arena: int | None = None,
+    arena: ArenaSize = arena_size.UNKNOWN,
     net_c: str | None,
 ) -> tuple[OutputFile, ...]:
     """`cell_config.c` and `Makefile`.
@@ -129,7 +131,7 @@ def emit(
         version: of pn2code.
         verdicts: lines about what was checked, for the head.
         net_c: the generated net, for what it needs of the runtime; None: it is not linked with it.
-        arena: bytes for lists and strings; None: the usual number.
+        arena: the memory for lists, strings and moves.
     """
     net = partition.net
     peers = [o for o in partition.owners if o.kind is not OwnerKind.SUPERVISOR]
@@ -183,7 +185,8 @@ def emit(
         verdicts=verdicts,
         owner=supervisor if is_cell else -1,
         reply_timeout_s=float(reply_timeout_s),
-        arena=f"{arena}U" if arena is not None else "PN_ARENA_DEFAULT_SIZE",
+        arena=arena,
+        arena_lines=textwrap.wrap(f"{arena.why}.", 116),
         tables=tables,
         channels=channel_rows,
         between=between,

@@ -16,6 +16,10 @@ Inscriptions and expressions also differ in the following, each on purpose:
   outside the range of the processor (`Math.tanh 1E10`, `Math.sin 1E300`); here they are those of C. So are `Real.rem` of numbers of very different size,
   `Real.toManExp` and `fromManExp` of zero and of non-finite numbers, and `Real.toLargeInt` of zero.
 * **`null`** tests a list, with a warning; in the engine it is the time 0, which hides the test.
+* **`inst ()`**, the number of the page instance, is not supported (`unsupported-function`); in the engine it is right in arcs, guards, delays and
+  code segments, and in initial markings the number of an instance that was looked at before.
+* **A variable whose name is none of CPN ML** (`n-1`, `1n`) is accepted by the engine as long as nothing uses it; here it is refused. So are two transitions
+  of one id, whose arcs cannot be told apart.
 * **Initial markings that change references** are evaluated once each, in the order of the file; the engine evaluates them when it checks the net
   and again at the start, in an order of its own. `check` warns of them.
 * **A subset's list that is computed** (`subset INT with values`) is refused by the engine; here it is accepted, with a warning.

@@ -20,7 +20,7 @@ def called(item: object) -> list[str]:
 
 
 def ir_nodes(item: object) -> Iterator[object]:
-    """All IR nodes in a statement, expression or tuple of them."""
+    """All IR nodes in a statement, expression or tuple of them; types are none."""
     waiting: list[Any] = [item]
     while waiting:
         node = waiting.pop()
@@ -31,17 +31,31 @@ def ir_nodes(item: object) -> Iterator[object]:
             waiting += parts(node)
 
 
+_VALUE = "bool | int | float | str | None"
+_LEAVES = frozenset({"IrType", "Origin", "bool", "int", "str", "tuple[int, ...]", _VALUE})
+"""What the annotations of fields say in which there is no node."""
+
+
+def parts_of(node: Any) -> Sequence[object]:
+    """The fields of a node that may contain nodes, from the last to the first; nothing for what is no node."""
+    getter = _parts(node.__class__)
+    return () if getter is None else getter(node)
+
+
 @cache
 def _parts(kind: type) -> Callable[[Any], Sequence[Any]] | None:
-    """What gives the fields of a node, from the last to the first; None for what is no node."""
-    fields = tuple(reversed(getattr(kind, "__dataclass_fields__", {})))
-    match fields:
+    """What gives the fields of a node that may contain nodes, from the last to the first; None for what is no node."""
+    fields = getattr(kind, "__dataclass_fields__", {})
+    if not fields:
+        return None
+    names = tuple(reversed([name for name, f in fields.items() if f.type not in _LEAVES]))
+    match names:
         case ():
-            return None
-        case (field,):
-            return lambda node: (getattr(node, field),)
+            return lambda node: ()
+        case (name,):
+            return lambda node: (getattr(node, name),)
         case _:
-            return attrgetter(*fields)
+            return attrgetter(*names)
 
 
 def order_functions(made: dict[str, ir.Function]) -> tuple[ir.Function, ...]:

@@ -163,7 +163,7 @@ SUBSET_BARE_FN = register(
 VARIABLE_CLASH = register(
     "variable-of-other-colour-set",
     "a net variable is declared twice with different colour sets",
-    "A later declaration replaces the earlier one, so that inscriptions written for the earlier one change "
+    "As in CPN Tools the first declaration counts everywhere, so that inscriptions written for a later one change "
     "their meaning.",
 )
 VALUE_CLASH = register(

@@ -147,6 +147,8 @@ class Elaborator:
         self._ctx.tainted = False
         colset, datatypes = self._colsets.declare(spec)
         self._made += datatypes
+        if colset is not None:
+            self._redeclared(colset)
         self._hide({*spec.ids, *(label for label, _ in spec.fields)}, spec.origin)
         return colset
 
@@ -178,19 +180,69 @@ class Elaborator:
                 self._clash(name, origin, "inscriptions mean the value, which was declared first")
                 continue
             old = self._variables.get(name)
-            if old is not None and old.colset is not None and old.colset != colset:
+            if old is None:
+                self._variable(name, colset)
+            elif old.colset is not None and old.colset != colset:
                 self._d.warning(
                     codes.VARIABLE_CLASH,
                     f"variable `{name}` of colour set `{old.colset.name}` is declared again, "
                     f"now of `{colset.name}`",
                     origin,
-                    hint="rename one of them: the last declaration counts everywhere",
+                    hint="rename one of them: as in CPN Tools, the first declaration counts everywhere",
                 )
-            symbol = self._ctx.fresh_symbol(name, colset.type, colset)
-            self._variables[name] = symbol
-            self._variable_scope.values[name] = Binding(
-                name, from_type(colset.type, []), symbol=symbol, colset=colset
-            )
+
+    def _variable(self, name: str, colset: Colset) -> None:
+        """A variable of the net in arcs, guards and code segments."""
+        symbol = self._ctx.fresh_symbol(name, colset.type, colset)
+        self._variables[name] = symbol
+        self._variable_scope.values[name] = Binding(
+            name, from_type(colset.type, []), symbol=symbol, colset=colset
+        )
+
+    def _tables(self) -> tuple[dict[str, Any], ...]:
+        """What is declared for the whole net, by name."""
+        top = self._ctx.top
+        modules = (top.structures, top.signatures, top.functors)
+        return (
+            top.values,
+            top.types,
+            *modules,
+            self._ctx.colsets,
+            self._variables,
+            self._variable_scope.values,
+        )
+
+    @contextmanager
+    def noting(self, forget: list[Callable[[], None]]) -> Iterator[None]:
+        """Appends to `forget` what takes the names away again that are declared meanwhile."""
+        before = [dict(table) for table in self._tables()]
+        yield
+        made = [
+            {name: x for name, x in table.items() if x is not old.get(name)}
+            for table, old in zip(self._tables(), before, strict=True)
+        ]
+        forget.append(partial(self._forget, made))
+
+    def _forget(self, made: Sequence[Mapping[str, Any]]) -> None:
+        """Takes names away, unless they have been declared again; with a colour set, its variables."""
+        self._repeats.clear()
+        tables = self._tables()
+        for table, names in zip(tables, made, strict=True):
+            for name, x in names.items():
+                if table.get(name) is x:
+                    del table[name]
+        for name, symbol in list(self._variables.items()):
+            if symbol.colset is not None and symbol.colset.name not in self._ctx.colsets:
+                del self._variables[name]
+                self._variable_scope.values.pop(name, None)
+
+    def _redeclared(self, colset: Colset) -> None:
+        """Variables get the colour set that has their colour set's name in the end, as in CPN Tools."""
+        for name, symbol in list(self._variables.items()):
+            old = symbol.colset
+            known = isinstance(self._variable_scope.values.get(name), Binding)
+            if known and old is not None and old.name == colset.name and old != colset:
+                self._variable(name, colset)
 
     def _hide(self, names: Set[str], at: Origin | Span) -> None:
         """Variables of the net that have become constructors: CPN Tools refuses the transitions that use them."""

@@ -14,8 +14,8 @@ gives
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Note, Origin, Span
 from pn2code.ml.core.terms import Apply, Builtin, Exp, If, Pat, RecordExp, Symbol
 from pn2code.net.codes import CODE_OUTPUT_BOUND, LOCAL_NAME, SUMMANDS_SHARE, UNBOUND_VARIABLE
@@ -38,7 +38,7 @@ HERE = "the transition is here"
 RENAME = "use another name here, one that is no variable of the net"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Binder:
     """A summand that can bind: its pattern's variables, and those that its delay needs besides."""
 
@@ -48,7 +48,7 @@ class _Binder:
     needs: frozenset[Symbol]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Equation:
     """A guard `pattern = value`, in one of its two directions."""
 
@@ -59,7 +59,7 @@ class _Equation:
     needs: frozenset[Symbol]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Parts:
     """What of a transition matters for binding; arcs are (kind, inscription or None)."""
 

@@ -6,7 +6,8 @@ All independent errors are reported; elements that depend on something broken ar
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -39,6 +40,7 @@ from pn2code.net.linked import Arc, Net, Page, Place, Transition
 from pn2code.net.terms import TermReader
 from pn2code.net.typed import TypedArc, TypedNet, TypedPage, TypedPlace, TypedTransition
 from pn2code.net.uses import NetVariables
+from pn2code.reading.codes import DUPLICATE_ID
 from pn2code.reading.document import (
     RawColset,
     RawDeclaration,
@@ -112,8 +114,7 @@ class _Checker:
             if isinstance(c, RawColset) and {"all", "'all"} & set(c.declare)
         }
         self.elaborator.announce(lambda: _declared(net))
-        for declaration in net.declarations:
-            self.declare(declaration)
+        self.declare_all(net.declarations)
         for text in _texts(net):
             self.elaborator.with_library(text)
         self.program = self.elaborator.program()
@@ -122,6 +123,29 @@ class _Checker:
         self.planner = Planner(
             self.variables, self.terms, frozenset(declared), d, is_pnml=self.is_pnml
         )
+
+    def declare_all(self, declarations: Sequence[RawDeclaration]) -> None:
+        """In order. Of two declarations of one id CPN Tools forgets the first when it comes to the second."""
+        ids = Counter(declaration.id for declaration in declarations)
+        forget: dict[str, list[Callable[[], None]]] = {}
+        first: dict[str, RawDeclaration] = {}
+        for declaration in declarations:
+            identity = declaration.id
+            if not identity or ids[identity] == 1:
+                self.declare(declaration)
+                continue
+            for undo in forget.pop(identity, ()):
+                self.d.warning(
+                    DUPLICATE_ID,
+                    f"two declarations have the id `{identity}`: CPN Tools forgets the first, and so does pn2code",
+                    declaration.origin,
+                    notes=[Note("this one is forgotten", first[identity].origin)],
+                    hint="give one of them another id",
+                )
+                undo()
+            first[identity] = declaration
+            with self.elaborator.noting(forget.setdefault(identity, [])):
+                self.declare(declaration)
 
     def declare(self, declaration: RawDeclaration) -> None:
         """Hand one declaration to the elaborator."""

@@ -46,7 +46,8 @@ PORT_ASSIGNMENT = register(
     "port-assignment",
     "a port assignment cannot be used",
     "An assignment pairs a port place of the subpage with a place beside the substitution transition. One that names "
-    "something else is ignored; if a port is assigned twice, the last assignment counts, as in CPN Tools.",
+    "something else is ignored, but CPN Tools refuses one between a place beside the transition and something that is "
+    "not on the subpage; if a port is assigned twice, the last assignment counts, as in CPN Tools.",
 )
 PORT_COLSET = register(
     "port-colset",
@@ -87,8 +88,8 @@ SUBSTITUTION_INSCRIPTION = register(
 UNSUPPORTED_CHANNEL = register(
     "unsupported-channel",
     "synchronous channels of CPN Tools are not supported",
-    "CPN Tools 4 can synchronise transitions over channels (`ch.!x`, `ch.?y`), an experimental feature. pn2code reads "
-    "the net, but such transitions fire alone. Merge the transitions, or use a place between them.",
+    "CPN Tools 4 can synchronise transitions over channels (`ch.!x`, `ch.?y`), an experimental feature, which its "
+    "engine refuses without an extension. Merge the transitions, or use a place between them.",
 )
 DECLARATION_EMPTY = register(
     "declaration-empty",

@@ -152,10 +152,10 @@ class _Linker:
         )
 
     def transition(self, t: RawTransition, arcs: list[RawArc]) -> Transition:
-        if t.channel is not None:
-            self.d.warning(
+        if t.channel is not None and t.channel.text.text.strip() != "()":
+            self.d.error(
                 UNSUPPORTED_CHANNEL,
-                f"synchronous channels are not supported: transition `{t.name}` fires alone",
+                f"synchronous channels are not supported: transition `{t.name}` has one",
                 t.channel.text.span(),
                 hint="use a place between the transitions, or merge them",
             )
@@ -208,6 +208,14 @@ class _Linker:
             hint = "assign the ports of this substitution transition again"
             if port not in ports:
                 wrong = f"`{self.name(port)}` is not a port of page `{target.name}`"
+                if port not in plain and socket in own:
+                    self.d.error(
+                        PORT_ASSIGNMENT,
+                        f"a port assignment of `{t.name}` is wrong: {wrong}",
+                        raw.origin,
+                        hint=f"CPN Tools refuses place `{own[socket].name}`; {hint}",
+                    )
+                    continue
                 if port in plain:
                     hint = (
                         f"make place `{self.name(port)}` of page `{target.name}` a port (In, Out or I/O), or remove "

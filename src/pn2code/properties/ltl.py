@@ -20,6 +20,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.properties.meaning import Atom, Formula, Op, looks_at_steps
 
 MOST_STATES = 2_000
@@ -35,7 +36,7 @@ class TooLargeError(Exception):
     """The automaton of a formula gets too many states."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Arc:
     """From state to state, where all literals hold."""
 
@@ -44,7 +45,7 @@ class Arc:
     literals: tuple[Literal, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Automaton:
     """A Büchi automaton; state 0 is the initial one.
 
@@ -210,7 +211,7 @@ Label = frozenset[int]
 State = frozenset[int]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Way:
     """A way to go on: what must be seen now, what must hold next, what is postponed."""
 

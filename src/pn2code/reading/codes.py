@@ -74,14 +74,16 @@ CPN_FORMAT = register(
 DUPLICATE_ID = register(
     "duplicate-id",
     "two elements of the net have the same id",
-    "Arcs, fusion sets and substitution transitions refer to elements by id, so pages, places, "
-    "transitions and arcs need different ones.",
+    "Arcs, fusion sets and substitution transitions refer to elements by id, so pages, places and "
+    "transitions need different ones. Nothing refers to arcs: two of one id both count. Of two "
+    "declarations of one id CPN Tools forgets the first when it reads the second.",
 )
 ARC_DANGLING = register(
     "arc-dangling",
     "an arc leads to something that does not exist on its page",
     "Each arc names a place and a transition of its own page by id (`placeend`, `transend`). The id "
-    "is missing, or no such place or transition is on the page.",
+    "is missing, or no such place or transition is on the page. An arc of which the transition is "
+    "nowhere in the file is left over from one that was removed, and is left out.",
 )
 ARC_ORIENTATION = register(
     "arc-orientation",

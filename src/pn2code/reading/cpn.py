@@ -119,7 +119,13 @@ class _Reader:
             return None
         generator = root.child("generator")
         declarations = DeclarationReader(self.base, self.d, self.unknown)
-        pages = PageReader(self.file, self.d, self.unknown, drawn=self.drawn)
+        ids = {
+            n.get("id")
+            for page in net.all("page")
+            for tag in ("place", "trans")
+            for n in page.all(tag)
+        }
+        pages = PageReader(self.file, self.d, self.unknown, ids, drawn=self.drawn)
         blocks: list[RawBlock] = []
         raw_pages = []
         fusions = []

@@ -111,6 +111,9 @@ class DeclarationReader:
             )
         self.check_name(name, origin)
         ids, fields, texts = _details(kind, base) if kind is not None else ((), (), ())
+        if kind is not None:
+            for declared in _declared(kind.tag, ids, fields):
+                self.check_name(declared, origin)
         declare = node.child("declare")
         display = node.child("layout")
         return RawColset(
@@ -173,6 +176,16 @@ class DeclarationReader:
         base = self.origin(node, f"declaration `{node.tag}`", "declaration")
         text = node.child("layout") or node.child("ml") or node.child("id") or node
         return RawOther(node.get("id"), node.tag, text.source(base), base)
+
+
+def _declared(
+    kind: str, ids: tuple[str, ...], fields: tuple[tuple[str, str], ...]
+) -> tuple[str, ...]:
+    """The names that the definition of a colour set declares: constants, stems, labels (of a record, numbers too)."""
+    if kind in ("unit", "bool", "enum", "index"):
+        return ids
+    labels = tuple(label for label, _ in fields)
+    return tuple(x for x in labels if not x.isdecimal()) if kind == "record" else labels
 
 
 def _details(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Set
 
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.reading.codes import (
@@ -52,15 +53,20 @@ class PageReader:
     """Reads pages; remembers ids over all pages of a file.
 
     Args:
+        ids: those of all places and transitions of the file.
         drawn: whether anybody will look at the layout; without it, all things are where they are by default.
     """
 
-    def __init__(self, file: str, d: Diagnostics, unknown: Warn, *, drawn: bool = True) -> None:
+    def __init__(
+        self, file: str, d: Diagnostics, unknown: Warn, ids: Set[str], *, drawn: bool = True
+    ) -> None:
         self.file = file
         self.drawn = drawn
         self.d = d
         self.unknown = unknown
+        self.ids = ids
         self.seen: dict[str, Origin] = {}
+        self.arcs_seen: dict[str, Origin] = {}
 
     def page(self, node: Node) -> RawPage:
         """A `page` with everything on it."""
@@ -120,6 +126,28 @@ class PageReader:
             )
         else:
             self.seen[identity] = origin
+
+    def claim_arc(self, node: Node, origin: Origin, what: str) -> str:
+        """The id of an arc. Nothing refers to arcs, so that a repeated one is only made different."""
+        identity = node.get("id")
+        first = self.arcs_seen.get(identity) or self.seen.get(identity)
+        if not identity or first is None:
+            if not identity:
+                self.claim(node, origin, what)
+            self.arcs_seen[identity] = origin
+            return identity
+        self.d.warning(
+            DUPLICATE_ID,
+            f"{what} has the id `{identity}`, which is already used",
+            origin,
+            notes=[Note(f"`{identity}` is first used here", first)],
+            hint="nothing refers to arcs by their ids, so both count; give one of them another id",
+        )
+        number = 2
+        while (other := f"{identity}/{number}") in self.arcs_seen:
+            number += 1
+        self.arcs_seen[other] = origin
+        return other
 
     def check_children(self, node: Node) -> None:
         """Warn of unknown elements."""
@@ -209,7 +237,7 @@ class PageReader:
             source, target = target, source
         what = f"arc `{source}` -> `{target}`"
         origin = Origin(self.file, node.line, node.column, page, what, node.get("id"), "")
-        self.claim(node, origin, what)
+        identity = self.claim_arc(node, origin, what)
         self.check_children(node)
         # Design/CPN's arcs without direction, as at substitution transitions, move no tokens.
         undirected = orientation == "nodir"
@@ -223,22 +251,31 @@ class PageReader:
                 hint="orientations are PtoT, TtoP, BOTHDIR, Inhibitor, Reset",
             )
             return None
+        if transition and transition not in self.ids and (place in places or place not in self.ids):
+            self.d.warning(
+                ARC_DANGLING,
+                f"arc `{node.get('id')}` leads to the transition `{transition}`, which is nowhere in the file: "
+                "the arc is left out, as by the engine of CPN Tools",
+                origin,
+                hint="remove it from the file, or draw the transition again",
+            )
+            return None
         dangling = False
-        for end, identity, known, other, kind in (
+        for end, missing, known, other, kind in (
             ("placeend", place, places, transitions, "place"),
             ("transend", transition, transitions, places, "transition"),
         ):
-            if identity in known:
+            if missing in known:
                 continue
             dangling = True
             arc = f"arc `{node.get('id')}`"
-            if not identity:
+            if not missing:
                 message = f"{arc} has no {kind} end"
-            elif identity in other:
+            elif missing in other:
                 wrong = "transition" if kind == "place" else "place"
-                message = f"{arc} needs a {kind} at `{end}`, but `{identity}` is a {wrong}"
+                message = f"{arc} needs a {kind} at `{end}`, but `{missing}` is a {wrong}"
             else:
-                message = f"{arc} leads to the {kind} `{identity}`, which is not on page `{page}`"
+                message = f"{arc} leads to the {kind} `{missing}`, which is not on page `{page}`"
             self.d.error(
                 ARC_DANGLING, message, origin, hint="draw the arc again, or remove it from the file"
             )
@@ -248,7 +285,7 @@ class PageReader:
         if self.drawn:
             shape = layout(node, bends(node, points[transition], points[place]))
         return RawArc(
-            id=node.get("id"),
+            id=identity,
             orientation=orientation,
             transition=transition,
             place=place,

@@ -7,12 +7,12 @@ them. So every backend gives the same trajectories.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Literal, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pn2code.base.frozen import frozen
 from pn2code.robot.transforms import Array
 
 ClearanceKind = Literal["robots", "scene", "self"]
@@ -20,7 +20,7 @@ Picture: TypeAlias = NDArray[np.uint8]
 BackendName = Literal["fake", "bullet"]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Clearance:
     """The least distance of one group of parts.
 
@@ -42,7 +42,7 @@ class Clearance:
     point: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Camera:
     """Where a picture is taken from.
 

@@ -5,13 +5,14 @@ All in SI units (m, rad, s); scripts and files use mm and degrees, converted onc
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Literal
+
+from pn2code.base.frozen import frozen
 
 Frame = Literal["world", "tool"]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Pose:
     """Position (m) and orientation (rad) of one frame in another: fixed-axis XYZ angles, R = Rz(rz) Ry(ry) Rx(rx)."""
 
@@ -23,7 +24,7 @@ class Pose:
     rz: float
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MoveJoint:
     """PTP to a TCP pose in the world frame; `speed` is the fraction (0..1] of the configured joint speed."""
 
@@ -31,14 +32,14 @@ class MoveJoint:
     speed: float = 1.0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MoveHome:
     """PTP to the robot's HOME joint position."""
 
     speed: float = 1.0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MoveLinear:
     """LIN: absolute in the world frame, or incremental in the tool frame as it stands at the beginning.
 
@@ -50,7 +51,7 @@ class MoveLinear:
     speed: float | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ToolAction:
     """An action of the end effector (drill, insert, ...) that takes `duration` seconds."""
 
@@ -58,14 +59,14 @@ class ToolAction:
     duration: float
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Measure:
     """Look at a reference; the result is its measured Pose in the world frame."""
 
     nominal: Pose
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Wait:
     """Stand still for `duration` seconds."""
 

@@ -15,6 +15,7 @@ from functools import lru_cache, partial
 
 import numpy as np
 
+from pn2code.base.frozen import frozen
 from pn2code.robot import looks
 from pn2code.robot.commands import Pose
 from pn2code.robot.looks import Look
@@ -23,7 +24,7 @@ from pn2code.robot.scene import PanelConfig, RobotCell, SceneObject
 from pn2code.robot.transforms import Array, matrix_of, pose_of
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Solid:
     """A box (full lengths) or a cylinder (radius, radius, length along z), placed in the world."""
 

@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.robot import codes
 from pn2code.robot.chain import Chain, cross, derive
@@ -75,7 +76,7 @@ class Solution:
     q: Array
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Conditioning:
     """How far from a singularity.
 

@@ -18,6 +18,7 @@ from typing import Literal
 
 import numpy as np
 
+from pn2code.base.frozen import frozen
 from pn2code.robot.backend import Backend, Clearance
 from pn2code.robot.commands import Pose
 from pn2code.robot.executor import MotionKind
@@ -35,7 +36,7 @@ SEARCHED = 0.5  # m: clearances above this are not measured, only known to be la
 SINGULAR_SIGMA = 1e-3  # smaller, on a linear move: a direction in which the TCP cannot go
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Extreme:
     """The worst value of one measure so far.
 
@@ -60,7 +61,7 @@ class Extreme:
     parts: tuple[str, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Fault:
     """Why the cell must stop: kind, message (robot, parts, pose), time."""
 

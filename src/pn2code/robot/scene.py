@@ -18,6 +18,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.keys import in_words
 from pn2code.diagnostics.suggestions import did_you_mean
@@ -32,7 +33,7 @@ Locate = Callable[..., Origin]
 """Origin of a key, given its path: `Locator.origin` of `pn2code.cell.toml_file`."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MotionConfig:
     """`[motion]` in SI units.
 
@@ -56,7 +57,7 @@ class MotionConfig:
     sample: float = 0.02
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PanelConfig:
     """A piece of a cylindrical shell along x, with ribs and stringers inside; m and rad.
 
@@ -91,7 +92,7 @@ class PanelConfig:
 Colour = tuple[float, float, float, float]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class SceneObject:
     """A further thing in the cell: a box, a cylinder along its z, or a mesh.
 
@@ -113,7 +114,7 @@ class SceneObject:
     scale: float = 1.0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ContactRule:
     """Parts that may come together: names `body/link` with `*`, and how deep they may overlap (m)."""
 

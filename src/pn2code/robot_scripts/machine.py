@@ -13,6 +13,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from pn2code.base.frozen import frozen
 from pn2code.cell.partition import Channel, Owner, Partition
 from pn2code.diagnostics import Diagnostics, Note
 from pn2code.ml.core import terms as core
@@ -23,7 +24,7 @@ MAX_COEFFICIENT = 100
 """Multi-sets with more copies of a token are not counted out one by one (and are no robot program anyway)."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Outcome:
     """One way an output can turn out: conditions (and whether they hold), and the value of each token put.
 
@@ -36,7 +37,7 @@ class Outcome:
     """of the tokens put, those that have one: `@+ d` on the arc"""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Step:
     """A transition of the robot that can occur.
 
@@ -50,7 +51,7 @@ class Step:
     outcomes: tuple[Outcome, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Machine:
     """The robot's part of the net, understood.
 

@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
+from pn2code.base.frozen import frozen
 from pn2code.cell.config import Primitive
 from pn2code.cell.partition import OwnerKind
 from pn2code.diagnostics import Span
@@ -54,7 +55,7 @@ from pn2code.tdl.evaluate import ScriptError, ScriptValue, evaluate
 from pn2code.tdl.paths import all_names, children
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Situation:
     """A transition seen from its state: what its variables mean and when it is enabled.
 
@@ -83,7 +84,7 @@ class Situation:
         return conjunction([*self.local, *self.remote])
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Constants:
     """What names mean where only the script's constants are known."""
 

@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
+from pn2code.base.frozen import frozen
 from pn2code.robot_scripts.ir import Chain, Comment, Line, Node, Region, Repeat
 from pn2code.tdl import tree as t
 
@@ -21,21 +22,21 @@ State = int
 """A number that names a state (in robot programs: the index of a place)."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class To:
     """Go to a state."""
 
     state: State
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Halt:
     """Control ends here: the statements before stop the script, or the program is over (`over`)."""
 
     over: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Then:
     """Statements, then more. `region`: they and what comes before the next state belong to a net element."""
 
@@ -43,7 +44,7 @@ class Then:
     rest: Tree
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Branches:
     """The first branch whose condition holds."""
 
@@ -166,7 +167,7 @@ class _Graph:
         return sum(not self.dominates(s, p) for p in self.predecessors[s]) + (s == self.start)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _LoopContext:
     header: State
     exit: State | None

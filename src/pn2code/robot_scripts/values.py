@@ -10,8 +10,8 @@ field of a pose); where it meets another number the units are brought together.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Span
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
@@ -36,7 +36,7 @@ class UnsupportedError(Exception):
 # --- shapes: what a type or colour set is made of ----------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Leaf:
     """One script value."""
 
@@ -44,7 +44,7 @@ class Leaf:
     single: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Fields:
     """A record or product (labels 1, 2, ...) that is not a pose, in declared order; unit has no fields."""
 
@@ -139,7 +139,7 @@ def shape_of_colset(
 # --- values ------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Scalar:
     """A script expression with its script type (LENGTH and ANGLE for reals that come from a pose)."""
 
@@ -147,7 +147,7 @@ class Scalar:
     type: tdl.Type
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Rec:
     """A record or tuple that is not a pose; unit has no fields."""
 
@@ -158,7 +158,7 @@ class Rec:
         return next(v for name, v in self.fields if name == label)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Closure:
     """A function of the net with what its free variables mean."""
 
@@ -167,7 +167,7 @@ class Closure:
     name: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Primitive:
     """A function that is a robot command."""
 

@@ -10,8 +10,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from pn2code.base.frozen import frozen
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.evaluation.effects import Effects, outside
 from pn2code.semantics.evaluation.evaluate import Evaluator
@@ -20,6 +21,7 @@ from pn2code.semantics.values.multiset import MultiSet, TimedMultiSet
 from pn2code.structure import flows, siphons
 from pn2code.structure.bounds import (
     MOST_PROGRAMS,
+    MOST_WORK,
     PlaceBound,
     constant_of,
     markable,
@@ -35,7 +37,7 @@ from pn2code.structure.skeleton import Skeleton, skeleton
 from pn2code.structure.symbolic import Symbolic
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Limits:
     """Where the searches stop; they count work, so that the same net always gives the same answer.
 
@@ -43,16 +45,18 @@ class Limits:
         flows: of the searches for invariants.
         siphons: most minimal siphons, and traps.
         siphon_work: see `siphons.minimal`.
-        programs: most linear programs for bounds.
+        programs: most linear programs for bounds that are solved in floating point; 0: none at all.
+        program_work: what those in integers may compute before.
     """
 
     flows: flows.Limits = field(default_factory=flows.Limits)
     siphons: int = 500
     siphon_work: int = 1_000_000
     programs: int = MOST_PROGRAMS
+    program_work: int = MOST_WORK
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PInvariant:
     """`sum of weight * tokens = constant`; None where the initial marking is not known."""
 
@@ -60,14 +64,14 @@ class PInvariant:
     constant: int | None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TInvariant:
     """If each of the modes (by index in `Skeleton.modes`) occurs so often, all places have as many tokens as before."""
 
     weights: Mapping[int, int]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Siphon:
     """A minimal siphon.
 
@@ -84,7 +88,7 @@ class Siphon:
     trap_is_marked: bool
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Elements:
     """Places and transitions that stand out.
 
@@ -108,7 +112,7 @@ class Elements:
     dead: Mapping[int, str]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Analysis:
     """What the structure says.
 
@@ -166,7 +170,7 @@ class Analysis:
         return True if self.siphons_complete else None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Start:
     evaluator: Evaluator | None
     marking: tuple[MultiSet | TimedMultiSet | None, ...]
@@ -215,8 +219,9 @@ def analyse(
         initial,
         p_flows.vectors,
         coloured.found,
-        cycling=_cycling(p_flows, t_flows),
+        cycling=lambda: _cycling(p_flows, t_flows),
         programs=limits.programs,
+        work=limits.program_work,
     )
     parts, strong = components(g, len(net.places))
     t_covered = {skel.modes[k].transition for v in t_flows.vectors for k in v}
@@ -250,7 +255,7 @@ def analyse(
     )
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Sum:
     """`sum of weight * marking` never changes.
 
@@ -289,14 +294,15 @@ def bounds_and_sums(
     symbolic = Symbolic(net, start.evaluator)
     skel = skeleton(net, symbolic)
     coloured = coloured_invariants(skel, symbolic, start.marking, bool(storage))
-    p_flows, t_flows = _p_flows(skel, limits), _t_flows(skel, _SHORT)
+    p_flows = _p_flows(skel, limits)
     found = place_bounds(
         skel,
         start.initial,
         p_flows.vectors,
         coloured.found,
-        cycling=_cycling(p_flows, t_flows),
+        cycling=lambda: _cycling(p_flows, _t_flows(skel, _SHORT)),
         programs=limits.programs,
+        work=limits.program_work,
     )
     return found, (*_coloured_sums(coloured.found), *_sums(p_flows.vectors, start.initial))
 

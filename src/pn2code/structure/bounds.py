@@ -11,17 +11,20 @@ tokens count with the worst case.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.structure import flows
 from pn2code.structure.coloured import ColouredInvariant
+from pn2code.structure.simplex import MarkingProgram, TooMuchWorkError
 from pn2code.structure.skeleton import Mode, Skeleton
 from pn2code.structure.symbolic import Image, image_type, is_multiset
 
 MOST_PROGRAMS = 150
+MOST_WORK = 1_000_000
+"""Numbers that the exact linear programs may compute, some tenths of a second; beyond, floating point takes over."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Proof:
     """Why a place is bounded.
 
@@ -36,7 +39,7 @@ class Proof:
     initial: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ColourProof:
     """Why a place never has more than `most` tokens of one colour: an invariant, and the place's weight in it."""
 
@@ -45,7 +48,7 @@ class ColourProof:
     weight: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PlaceBound:
     """What is proven of a place.
 
@@ -113,8 +116,9 @@ def place_bounds(
     invariants: Sequence[flows.Vector],
     coloured: Sequence[ColouredInvariant],
     *,
-    cycling: Collection[int] = (),
+    cycling: Callable[[], Collection[int]] = tuple,
     programs: int = MOST_PROGRAMS,
+    work: int = MOST_WORK,
 ) -> dict[int, PlaceBound]:
     """The best bound known for each place.
 
@@ -123,9 +127,11 @@ def place_bounds(
         initial: numbers of tokens.
         invariants: P-invariants.
         coloured: coloured ones.
-        cycling: modes that are in a T-invariant, if `invariants` are all the minimal ones. If these are all modes,
-            every sub-invariant is an invariant (y * C * x = 0 with all x > 0), and no linear program can tell more.
-        programs: most linear programs.
+        cycling: gives modes that are in a T-invariant, if `invariants` are all the minimal ones. If these are all
+            modes, every sub-invariant is an invariant (y * C * x = 0 with all x > 0), and no linear program can tell
+            more. It is only asked where exact programs would take too long.
+        programs: most linear programs in floating point, for large nets; 0: no programs at all.
+        work: what exact ones may compute (`MarkingProgram.work`).
     """
     marked, live = markable(skeleton, initial)
     best: dict[int, Proof] = {}
@@ -144,10 +150,11 @@ def place_bounds(
             continue
         for p in vector:
             offer(p, Proof("constant" if len(vector) == 1 else "invariant", vector, total))
-    if len(live) < len(skeleton.modes) or not live <= set(cycling):
-        _by_programs(
-            skeleton, initial, [skeleton.modes[k] for k in sorted(live)], best, offer, programs
-        )
+    if programs:
+        search = _Search(skeleton, initial, [skeleton.modes[k] for k in sorted(live)], best, offer)
+        is_done = search.exactly(work)
+        if not is_done and (len(live) < len(skeleton.modes) or not live <= set(cycling())):
+            search.in_floats(programs)
     colours = _colour_proofs(coloured)
     upper = {p: _bound(p, proof) for p, proof in best.items()}
     lower = _lower(invariants, initial, upper)
@@ -189,38 +196,57 @@ def constant_of(vector: Mapping[int, int], initial: Sequence[int | None]) -> int
     return total
 
 
-def _by_programs(
-    skeleton: Skeleton,
-    initial: Sequence[int | None],
-    modes: Sequence[Mode],
-    best: Mapping[int, Proof],
-    offer: Callable[[int, Proof], None],
-    programs: int,
-) -> None:
+class _Search:
     """Better bounds by linear programs: for places without one, then for those whose bound is above 1."""
-    rows, limited = worst_changes(skeleton, modes)
-    usable = [p for p in limited if initial[p] is not None]
-    if not any(_open(p, best) for p in usable):
-        return
-    position = {p: i for i, p in enumerate(usable)}
-    matrix = [rows[p] or {} for p in usable]
-    entries = sum(map(len, matrix))
-    budget = min(programs, 600_000 // max(1_500, entries))
-    program = flows.Program(matrix, at_most=True)
-    possible = program.support()
-    costs = [float(initial[p] or 0) for p in usable]
-    wanted = [p for p in usable if _open(p, best) and position[p] in possible]
-    wanted.sort(key=lambda p: (p in best, p))
-    for p in wanted:
-        if program.solved > budget:
-            return
-        vector = program.invariant(position[p], costs)
+
+    def __init__(
+        self,
+        skeleton: Skeleton,
+        initial: Sequence[int | None],
+        modes: Sequence[Mode],
+        best: Mapping[int, Proof],
+        offer: Callable[[int, Proof], None],
+    ) -> None:
+        rows, limited = worst_changes(skeleton, modes)
+        self._usable = [p for p in limited if initial[p] is not None]
+        self._matrix = [rows[p] or {} for p in self._usable]
+        self._tokens = [initial[p] or 0 for p in self._usable]
+        self._offer = offer
+        wanted = [i for i, p in enumerate(self._usable) if _open(p, best)]
+        wanted.sort(key=lambda i: self._usable[i] in best)
+        self._left = wanted
+
+    def exactly(self, work: int) -> bool:
+        """In integers; False when that has been given up."""
+        program = MarkingProgram(self._matrix, self._tokens)
+        for position, i in enumerate(self._left):
+            try:
+                self._found(i, program.most(i, work))
+            except TooMuchWorkError:
+                self._left = self._left[position:]
+                return False
+        return True
+
+    def in_floats(self, programs: int) -> None:
+        """For the places that are left, at most so many programs (fewer for a large net)."""
+        entries = sum(map(len, self._matrix))
+        budget = min(programs, 600_000 // max(1_500, entries))
+        program = flows.Program(self._matrix, at_most=True)
+        possible = program.support()
+        costs = [float(n) for n in self._tokens]
+        for i in self._left:
+            if program.solved > budget:
+                return
+            if i in possible:
+                self._found(i, program.invariant(i, costs))
+
+    def _found(self, row: int, vector: Mapping[int, int] | None) -> None:
         if vector is None:
-            continue
-        weights = {usable[i]: w for i, w in vector.items()}
-        total = constant_of(weights, initial)
-        if total is not None:
-            offer(p, Proof("sub-invariant", weights, total))
+            return
+        assert flows.is_sub_invariant(self._matrix, vector)
+        total = sum(w * self._tokens[i] for i, w in vector.items())
+        weights = {self._usable[i]: w for i, w in vector.items()}
+        self._offer(self._usable[row], Proof("sub-invariant", weights, total))
 
 
 def _open(place: int, best: Mapping[int, Proof]) -> bool:

@@ -12,9 +12,9 @@ invariant of the matrix is one of the net, whatever its colour sets.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
+from pn2code.base.frozen import frozen
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.types import REAL, UNIT, TCon, TFun, TRecord, Type
 from pn2code.net.flat import FlatNet
@@ -46,7 +46,7 @@ MOST_TERMS = 16
 _LIMITS = flows.Limits(rows=1_500, work=20_000, programs=10, cells=1_000_000)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Projection:
     """A place and how its tokens are seen."""
 
@@ -54,7 +54,7 @@ class Projection:
     steps: tuple[Step, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ColouredInvariant:
     """`sum of weight * projection(marking) = constant`, as multi-sets over a type.
 
@@ -76,7 +76,7 @@ class ColouredInvariant:
         return all(w > 0 for _, w in self.terms)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ColouredInvariants:
     """What was found: minimal semi-positive ones first; `complete` is false where a limit cut the search."""
 

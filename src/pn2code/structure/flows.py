@@ -19,11 +19,13 @@ from heapq import heapify, heappop, heappush
 from math import gcd
 from typing import Any
 
+from pn2code.base.frozen import frozen
+
 Row = Mapping[int, int]
 Vector = dict[int, int]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Limits:
     """Where the search for invariants stops.
 
@@ -40,7 +42,7 @@ class Limits:
     cells: int = 6_000_000
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Flows:
     """Semi-positive invariants.
 
@@ -307,10 +309,12 @@ class Program:
         result = linprog(cost, **self._constraints(self._matrix), bounds=bounds, method="highs")
         if result.x is None or result.status != 0:
             return None
-        return self._exact([i for i in range(n) if result.x[i] > 1e-9], row)
+        return self._exact([i for i in range(n) if result.x[i] > 1e-9], row, costs)
 
-    def _exact(self, support: list[int], row: int) -> Vector | None:
-        """The exact vector with that support (or a part of it) and the row."""
+    def _exact(
+        self, support: list[int], row: int, costs: Sequence[float] | None = None
+    ) -> Vector | None:
+        """The exact vector with that support (or a part of it) and the row; the cheapest for weight 1 of the row."""
         rows: list[dict[int, int]] = [dict(self._rows[i]) for i in support]
         if self._at_most:
             # y * matrix + slack = 0: a slack row for each column that is touched.
@@ -321,7 +325,14 @@ class Program:
         chosen = [v for v in small if position in v]
         if not chosen:
             return None
-        best = min(chosen, key=lambda v: (len(v), sorted(v.items())))
+
+        def cost(vector: Vector) -> float:
+            if costs is None:
+                return 0.0
+            known = [(i, w) for i, w in vector.items() if i < len(support)]
+            return sum(costs[support[i]] * w for i, w in known) / vector[position]
+
+        best = min(chosen, key=lambda v: (cost(v), len(v), sorted(v.items())))
         vector = {support[i]: w for i, w in best.items() if i < len(support)}
         assert self._holds(vector)
         return vector

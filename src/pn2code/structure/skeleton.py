@@ -14,8 +14,8 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import NOWHERE, SourceText, Span
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
@@ -23,7 +23,7 @@ from pn2code.ml.core.types import INT
 from pn2code.net.dump import text_of
 from pn2code.net.enumerable import size as number_of_values
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatTransition
-from pn2code.net.uses import NetVariables
+from pn2code.net.uses import NetVariables, pattern_variables, walk
 from pn2code.semantics.evaluation.evaluate import Evaluator, Limits
 from pn2code.semantics.values.data import MlException, MlLimit, MlUnavailable
 from pn2code.structure.symbolic import Atom, Facts, Part, Sum, Symbolic, add, scaled
@@ -41,7 +41,7 @@ _TOKEN = Atom(core.Lit(1, INT, Span(SourceText("", NOWHERE), 0, 0)), -1)
 """Stands for one token, whatever its colour."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Size:
     """A number of tokens between two bounds; `high` None: without limit."""
 
@@ -64,7 +64,7 @@ ONE = Size(1, 1)
 UNKNOWN = Size(0, None)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Mode:
     """One of the ways in which a transition occurs, as far as numbers of tokens go.
 
@@ -84,7 +84,7 @@ class Mode:
     unknown: frozenset[int]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Varying:
     """An arc whose number of tokens is not constant."""
 
@@ -95,7 +95,7 @@ class Varying:
     size: Size
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Flow:
     """What one transition moves, symbolically: place -> sum."""
 
@@ -104,7 +104,7 @@ class Flow:
     put: Mapping[int, dict[Part, int]]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Skeleton:
     """The net without colours.
 
@@ -157,9 +157,15 @@ class Counter:
             self._known[e] = self._size(e, part.atom)
         return self._known[e]
 
-    def _size(self, e: core.Exp, atom: Atom) -> Size:
+    def _size(self, e: core.Exp, atom: Atom, local: frozenset[core.Symbol] = frozenset()) -> Size:
+        """Of an expression in which the patterns around it have given values to the local names."""
         evaluator = self.symbolic.evaluator
-        if evaluator is not None and not atom.serial and self.symbolic.is_timeless(e):
+        if (
+            evaluator is not None
+            and not atom.serial
+            and self.symbolic.is_timeless(e)
+            and not any(isinstance(x, core.Var) and x.symbol in local for x in walk(e))
+        ):
             found = self._by_evaluation(e, evaluator)
             if found is not None:
                 return found
@@ -167,10 +173,14 @@ class Counter:
             isinstance(e, core.Var)
             and e.symbol.colset is not None
             and e.symbol not in self._unchecked
+            and e.symbol not in local
         ):
             return _length(e.symbol.colset)
         if isinstance(e, core.Case):
-            sizes = [self._size(rule.body, atom) for rule in e.rules]
+            sizes = [
+                self._size(rule.body, atom, local.union(pattern_variables(rule.pattern)))
+                for rule in e.rules
+            ]
             highs = [s.high for s in sizes]
             high = None if None in highs else max(h for h in highs if h is not None)
             return Size(min(s.low for s in sizes), high)

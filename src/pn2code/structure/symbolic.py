@@ -18,6 +18,7 @@ import itertools
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
+from pn2code.base.frozen import frozen
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import INT, STRING, TCon, TRecord, Type
 from pn2code.net.flat import ArcInscription, FlatNet, FlatTransition, Form
@@ -36,7 +37,7 @@ CLOCKS = frozenset({"Time.time", "Time.step"})
 _STAMPED_TOKEN = frozenset({"Time.token@+", "Time.token@++", "Time.@"})
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Atom:
     """An expression; with effects, `serial` makes it differ from all others."""
 
@@ -44,7 +45,7 @@ class Atom:
     serial: int = 0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Part:
     """A summand.
 
@@ -60,14 +61,14 @@ class Part:
     steps: tuple[Step, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Component:
     """A projection: the component of a tuple or record."""
 
     label: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Image:
     """A projection: the value of a function of the net; of a function that gives a multi-set, that multi-set."""
 

@@ -160,9 +160,14 @@ def _half_even(value: float) -> int:
     return round(value)
 
 
+def _ceiling(value: float) -> int:
+    """As the net computes it: SML/NJ's sum rounds, so that 3.0000000000000004 is 3."""
+    return -1 - math.floor(-1.0 - value)
+
+
 _TO_INT: dict[str, Callable[[float], int]] = {
     "floor": math.floor,
-    "ceil": math.ceil,
+    "ceil": _ceiling,
     "round": _half_even,
     "trunc": math.trunc,
 }

@@ -15,11 +15,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field, replace
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Span
 from pn2code.tdl import tree as t
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Do:
     """A statement that is executed where it stands."""
 
@@ -27,7 +28,7 @@ class Do:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Jump:
     """Go on at `target`; `written` if a person wrote the `goto` or `exit` (else the end of a block)."""
 
@@ -36,7 +37,7 @@ class Jump:
     written: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BranchUnless:
     """Go on at `target` unless the condition holds."""
 
@@ -45,7 +46,7 @@ class BranchUnless:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BranchIf:
     """Go on at `target` if the condition holds (`exit when`)."""
 
@@ -54,7 +55,7 @@ class BranchIf:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class CallProcedure:
     """Run a procedure, then go on behind."""
 
@@ -62,7 +63,7 @@ class CallProcedure:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class End:
     """The end of the body; `written` for `return`."""
 
@@ -73,7 +74,7 @@ class End:
 Instruction = Do | Jump | BranchUnless | BranchIf | CallProcedure | End
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Body:
     """The code of the program or a procedure; `labels` give positions."""
 

@@ -14,11 +14,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import astuple, dataclass
+from dataclasses import astuple
 from pathlib import PurePath
 from typing import Any, Final, Protocol, assert_never, cast
 
 import pn2code.robot.commands as commands
+from pn2code.base.frozen import frozen
 from pn2code.base.real_json import real_to_json
 from pn2code.tdl import flow, paths
 from pn2code.tdl import tree as t
@@ -66,7 +67,7 @@ class Files(Protocol):
 # --- what the interpreter asks of its driver ---------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Execute:
     """Run a command; resume when it is done."""
 
@@ -74,7 +75,7 @@ class Execute:
     line: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class AwaitFile:
     """Nothing to do until one of these files, all empty now, holds a message."""
 
@@ -82,7 +83,7 @@ class AwaitFile:
     line: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Sense:
     """Resume with what this sensor says: a scalar of `type`. It takes no time."""
 
@@ -91,12 +92,12 @@ class Sense:
     line: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Finished:
     """The script has ended."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Fault:
     """The script cannot go on (or said `stop`)."""
 
@@ -110,7 +111,7 @@ Request = Execute | Sense | AwaitFile | Finished | Fault
 # --- what it tells -----------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Marked:
     """A net transition has occurred; `binding` is in the form of docs/trace.md."""
 
@@ -119,7 +120,7 @@ class Marked:
     line: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MessageRead:
     """A message was copied."""
 
@@ -128,7 +129,7 @@ class MessageRead:
     line: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MessageConsumed:
     """A message was taken: its file is empty now."""
 
@@ -137,7 +138,7 @@ class MessageConsumed:
     line: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MessageWritten:
     """A message was published."""
 
@@ -153,7 +154,7 @@ def _ignore(event: Event) -> None:
     return None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Saved:
     """The state of a run between two requests; equal states go on alike."""
 

@@ -220,6 +220,7 @@ class Footprint:
     constants: int
     data: int
     bss: int
+    arena: int
     stack: int
     path: tuple[str, ...]
     functions: int
@@ -253,7 +254,7 @@ class Footprint:
                 f"constants                   {self.constants:>12,} bytes (.rodata, .data.rel.ro)",
                 f"RAM                         {self.ram:>12,} bytes",
                 f"  .data                     {self.data:>12,}",
-                f"  .bss                      {self.bss:>12,}, of which the arena is `arena_size` in cell_config.c",
+                f"  .bss                      {self.bss:>12,}, of which arena {self.arena:,} (see cell_config.c)",
                 f"  deepest stack             {self.stack:>12,}: {' > '.join(self.path)}",
                 f"recursion                   {listed(self.cycle)}",
                 f"stack that depends on data  {listed(self.unbounded)}",
@@ -302,6 +303,7 @@ def measure(folder: Path) -> Footprint:
         constants=sum(sections.get(n, 0) for n in (".rodata", ".data.rel.ro")),
         data=sections.get(".data", 0),
         bss=sections.get(".bss", 0),
+        arena=_arena(_said(folder, "nm", "-S", "supervisor")),
         stack=stack,
         path=path,
         functions=len(graph.stack),
@@ -311,6 +313,12 @@ def measure(folder: Path) -> Footprint:
         library=tuple(n for n in used if n not in HEAP),
         long=tuple((n, k) for s in sources for n, k in long_functions(s)),
     )
+
+
+def _arena(symbols: str) -> int:
+    """Bytes of the arena, of what `nm -S` prints; 0: there is none."""
+    found = [line.split() for line in symbols.splitlines()]
+    return sum(int(s[1], 16) for s in found if len(s) == 4 and s[3] == "s_arena")
 
 
 def main() -> int:

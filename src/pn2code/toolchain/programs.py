@@ -23,11 +23,11 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from fnmatch import fnmatch
 from functools import cache
 from pathlib import Path
 
+from pn2code.base.frozen import frozen
 from pn2code.base.os_reason import os_reason
 from pn2code.base.private_folder import private_folder, without_folder
 from pn2code.diagnostics import Diagnostics, Origin
@@ -61,7 +61,7 @@ _BUILDS = "build-"
 _LOOK_S = 0.1
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Host:
     """What is linked with a net.
 
@@ -99,7 +99,7 @@ class Host:
         return is_wanted and name not in self.instead
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Compiler:
     """A C compiler.
 

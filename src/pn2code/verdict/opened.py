@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
+from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
 from pn2code.cell.locate import locate
 from pn2code.diagnostics import Diagnostics
@@ -17,7 +17,7 @@ from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.token_game import Game
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Given:
     """The marking that a file gives a place at the start of a run (`verdict.input_files`).
 
@@ -33,7 +33,7 @@ class Given:
     says: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class OpenNet:
     """A net, the cell beside it, if there is one, and what the front end knows of it.
 

@@ -118,6 +118,17 @@ def test_refuses_what_it_does_not_do() -> None:
 
             items: int = field(default=0, init=False)
 
+    with pytest.raises(TypeError, match="__hash__.*use @dataclass"):
+
+        @frozen
+        class Own:
+            """What it says of its hash would be lost."""
+
+            items: int
+
+            def __hash__(self) -> int:
+                return 0
+
 
 def test_wrong_arguments() -> None:
     with pytest.raises(TypeError, match="name"):

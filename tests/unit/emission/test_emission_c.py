@@ -16,12 +16,16 @@ import pytest
 
 from helpers.compiled import lowered
 from helpers.netbuilder import flat
+from pn2code.cell.divide import divide
+from pn2code.diagnostics import Diagnostics
 from pn2code.emission import environment
 from pn2code.emission.c import emit
 from pn2code.emission.c_expressions import c_bytes, c_integer
 from pn2code.emission.c_lines import wrap
 from pn2code.emission.output import OutputFile
 from pn2code.ir import calls
+from pn2code.lowering.nets.net import lower
+from pn2code.lowering.nets.packing import Packing
 
 WORK = """
     net Work
@@ -154,6 +158,28 @@ def test_a_full_disk_keeps_no_template_from_being_rendered(
     monkeypatch.setattr(environment, "private_folder", lambda: tmp_path)
     made = environment.environment.__wrapped__()  # not the one that is remembered
     assert made.get_template("c/net.c.j2").name == "c/net.c.j2"
+
+
+@pytest.mark.parametrize("most_colours", [0, 4096])
+def test_explorers_put_nothing_back(most_colours: int) -> None:
+    """They fire in a copy, which they throw away where a place is full; the others go on with the marking."""
+    net = flat(
+        "net Full\n  standard\n  var n: INT; var b: BOOL;\n  place P : INT = 1`0\n  place Q : INT\n"
+        "  place R : BOOL = 1`true\n  place S : BOOL\n"
+        "  trans T\n    in P : n\n    in R : b\n    out Q : n\n    out S : b\n    out P : n + 1\n"
+    )
+    texts = []
+    for successors in (False, True):
+        width = {"R": 8, "S": 8} if most_colours else {}
+        d = Diagnostics()
+        packing = Packing(width, 8, most_colours=most_colours, successors=successors)
+        partition = divide(net, None, d)
+        assert partition is not None
+        ir = lower(partition, {}, d, packing=packing)
+        assert ir is not None, [i.message for i in d]
+        texts.append(emit(ir, "9.9")[0].text)
+    assert ["put back" in text for text in texts] == [True, False]
+    assert "return fits;" in texts[1]
 
 
 def test_work_grows_with_the_net(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -174,7 +174,21 @@ def test_a_variable_declared_again_with_another_colour_set_gives_a_warning() -> 
         "variable-of-other-colour-set | variable `n` of colour set `INT` is declared again, now of `STRING` | "
     ]
     assert not m.d.has_errors
-    assert m.inscription("n", "STRING") == "token n"
+    assert m.inscription("n", "INT") == "token n", "the first declaration counts, as in CPN Tools"
+
+
+def test_a_variable_has_the_last_colour_set_of_the_name() -> None:
+    """As in CPN Tools, which looks for the colour set when a variable is used."""
+    m = Ml()
+    m.colset("E", "enum", "one", "two")
+    m.colset("OF_E", "alias", "E")
+    m.e.variables(["e"], "E", Origin("net.cpn"))
+    m.e.variables(["f"], "OF_E", Origin("net.cpn"))
+    m.colset("E", "int")
+    assert not m.messages()
+    assert m.inscription("e", "E") == "token e"
+    assert m.inscription("f", "OF_E") == "token f"
+    assert m.e.program().variables["e"].colset == m.e.program().colsets["E"]
 
 
 def test_members_list_of_a_subset_is_core() -> None:

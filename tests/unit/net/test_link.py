@@ -2,6 +2,10 @@
 
 from __future__ import annotations
 
+import re
+
+import pytest
+
 from helpers.netbuilder import cpn
 from pn2code.diagnostics import Diagnostics, Severity
 from pn2code.net.flat import ArcKind
@@ -120,6 +124,26 @@ def test_bad_and_double_assignments() -> None:
     assert {names[q.port]: names[q.socket] for q in second.ports} == {"I": "B", "O": "B"}
 
 
+def test_a_port_that_is_not_on_the_subpage_is_an_error() -> None:
+    """The engine of CPN Tools refuses the socket: "Cannot find port on page"."""
+    text = cpn(HIERARCHY).decode("iso-8859-1")
+    pairs = re.findall(r'portsock="\((\w+),(\w+)\)', text)
+    port, socket = pairs[0]
+    changed = text.replace(f"({port},{socket})", f"(GONE,{socket})", 1)
+    net, d = run(changed.encode("iso-8859-1"))
+    assert net is None
+    errors = [(x.code, x.message) for x in d.errors]
+    assert errors == [
+        (
+            "port-assignment",
+            "a port assignment of `S1` is wrong: `GONE` is not a port of page `Sub`",
+        )
+    ]
+    neither = text.replace(f"({port},{socket})", f"({port},{socket})(GONE,GONE2)", 1)
+    net, d = run(neither.encode("iso-8859-1"))
+    assert net is not None and [x.code for x in d] == ["port-assignment"]
+
+
 def test_unknown_subpage() -> None:
     net, d = run("net N\n  page Top\n    subst S = Nowhere")
     assert net is None
@@ -236,12 +260,14 @@ def test_default_texts_are_absent() -> None:
     assert (t.guard, t.delay, t.code, t.priority) == (None, None, None, None)
 
 
-def test_channels_have_no_effect() -> None:
+@pytest.mark.parametrize(
+    ("text", "severities"), [("ch.!x", ["error"]), ("n", ["error"]), ("()", [])]
+)
+def test_channels_are_not_supported(text: str, severities: list[str]) -> None:
     data = cpn("net N\n  place A : INT\n  trans T\n    in A : n")
-    text = b'<channel id="ch"><text>ch.!x</text></channel><cond '
-    net, d = run(data.replace(b"<cond ", text))
-    assert net is not None
-    assert [(x.code, x.severity.value) for x in d] == [("unsupported-channel", "warning")]
+    channel = f'<channel id="ch"><text>{text}</text></channel><cond '.encode()
+    _, d = run(data.replace(b"<cond ", channel))
+    assert [x.severity.value for x in d if x.code == "unsupported-channel"] == severities
 
 
 def test_inscriptions_of_substitution_transitions_have_no_effect() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -302,3 +303,62 @@ def test_broken_port_assignment() -> None:
     _, d = parse(data.replace('portsock="(', 'portsock="junk('))
     assert [x.code for x in d] == ["cpn-element"]
     assert "junk" in d.items[0].message
+
+
+def test_arcs_of_one_id_both_count() -> None:
+    """Nothing refers to arcs, and the engine of CPN Tools takes such nets."""
+    text = cpn(NET).decode("iso-8859-1")
+    ids = re.findall(r'<arc id="(ID\d+)"', text)
+    changed = text.replace(f'"{ids[1]}"', f'"{ids[0]}"')
+    document, d = parse(changed)
+    assert [(x.code, x.severity.value) for x in d] == [("duplicate-id", "warning")]
+    assert document is not None
+    arcs = document.pages[0].arcs
+    assert len(arcs) == 2 and len({a.id for a in arcs}) == 2
+
+
+def test_an_arc_may_have_the_id_of_a_node() -> None:
+    text = cpn(NET).decode("iso-8859-1")
+    document, d = parse(re.sub(r'<arc id="ID\d+"', '<arc id="ID90"', text, count=1))
+    assert [x.severity.value for x in d] == ["warning"]
+    assert document is not None and len(document.pages[0].arcs) == 2
+
+
+def test_an_arc_of_a_transition_that_was_removed_is_left_out() -> None:
+    left_over = (
+        '<arc id="X1" orientation="PtoT"><transend idref="GONE"/><placeend idref="{}"/>'
+        '<annot id="X2"><text>n</text></annot></arc></page>'
+    )
+    for place in ("ID90", "GONE2"):
+        document, d = parse(change("</page>", left_over.format(place)))
+        assert [(x.code, x.severity.value) for x in d] == [("arc-dangling", "warning")]
+        assert "`GONE`, which is nowhere in the file" in d.items[0].message
+        assert document is not None and len(document.pages[0].arcs) == 2
+
+
+@pytest.mark.parametrize(
+    "definition",
+    [
+        "<enum><id>a-b</id><id>c</id></enum>",
+        "<enum><id>1a</id></enum>",
+        "<enum><id>a b</id></enum>",
+        "<enum><id>open</id><id>shut</id></enum>",
+        "<index><ml>1</ml><ml>3</ml><id>a.b</id></index>",
+        "<bool><with><id>no-</id><id>yes</id></with></bool>",
+        "<record><recordfield><id>type</id><id>INT</id></recordfield></record>",
+        "<record><recordfield><id>a-b</id><id>INT</id></recordfield></record>",
+        "<union><unionfield><id>a b</id><type><id>INT</id></type></unionfield></union>",
+    ],
+)
+def test_constants_and_labels_are_names_of_cpn_ml(definition: str) -> None:
+    """The engine of CPN Tools refuses them all."""
+    colset = f'<color id="X1"><id>K</id>{definition}</color></globbox>'
+    _, d = parse(change("</globbox>", colset))
+    assert [(x.code, x.severity.value) for x in d] == [("cpn-element", "error")]
+    assert "cannot be declared" in d.items[0].message
+
+
+def test_labels_of_a_record_may_be_numbers() -> None:
+    fields = "".join(f"<recordfield><id>{n}</id><id>INT</id></recordfield>" for n in (1, 2))
+    colset = f'<color id="X1"><id>K</id><record>{fields}</record></color></globbox>'
+    good(change("</globbox>", colset))

@@ -19,6 +19,7 @@ from pn2code.cli import main
 from pn2code.semantics.game.graph import state_space
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.structure import Analysis, Limits, analyse, bounds, report
+from pn2code.structure.bounds import check
 from pn2code.structure.siphons import mask_of, minimal, places_of, siphon_rules, trap_rules
 from pn2code.structure.skeleton import skeleton
 from pn2code.structure.symbolic import Symbolic
@@ -491,6 +492,26 @@ def test_sizes_of_small_colour_sets_are_found_by_evaluation() -> None:
     assert upper(a) == {"A": 1, "B": 2}
 
 
+def test_what_a_pattern_gives_a_name_is_not_a_value_that_can_be_tried() -> None:
+    """The part of a `case` in which a pattern binds a name has a size that is not known."""
+    a = study("""
+        fun half n = if n mod 2 = 0 then SOME (n div 2) else NONE;
+        fun pair 1 = (1, [1, 2]) | pair m = (m, [m]);
+        place A : INT = 1`4 ++ 1`3
+        place S : SMALL = 1`1
+        place B : INT
+        place C : INT
+        trans t
+          in A : n
+          in S : m
+          out B : case half n of SOME part => 1`part | NONE => empty
+          out C : case pair m of (1, found) => found | (one, _) => 1`one ++ 1`one
+    """)
+    kinds = {v.place: v.size for v in a.skeleton.varying}
+    assert all(not size.exact for size in kinds.values())
+    assert {a.net.places[place].short for place in kinds} == {"B"}, "C gets two, whatever `m` is"
+
+
 def test_lists_are_tokens_or_multisets() -> None:
     a = study("""
         place Q : LIST = [1, 2]
@@ -732,13 +753,26 @@ def test_the_verb(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert shape["bounded"] is True
 
 
-def test_sub_invariants_are_looked_for_only_where_they_can_tell_more() -> None:
+def test_sub_invariants_tell_more_only_of_nets_that_lose_tokens() -> None:
     """In a consistent net the invariants say all: with and without linear programs the bounds are the same."""
     cyclic = net(MUTEX)
     assert bounds(cyclic) == bounds(cyclic, Limits(programs=0))
     losing = net(MUTEX + "    trans lose\n      in crit1\n")
     assert {b.bound for b in bounds(losing).values()} == {1}
     assert None in {b.bound for b in bounds(losing, Limits(programs=0)).values()}
+
+
+@pytest.mark.parametrize("work", [0, 20])
+def test_large_nets_get_the_same_bounds_in_floating_point(work: int) -> None:
+    """From the first place on, and from where the exact programs gave up."""
+    losing = net(MUTEX + "    trans lose\n      in crit1\n")
+    exact = bounds(losing)
+    other = bounds(losing, Limits(program_work=work))
+    assert {k: (b.bound, b.lower) for k, b in other.items()} == {
+        k: (b.bound, b.lower) for k, b in exact.items()
+    }
+    skel = skeleton(losing, Symbolic(losing, None))
+    assert all(check(skel, b, analyse(losing).initial) for b in (*exact.values(), *other.values()))
 
 
 def test_outputs_of_code_segments_may_lie_outside_their_colour_set() -> None:

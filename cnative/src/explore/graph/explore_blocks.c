@@ -5,6 +5,7 @@
  * for one by one, have arrived when they are needed.
  */
 #include "explore_blocks.h"
+#include "../search/explore_successors.h"
 
 #include <stdlib.h>
 

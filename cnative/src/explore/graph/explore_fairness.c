@@ -193,7 +193,7 @@ static bool search(group_t *g, uint32_t question, uint32_t first, uint64_t most)
 {
     search_t s = { .group = g, .question = question, .left = most };
     s.room = (most < g->graph->nodes) ? most : g->graph->nodes;
-    s.step = ex_alloc(g->run, s.room * sizeof *s.step);
+    s.step = ex_alloc(&g->run->memory, s.room * sizeof *s.step);
     if (s.step == NULL) {
         return false;
     }
@@ -202,7 +202,7 @@ static bool search(group_t *g, uint32_t question, uint32_t first, uint64_t most)
             search_from(&s, node);
         }
     }
-    ex_free(g->run, s.step, s.room * sizeof *s.step);
+    ex_free(&g->run->memory, s.step, s.room * sizeof *s.step);
     return true;
 }
 
@@ -349,8 +349,8 @@ static ex_cycle_t is_fairness_violated(ex_run_t *run, const group_t *g, uint32_t
 {
     const uint64_t bytes = ((g->graph->nodes / 64U) + 1U) * sizeof(uint64_t);
     const uint64_t bit = (uint64_t)1U << k;
-    uint64_t *const only = ex_alloc(run, bytes);
-    uint64_t *const enabled = ex_alloc(run, bytes);
+    uint64_t *const only = ex_alloc(&run->memory, bytes);
+    uint64_t *const enabled = ex_alloc(&run->memory, bytes);
     ex_cycle_t found = EX_CYCLE_UNKNOWN;
     if ((only != NULL) && (enabled != NULL)) {
         bool is_possible = false;
@@ -366,8 +366,8 @@ static ex_cycle_t is_fairness_violated(ex_run_t *run, const group_t *g, uint32_t
         const ex_part_t part = { .without = g->transition[k], .only = only };
         found = is_possible ? ex_has_cycle(run, g->graph, &part, enabled) : EX_NO_CYCLE;
     }
-    ex_free(run, only, bytes);
-    ex_free(run, enabled, bytes);
+    ex_free(&run->memory, only, bytes);
+    ex_free(&run->memory, enabled, bytes);
     return found;
 }
 
@@ -410,8 +410,8 @@ static bool work_out(group_t *g, uint8_t *fairness)
     const uint64_t nodes = g->graph->nodes;
     const uint64_t bytes = ((nodes / 64U) + 1U) * sizeof *g->is_on_way;
     g->width = (g->count <= 4U) ? 1U : ((g->count <= 8U) ? 2U : ((g->count <= 16U) ? 4U : 8U));
-    g->alive = ex_alloc(g->run, nodes * g->width);
-    g->is_on_way = ex_alloc(g->run, bytes);
+    g->alive = ex_alloc(&g->run->memory, nodes * g->width);
+    g->is_on_way = ex_alloc(&g->run->memory, bytes);
     bool is_fine = (g->alive != NULL) && (g->is_on_way != NULL);
     if (is_fine) {
         (void)memset(g->alive, 0xff, nodes * g->width);
@@ -424,16 +424,16 @@ static bool work_out(group_t *g, uint8_t *fairness)
                                                : ((g->not_impartial & bit) != 0U) ? EX_FAIR
                                                                                   : EX_IMPARTIAL);
     }
-    ex_free(g->run, g->alive, nodes * g->width);
-    ex_free(g->run, g->is_on_way, bytes);
+    ex_free(&g->run->memory, g->alive, nodes * g->width);
+    ex_free(&g->run->memory, g->is_on_way, bytes);
     return is_fine;
 }
 
 bool ex_fairness(ex_run_t *run, ex_graph_t *graph)
 {
     const uint32_t transitions = pn_net.transition_count;
-    uint64_t *const bit_of = ex_table(run, transitions, sizeof *bit_of);
-    graph->fairness = ex_table(run, transitions, sizeof *graph->fairness);
+    uint64_t *const bit_of = ex_table(&run->memory, transitions, sizeof *bit_of);
+    graph->fairness = ex_table(&run->memory, transitions, sizeof *graph->fairness);
     bool is_fine = (bit_of != NULL) && (graph->fairness != NULL);
     for (uint32_t t = 0U; is_fine && (t < transitions); t += GROUP) {
         group_t g = { .run = run, .graph = graph, .bit_of = bit_of };
@@ -450,6 +450,6 @@ bool ex_fairness(ex_run_t *run, ex_graph_t *graph)
             bit_of[t + k] = 0U;
         }
     }
-    ex_free_table(run, bit_of, transitions, sizeof *bit_of);
+    ex_free_table(&run->memory, bit_of, transitions, sizeof *bit_of);
     return is_fine;
 }

@@ -6,6 +6,7 @@
  * numbers, in the order of the nodes and of their arcs.
  */
 #include "explore_blocks.h"
+#include "../search/explore_successors.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -51,19 +52,19 @@ static bool reserve_arcs(ex_run_t *run, ex_graph_t *graph, uint64_t more)
     }
     uint64_t room = graph->room + (graph->room / 2U) + 1024U;
     room = (room < (graph->arcs + more)) ? (graph->arcs + more) : room;
-    uint32_t *const target = ex_alloc(run, room * sizeof *target);
-    uint16_t *const label = ex_alloc(run, room * sizeof *label);
+    uint32_t *const target = ex_alloc(&run->memory, room * sizeof *target);
+    uint16_t *const label = ex_alloc(&run->memory, room * sizeof *label);
     if ((target == NULL) || (label == NULL)) {
-        ex_free(run, target, room * sizeof *target);
-        ex_free(run, label, room * sizeof *label);
+        ex_free(&run->memory, target, room * sizeof *target);
+        ex_free(&run->memory, label, room * sizeof *label);
         return false;
     }
     if (graph->arcs > 0U) {
         (void)memcpy(target, graph->target, graph->arcs * sizeof *target);
         (void)memcpy(label, graph->label, graph->arcs * sizeof *label);
     }
-    ex_free(run, graph->target, graph->room * sizeof *target);
-    ex_free(run, graph->label, graph->room * sizeof *label);
+    ex_free(&run->memory, graph->target, graph->room * sizeof *target);
+    ex_free(&run->memory, graph->label, graph->room * sizeof *label);
     graph->target = target;
     graph->label = label;
     graph->room = room;
@@ -175,7 +176,7 @@ bool ex_graph(ex_run_t *run)
         ex_stop(run, EX_MEMORY); /* so large a graph cannot be held */
         return false;
     }
-    ex_graph_t *const graph = ex_alloc(run, sizeof *graph);
+    ex_graph_t *const graph = ex_alloc(&run->memory, sizeof *graph);
     if (graph == NULL) {
         ex_stop(run, EX_MEMORY);
         return false;
@@ -184,19 +185,19 @@ bool ex_graph(ex_run_t *run)
     graph->is_whole = is_whole;
     graph->node_room = nodes;
     graph->home_component = EX_NO_NODE;
-    graph->slot = ex_alloc(run, nodes * sizeof *graph->slot);
-    graph->number = ex_alloc(run, ex_store_slots(&run->store) * sizeof *graph->number);
-    graph->parent = ex_alloc(run, nodes * sizeof *graph->parent);
-    graph->row = ex_alloc(run, (nodes + 1U) * sizeof *graph->row);
-    graph->dead = ex_alloc(run, ((nodes / 64U) + 1U) * sizeof *graph->dead);
-    graph->late = pn_net.timed ? ex_alloc(run, ((nodes / 64U) + 1U) * sizeof *graph->late) : NULL;
+    graph->slot = ex_alloc(&run->memory, nodes * sizeof *graph->slot);
+    graph->number = ex_alloc(&run->memory, ex_store_slots(&run->store) * sizeof *graph->number);
+    graph->parent = ex_alloc(&run->memory, nodes * sizeof *graph->parent);
+    graph->row = ex_alloc(&run->memory, (nodes + 1U) * sizeof *graph->row);
+    graph->dead = ex_alloc(&run->memory, ((nodes / 64U) + 1U) * sizeof *graph->dead);
+    graph->late = pn_net.timed ? ex_alloc(&run->memory, ((nodes / 64U) + 1U) * sizeof *graph->late) : NULL;
     bool is_fine = (graph->slot != NULL) && (graph->number != NULL) && (graph->parent != NULL) && (graph->row != NULL)
                    && (graph->dead != NULL) && ((graph->late != NULL) || !pn_net.timed)
                    && reserve_arcs(run, graph, run->arcs);
     ex_phase(run, "graph");
     is_fine = is_fine && build(run, graph) && (!is_whole || (graph->nodes == nodes));
     if (run->options.write_graph == NULL) {
-        ex_free(run, graph->number, ex_store_slots(&run->store) * sizeof *graph->number);
+        ex_free(&run->memory, graph->number, ex_store_slots(&run->store) * sizeof *graph->number);
         graph->number = NULL;
     }
     graph->is_reduced = run->reduction != NULL;

@@ -8,7 +8,7 @@
 #ifndef EXPLORE_GRAPH_H
 #define EXPLORE_GRAPH_H
 
-#include "../explore_impl.h"
+#include "../explore_run.h"
 
 #define EX_NO_NODE UINT32_MAX
 
@@ -105,5 +105,10 @@ bool ex_write_graph(ex_run_t *run, const ex_graph_t *graph, const char *path);
 
 #define EX_BIT(set, i)     ((((set)[(i) >> 6U]) >> ((i) & 63U)) & 1U)
 #define EX_SET_BIT(set, i) ((set)[(i) >> 6U] |= (uint64_t)1U << ((i) & 63U))
+
+/* After a complete exploration with an exact store. False: there is no graph (no memory, stopped: run->why says so). */
+bool ex_graph(ex_run_t *run);
+/* Members of the report: "dead": [...], "graph": {...} or null, "traces": [...]; without a graph too. */
+void ex_graph_json(ex_run_t *run, FILE *out);
 
 #endif /* EXPLORE_GRAPH_H */

@@ -120,15 +120,15 @@ bool ex_path_search(ex_queries_t *queries, const uint64_t *through, const uint64
 {
     ex_run_t *const run = queries->run;
     const uint64_t nodes = run->graph->nodes;
-    uint32_t *const parent = ex_table(run, nodes, sizeof *parent);
-    uint32_t *const queue = ex_table(run, nodes, sizeof *queue);
+    uint32_t *const parent = ex_table(&run->memory, nodes, sizeof *parent);
+    uint32_t *const queue = ex_table(&run->memory, nodes, sizeof *queue);
     bool is_found = false;
     if ((parent != NULL) && (queue != NULL) && !way->is_failed) {
         (void)memset(parent, 0xff, nodes * sizeof *parent);
         const uint32_t node = search(queries, through, goal, ex_path_end(way), parent, queue);
         is_found = (node != EX_NO_NODE) && follow_parents(run->graph, parent, node, way);
     }
-    ex_free_table(run, parent, nodes, sizeof *parent);
-    ex_free_table(run, queue, nodes, sizeof *queue);
+    ex_free_table(&run->memory, parent, nodes, sizeof *parent);
+    ex_free_table(&run->memory, queue, nodes, sizeof *queue);
     return is_found;
 }

@@ -98,32 +98,32 @@ static bool find_live(ex_run_t *run, ex_graph_t *graph, const bool *is_terminal,
         find_live_in_one(graph, is_terminal);
         return true;
     }
-    uint32_t *const start = ex_table(run, (uint64_t)graph->components + 1U, sizeof *start);
-    uint32_t *const member = ex_table(run, graph->nodes, sizeof *member);
-    uint32_t *const last = ex_table(run, transitions, sizeof *last);
-    uint32_t *const seen = ex_table(run, transitions, sizeof *seen);
+    uint32_t *const start = ex_table(&run->memory, (uint64_t)graph->components + 1U, sizeof *start);
+    uint32_t *const member = ex_table(&run->memory, graph->nodes, sizeof *member);
+    uint32_t *const last = ex_table(&run->memory, transitions, sizeof *last);
+    uint32_t *const seen = ex_table(&run->memory, transitions, sizeof *seen);
     const bool has_memory = (start != NULL) && (member != NULL) && (last != NULL) && (seen != NULL);
     if (has_memory) {
         sort_by_component(graph, start, member);
         find_live_in_many(graph, is_terminal, terminal_count, member, last, seen);
     }
-    ex_free_table(run, start, (uint64_t)graph->components + 1U, sizeof *start);
-    ex_free_table(run, member, graph->nodes, sizeof *member);
-    ex_free_table(run, last, transitions, sizeof *last);
-    ex_free_table(run, seen, transitions, sizeof *seen);
+    ex_free_table(&run->memory, start, (uint64_t)graph->components + 1U, sizeof *start);
+    ex_free_table(&run->memory, member, graph->nodes, sizeof *member);
+    ex_free_table(&run->memory, last, transitions, sizeof *last);
+    ex_free_table(&run->memory, seen, transitions, sizeof *seen);
     return has_memory;
 }
 
 bool ex_properties(ex_run_t *run, ex_graph_t *graph)
 {
-    bool *const is_terminal = ex_table(run, graph->components, sizeof *is_terminal);
-    graph->is_live = ex_table(run, pn_net.transition_count, sizeof *graph->is_live);
+    bool *const is_terminal = ex_table(&run->memory, graph->components, sizeof *is_terminal);
+    graph->is_live = ex_table(&run->memory, pn_net.transition_count, sizeof *graph->is_live);
     bool is_fine = (is_terminal != NULL) && (graph->is_live != NULL);
     if (is_fine) {
         const uint32_t terminal_count = find_terminal(graph, is_terminal);
         find_home(graph, is_terminal, terminal_count);
         is_fine = find_live(run, graph, is_terminal, terminal_count);
     }
-    ex_free_table(run, is_terminal, graph->components, sizeof *is_terminal);
+    ex_free_table(&run->memory, is_terminal, graph->components, sizeof *is_terminal);
     return is_fine;
 }

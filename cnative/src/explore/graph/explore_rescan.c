@@ -4,6 +4,7 @@
  * are known.
  */
 #include "explore_rescan.h"
+#include "../search/explore_successors.h"
 
 #include <string.h>
 
@@ -98,7 +99,7 @@ static uint32_t walk(search_t *search, ex_rescan_t visit, void *user)
 
 uint32_t ex_rescan(ex_run_t *run, ex_graph_t *graph, ex_rescan_t visit, void *user)
 {
-    search_t *const search = ex_alloc(run, sizeof *search);
+    search_t *const search = ex_alloc(&run->memory, sizeof *search);
     uint32_t node = EX_NO_NODE;
     bool is_moved = search != NULL;
     while (is_moved) { /* a table that has to grow moves the slots */
@@ -106,16 +107,16 @@ uint32_t ex_rescan(ex_run_t *run, ex_graph_t *graph, ex_rescan_t visit, void *us
         const uint64_t words = (ex_store_slots(&run->store) / 64U) + 1U;
         search->run = run;
         search->graph = graph;
-        search->seen = ex_alloc(run, words * sizeof *search->seen);
+        search->seen = ex_alloc(&run->memory, words * sizeof *search->seen);
         if (search->seen == NULL) {
             break;
         }
         revive(run);
         node = walk(search, visit, user);
-        ex_free(run, search->seen, words * sizeof *search->seen);
+        ex_free(&run->memory, search->seen, words * sizeof *search->seen);
         is_moved = pauses != run->pauses;
     }
-    ex_free(run, search, sizeof *search);
+    ex_free(&run->memory, search, sizeof *search);
     return node;
 }
 
@@ -125,8 +126,8 @@ bool ex_rescan_make(ex_run_t *run, ex_graph_t *graph)
     if ((run->nodes == 0U) || (run->nodes >= (uint64_t)EX_NO_NODE)) {
         return false;
     }
-    graph->slot = ex_alloc(run, run->nodes * sizeof *graph->slot);
-    graph->parent = ex_alloc(run, run->nodes * sizeof *graph->parent);
-    graph->dead = ex_alloc(run, ((run->nodes / 64U) + 1U) * sizeof *graph->dead);
+    graph->slot = ex_alloc(&run->memory, run->nodes * sizeof *graph->slot);
+    graph->parent = ex_alloc(&run->memory, run->nodes * sizeof *graph->parent);
+    graph->dead = ex_alloc(&run->memory, ((run->nodes / 64U) + 1U) * sizeof *graph->dead);
     return (graph->slot != NULL) && (graph->parent != NULL) && (graph->dead != NULL);
 }

@@ -6,6 +6,7 @@
 #define EXPLORE_AGAIN_H
 
 #include "explore_graph.h"
+#include "../search/explore_successors.h"
 
 /* Called for each state when its successors have been made; `found` as ex_successors gives it. False: enough. */
 typedef bool (*ex_rescan_t)(void *user, uint32_t node, const ex_key_t *key, ex_found_t found);

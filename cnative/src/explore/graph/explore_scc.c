@@ -48,22 +48,22 @@ static bool walk_open(walk_t *w, ex_run_t *run, const ex_graph_t *graph, const e
     *w = (walk_t){
         .run = run, .graph = graph, .part = part, .through = through, .next = CORE_RANK + 1U, .done = COMPLETE_RANK - 1U
     };
-    w->rank = ex_alloc(run, n * sizeof *w->rank);
-    w->stack = ex_alloc(run, n * sizeof *w->stack);
-    w->at = ex_alloc(run, n * sizeof *w->at);
-    w->is_root = ex_alloc(run, root_bytes(n));
-    w->passed = ex_alloc(run, ((through != NULL) ? (n + 1U) : 1U) * sizeof *w->passed);
+    w->rank = ex_alloc(&run->memory, n * sizeof *w->rank);
+    w->stack = ex_alloc(&run->memory, n * sizeof *w->stack);
+    w->at = ex_alloc(&run->memory, n * sizeof *w->at);
+    w->is_root = ex_alloc(&run->memory, root_bytes(n));
+    w->passed = ex_alloc(&run->memory, ((through != NULL) ? (n + 1U) : 1U) * sizeof *w->passed);
     return (w->rank != NULL) && (w->stack != NULL) && (w->at != NULL) && (w->is_root != NULL) && (w->passed != NULL);
 }
 
 static void walk_close(walk_t *w)
 {
     const uint64_t n = w->graph->nodes;
-    ex_free(w->run, w->rank, n * sizeof *w->rank);
-    ex_free(w->run, w->stack, n * sizeof *w->stack);
-    ex_free(w->run, w->at, n * sizeof *w->at);
-    ex_free(w->run, w->is_root, root_bytes(n));
-    ex_free(w->run, w->passed, ((w->through != NULL) ? (n + 1U) : 1U) * sizeof *w->passed);
+    ex_free(&w->run->memory, w->rank, n * sizeof *w->rank);
+    ex_free(&w->run->memory, w->stack, n * sizeof *w->stack);
+    ex_free(&w->run->memory, w->at, n * sizeof *w->at);
+    ex_free(&w->run->memory, w->is_root, root_bytes(n));
+    ex_free(&w->run->memory, w->passed, ((w->through != NULL) ? (n + 1U) : 1U) * sizeof *w->passed);
 }
 
 static inline bool is_inside(const walk_t *w, uint32_t node)
@@ -390,12 +390,12 @@ static void count_arcs(ex_graph_t *g, const uint64_t *core)
 bool ex_components(ex_run_t *run, ex_graph_t *graph)
 {
     const uint64_t bytes = root_bytes(graph->nodes);
-    sweep_t sweep = { .graph = graph, .core = ex_alloc(run, bytes), .done = ex_alloc(run, bytes) };
+    sweep_t sweep = { .graph = graph, .core = ex_alloc(&run->memory, bytes), .done = ex_alloc(&run->memory, bytes) };
     atomic_init(&sweep.next, 0U);
     atomic_init(&sweep.count, 0U);
     atomic_init(&sweep.found, 0U);
     atomic_init(&sweep.has_loop, false);
-    graph->component = ex_alloc(run, (uint64_t)graph->nodes * sizeof *graph->component);
+    graph->component = ex_alloc(&run->memory, (uint64_t)graph->nodes * sizeof *graph->component);
     bool is_fine = (sweep.core != NULL) && (sweep.done != NULL) && (graph->component != NULL);
     if (is_fine) {
         const uint32_t left = sweep_all(run, &sweep);
@@ -407,8 +407,8 @@ bool ex_components(ex_run_t *run, ex_graph_t *graph)
         number_core(graph, sweep.core);
         count_arcs(graph, sweep.core);
     }
-    ex_free(run, sweep.core, bytes);
-    ex_free(run, sweep.done, bytes);
+    ex_free(&run->memory, sweep.core, bytes);
+    ex_free(&run->memory, sweep.done, bytes);
     return is_fine;
 }
 

@@ -137,10 +137,10 @@ static void forget(control_t *c)
 {
     ex_run_t *const run = c->queries->run;
     const uint64_t nodes = c->graph->nodes;
-    ex_free_table(run, c->length, nodes, sizeof *c->length);
-    ex_free_table(run, c->rest, nodes, sizeof *c->rest);
-    ex_free(run, c->left, ex_set_words(c->graph) * sizeof *c->left);
-    ex_free(run, c, sizeof *c);
+    ex_free_table(&run->memory, c->length, nodes, sizeof *c->length);
+    ex_free_table(&run->memory, c->rest, nodes, sizeof *c->rest);
+    ex_free(&run->memory, c->left, ex_set_words(c->graph) * sizeof *c->left);
+    ex_free(&run->memory, c, sizeof *c);
 }
 
 /* What is known of the steps. NULL: no memory, or told to stop. */
@@ -148,23 +148,23 @@ static control_t *worked_out(ex_queries_t *queries, uint8_t set)
 {
     ex_run_t *const run = queries->run;
     const uint64_t nodes = run->graph->nodes;
-    control_t *const c = ex_alloc(run, sizeof *c);
+    control_t *const c = ex_alloc(&run->memory, sizeof *c);
     if (c == NULL) {
         return NULL;
     }
     *c = (control_t){ .queries = queries, .graph = run->graph, .set = set };
-    c->length = ex_table(run, nodes, sizeof *c->length);
-    c->rest = ex_table(run, nodes, sizeof *c->rest);
+    c->length = ex_table(&run->memory, nodes, sizeof *c->length);
+    c->rest = ex_table(&run->memory, nodes, sizeof *c->rest);
     c->left = ex_set(queries);
     uint64_t *const entered = ex_set(queries);
-    uint32_t *const stack = ex_table(run, nodes, sizeof *stack);
-    uint64_t *const at = ex_table(run, nodes, sizeof *at);
+    uint32_t *const stack = ex_table(&run->memory, nodes, sizeof *stack);
+    uint64_t *const at = ex_table(&run->memory, nodes, sizeof *at);
     const bool has_memory = (c->length != NULL) && (c->rest != NULL) && (c->left != NULL) && (entered != NULL)
                             && (stack != NULL) && (at != NULL);
     const bool is_done = has_memory && walk(c, entered, stack, at);
-    ex_free(run, entered, ex_set_words(run->graph) * sizeof *entered);
-    ex_free_table(run, stack, nodes, sizeof *stack);
-    ex_free_table(run, at, nodes, sizeof *at);
+    ex_free(&run->memory, entered, ex_set_words(run->graph) * sizeof *entered);
+    ex_free_table(&run->memory, stack, nodes, sizeof *stack);
+    ex_free_table(&run->memory, at, nodes, sizeof *at);
     if (!is_done) {
         forget(c);
         return NULL;
@@ -195,9 +195,9 @@ static void search_close(const control_t *c, search_t *s)
 {
     ex_run_t *const run = c->queries->run;
     const uint64_t nodes = c->graph->nodes;
-    ex_free_table(run, s->from, nodes, sizeof *s->from);
-    ex_free_table(run, s->by, nodes, sizeof *s->by);
-    ex_free_table(run, s->queue, nodes, sizeof *s->queue);
+    ex_free_table(&run->memory, s->from, nodes, sizeof *s->from);
+    ex_free_table(&run->memory, s->by, nodes, sizeof *s->by);
+    ex_free_table(&run->memory, s->queue, nodes, sizeof *s->queue);
 }
 
 static bool search_open(const control_t *c, search_t *s)
@@ -205,9 +205,9 @@ static bool search_open(const control_t *c, search_t *s)
     ex_run_t *const run = c->queries->run;
     const uint64_t nodes = c->graph->nodes;
     s->used = 0U;
-    s->from = ex_table(run, nodes, sizeof *s->from);
-    s->by = ex_table(run, nodes, sizeof *s->by);
-    s->queue = ex_table(run, nodes, sizeof *s->queue);
+    s->from = ex_table(&run->memory, nodes, sizeof *s->from);
+    s->by = ex_table(&run->memory, nodes, sizeof *s->by);
+    s->queue = ex_table(&run->memory, nodes, sizeof *s->queue);
     if ((s->from == NULL) || (s->by == NULL) || (s->queue == NULL)) {
         search_close(c, s);
         return false;
@@ -294,7 +294,7 @@ static uint32_t on_cycle(const control_t *c, uint32_t begin)
         }
         node = c->graph->target[arc];
     }
-    ex_free(run, seen, ex_set_words(c->graph) * sizeof *seen);
+    ex_free(&run->memory, seen, ex_set_words(c->graph) * sizeof *seen);
     return node;
 }
 
@@ -521,17 +521,17 @@ static bool find_good(const control_t *c, const ex_question_t *question, const s
 {
     ex_run_t *const run = c->queries->run;
     const uint64_t nodes = c->graph->nodes;
-    uint64_t *const row = ex_table(run, nodes + 1U, sizeof *row);
-    uint32_t *const source = ex_table(run, c->graph->arcs, sizeof *source);
-    uint32_t *const stack = ex_table(run, nodes, sizeof *stack);
+    uint64_t *const row = ex_table(&run->memory, nodes + 1U, sizeof *row);
+    uint32_t *const source = ex_table(&run->memory, c->graph->arcs, sizeof *source);
+    uint32_t *const stack = ex_table(&run->memory, nodes, sizeof *stack);
     bool is_done = (row != NULL) && (source != NULL) && (stack != NULL);
     if (is_done) {
         turn(c, question, s, row, source);
         is_done = grow(c, question, s, row, source, good, stack);
     }
-    ex_free_table(run, row, nodes + 1U, sizeof *row);
-    ex_free_table(run, source, c->graph->arcs, sizeof *source);
-    ex_free_table(run, stack, nodes, sizeof *stack);
+    ex_free_table(&run->memory, row, nodes + 1U, sizeof *row);
+    ex_free_table(&run->memory, source, c->graph->arcs, sizeof *source);
+    ex_free_table(&run->memory, stack, nodes, sizeof *stack);
     return is_done;
 }
 
@@ -574,7 +574,7 @@ static bool answer_blocking(const control_t *c, ex_question_t *question)
         if (is_done) {
             judge(c, question, &s, good);
         }
-        ex_free(c->queries->run, good, ex_set_words(c->graph) * sizeof *good);
+        ex_free(&c->queries->run->memory, good, ex_set_words(c->graph) * sizeof *good);
     } else if (is_done) {
         judge(c, question, &s, NULL); /* nothing is final: it must only never come to a standstill */
     }

@@ -32,11 +32,11 @@ static bool turn_arcs(ex_queries_t *queries)
     if (queries->in_source != NULL) {
         return true;
     }
-    uint64_t *const row = ex_table(run, (uint64_t)graph->nodes + 1U, sizeof *row);
-    uint32_t *const source = ex_table(run, graph->arcs, sizeof *source);
+    uint64_t *const row = ex_table(&run->memory, (uint64_t)graph->nodes + 1U, sizeof *row);
+    uint32_t *const source = ex_table(&run->memory, graph->arcs, sizeof *source);
     if ((row == NULL) || (source == NULL)) {
-        ex_free_table(run, row, (uint64_t)graph->nodes + 1U, sizeof *row);
-        ex_free_table(run, source, graph->arcs, sizeof *source);
+        ex_free_table(&run->memory, row, (uint64_t)graph->nodes + 1U, sizeof *row);
+        ex_free_table(&run->memory, source, graph->arcs, sizeof *source);
         return false;
     }
     for (uint64_t arc = 0U; arc < graph->arcs; arc++) {
@@ -122,20 +122,20 @@ static bool until(ex_queries_t *queries, const uint64_t *a, uint64_t *set, bool 
 {
     ex_run_t *const run = queries->run;
     const uint64_t nodes = run->graph->nodes;
-    uint32_t *const stack = ex_table(run, nodes, sizeof *stack);
-    uint32_t *const left = is_universal ? ex_table(run, nodes, sizeof *left) : NULL;
+    uint32_t *const stack = ex_table(&run->memory, nodes, sizeof *stack);
+    uint32_t *const left = is_universal ? ex_table(&run->memory, nodes, sizeof *left) : NULL;
     const bool has_memory = (stack != NULL) && (!is_universal || (left != NULL)) && turn_arcs(queries);
     const bool is_done = has_memory && grow(queries, a, set, left, stack);
-    ex_free_table(run, stack, nodes, sizeof *stack);
+    ex_free_table(&run->memory, stack, nodes, sizeof *stack);
     if (is_universal) {
-        ex_free_table(run, left, nodes, sizeof *left);
+        ex_free_table(&run->memory, left, nodes, sizeof *left);
     }
     return is_done;
 }
 
 uint64_t *ex_set(const ex_queries_t *queries)
 {
-    return ex_alloc(queries->run, ex_set_words(queries->run->graph) * sizeof(uint64_t));
+    return ex_alloc(&queries->run->memory, ex_set_words(queries->run->graph) * sizeof(uint64_t));
 }
 
 static void copy(const ex_queries_t *queries, uint64_t *set, const uint64_t *from)
@@ -191,7 +191,7 @@ bool ex_ctl(ex_queries_t *queries, ex_item_t *item)
             add_before(queries, other, UINT32_MAX, set);
             complement(queries, set);
         }
-        ex_free(queries->run, other, ex_set_words(queries->run->graph) * sizeof *other);
+        ex_free(&queries->run->memory, other, ex_set_words(queries->run->graph) * sizeof *other);
         break;
     }
     case EX_ITEM_EG: /* not AF not a */
@@ -242,7 +242,7 @@ static bool show_way(ex_queries_t *queries, const uint64_t *through, claim_t *cl
     uint64_t *const other = holds ? NULL : without(queries, item);
     const uint64_t *const goal = holds ? queries->item[item].set : other;
     const bool is_found = (goal != NULL) && ex_path_search(queries, through, goal, way);
-    ex_free(queries->run, other, (other != NULL) ? (ex_set_words(queries->run->graph) * sizeof *other) : 0U);
+    ex_free(&queries->run->memory, other, (other != NULL) ? (ex_set_words(queries->run->graph) * sizeof *other) : 0U);
     *claim = (claim_t){ .item = item, .holds = holds };
     return is_found;
 }
@@ -291,8 +291,8 @@ static bool show_no_until(ex_queries_t *queries, claim_t *claim, const ex_item_t
         is_found = ex_path_search(queries, before, neither, way);
         claim->is_shown = true;
     }
-    ex_free(queries->run, before, ex_set_words(queries->run->graph) * sizeof *before);
-    ex_free(queries->run, neither, ex_set_words(queries->run->graph) * sizeof *neither);
+    ex_free(&queries->run->memory, before, ex_set_words(queries->run->graph) * sizeof *before);
+    ex_free(&queries->run->memory, neither, ex_set_words(queries->run->graph) * sizeof *neither);
     return is_found || show_for_ever(queries, claim, item->b, false, way);
 }
 

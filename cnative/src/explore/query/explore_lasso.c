@@ -267,15 +267,15 @@ bool ex_show_lasso(ex_product_t *p, ex_path_t *way)
 {
     ex_run_t *const run = p->queries->run;
     hunt_t h = { .p = p };
-    h.parent = ex_table(run, p->size, sizeof *h.parent);
-    h.label = ex_table(run, p->size, sizeof *h.label);
-    h.queue = ex_table(run, p->size, sizeof *h.queue);
-    h.seen = ex_table(run, p->size, sizeof *h.seen);
+    h.parent = ex_table(&run->memory, p->size, sizeof *h.parent);
+    h.label = ex_table(&run->memory, p->size, sizeof *h.label);
+    h.queue = ex_table(&run->memory, p->size, sizeof *h.queue);
+    h.seen = ex_table(&run->memory, p->size, sizeof *h.seen);
     const bool has_memory = (h.parent != NULL) && (h.label != NULL) && (h.queue != NULL) && (h.seen != NULL);
     const bool is_found = has_memory && find_lasso(&h, way);
-    ex_free_table(run, h.parent, p->size, sizeof *h.parent);
-    ex_free_table(run, h.label, p->size, sizeof *h.label);
-    ex_free_table(run, h.queue, p->size, sizeof *h.queue);
-    ex_free_table(run, h.seen, p->size, sizeof *h.seen);
+    ex_free_table(&run->memory, h.parent, p->size, sizeof *h.parent);
+    ex_free_table(&run->memory, h.label, p->size, sizeof *h.label);
+    ex_free_table(&run->memory, h.queue, p->size, sizeof *h.queue);
+    ex_free_table(&run->memory, h.seen, p->size, sizeof *h.seen);
     return is_found && !way->is_failed;
 }

@@ -110,12 +110,12 @@ static bool enter(walk_t *w, uint32_t state)
     ex_product_t *const p = w->p;
     if (w->depth == w->room) {
         const uint64_t room = w->room * 2U;
-        ex_cursor_t *const larger = ex_table(p->queries->run, room, sizeof *larger);
+        ex_cursor_t *const larger = ex_table(&p->queries->run->memory, room, sizeof *larger);
         if (larger == NULL) {
             return false;
         }
         (void)memcpy(larger, w->at, w->room * sizeof *larger);
-        ex_free_table(p->queries->run, w->at, w->room, sizeof *larger);
+        ex_free_table(&p->queries->run->memory, w->at, w->room, sizeof *larger);
         w->at = larger;
         w->room = room;
     }
@@ -193,7 +193,7 @@ static bool walk_from(walk_t *w, uint32_t root)
 static bool walk_round(ex_product_t *p)
 {
     walk_t w = { .p = p, .room = 1024U };
-    w.at = ex_table(p->queries->run, w.room, sizeof *w.at);
+    w.at = ex_table(&p->queries->run->memory, w.room, sizeof *w.at);
     bool is_fine = w.at != NULL;
     p->waiting = 0U;
     p->next = 1U;
@@ -209,7 +209,7 @@ static bool walk_round(ex_product_t *p)
             }
         }
     }
-    ex_free_table(p->queries->run, w.at, w.room, sizeof *w.at);
+    ex_free_table(&p->queries->run->memory, w.at, w.room, sizeof *w.at);
     return is_fine;
 }
 
@@ -338,10 +338,10 @@ ex_answer_t ex_lasso(ex_queries_t *queries, const ex_automaton_t *automaton, uin
     }
     const uint64_t words = (p.size / 64U) + 1U;
     p.start = (start * automaton->states) + automaton->initial;
-    p.active = ex_alloc(run, words * sizeof *p.active);
-    p.rank = ex_table(run, p.size, sizeof *p.rank);
-    p.stack = ex_table(run, p.size, sizeof *p.stack);
-    p.is_root = ex_table(run, p.size, sizeof *p.is_root);
+    p.active = ex_alloc(&run->memory, words * sizeof *p.active);
+    p.rank = ex_table(&run->memory, p.size, sizeof *p.rank);
+    p.stack = ex_table(&run->memory, p.size, sizeof *p.stack);
+    p.is_root = ex_table(&run->memory, p.size, sizeof *p.is_root);
     p.occurs = calloc((size_t)automaton->fair_count + 1U, sizeof *p.occurs);
     p.is_enabled = calloc((size_t)automaton->fair_count + 1U, sizeof *p.is_enabled);
     p.is_disabled = calloc((size_t)automaton->fair_count + 1U, sizeof *p.is_disabled);
@@ -349,13 +349,13 @@ ex_answer_t ex_lasso(ex_queries_t *queries, const ex_automaton_t *automaton, uin
         && (p.is_enabled != NULL) && (p.is_disabled != NULL)) {
         answer = find_components(&p);
     }
-    ex_free_table(run, p.stack, p.size, sizeof *p.stack);
-    ex_free_table(run, p.is_root, p.size, sizeof *p.is_root);
+    ex_free_table(&run->memory, p.stack, p.size, sizeof *p.stack);
+    ex_free_table(&run->memory, p.is_root, p.size, sizeof *p.is_root);
     if (answer == EX_YES) {
         way->is_failed = !ex_show_lasso(&p, way) || way->is_failed;
     }
-    ex_free(run, p.active, words * sizeof *p.active);
-    ex_free_table(run, p.rank, p.size, sizeof *p.rank);
+    ex_free(&run->memory, p.active, words * sizeof *p.active);
+    ex_free_table(&run->memory, p.rank, p.size, sizeof *p.rank);
     free(p.occurs);
     free(p.is_enabled);
     free(p.is_disabled);

@@ -6,6 +6,8 @@
  * which one is reported is found out by going through the known states in breadth-first order.
  */
 #include "explore_query.h"
+#include "../search/explore_successors.h"
+#include "explore_early.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

@@ -13,6 +13,7 @@
  * now = 0 and the time that goes by at the node before something occurs.
  */
 #include "explore_query.h"
+#include "../search/explore_successors.h"
 
 typedef struct wait {
     ex_queries_t *queries;
@@ -212,7 +213,7 @@ static bool note_elapsed(ex_worker_t *worker, void *user, uint32_t node, const e
 static bool find_times(wait_t *w)
 {
     ex_run_t *const run = w->queries->run;
-    double *const table = ex_table(run, w->graph->nodes, sizeof *table);
+    double *const table = ex_table(&run->memory, w->graph->nodes, sizeof *table);
     const bool is_reduced = run->options.is_time_reduced;
     w->shift = is_reduced ? table : NULL;
     w->now = is_reduced ? NULL : table;
@@ -228,8 +229,8 @@ static void show_endless(const wait_t *w, ex_question_t *question)
     const ex_event_t *const first = &question->first;
     const ex_event_t *const second = &question->second;
     const uint64_t words = ((uint64_t)pn_net.transition_count / 64U) + 1U;
-    uint64_t *const other = ex_alloc(w->queries->run, words * sizeof *other); /* all transitions but G */
-    uint64_t *const begin = ex_alloc(w->queries->run, words * sizeof *begin);
+    uint64_t *const other = ex_alloc(&w->queries->run->memory, words * sizeof *other); /* all transitions but G */
+    uint64_t *const begin = ex_alloc(&w->queries->run->memory, words * sizeof *begin);
     if ((other == NULL) || (begin == NULL)) {
         return;
     }
@@ -260,8 +261,8 @@ static void show_endless(const wait_t *w, ex_question_t *question)
     if (ex_path_begin(&question->way, 0U)) {
         (void)ex_lasso(w->queries, &automaton, 0U, &question->way);
     }
-    ex_free(w->queries->run, other, words * sizeof *other);
-    ex_free(w->queries->run, begin, words * sizeof *begin);
+    ex_free(&w->queries->run->memory, other, words * sizeof *other);
+    ex_free(&w->queries->run->memory, begin, words * sizeof *begin);
 }
 
 /* Adds an arc to a node on which the wait goes on. */
@@ -361,11 +362,11 @@ static bool open_tables(wait_t *w)
     const uint64_t nodes = w->graph->nodes;
     w->waits = ex_set(w->queries);
     w->begins = ex_set(w->queries);
-    w->maker = ex_table(run, nodes, sizeof *w->maker);
-    w->before = ex_table(run, nodes, sizeof *w->before);
-    w->degree = ex_table(run, nodes, sizeof *w->degree);
-    w->stack = ex_table(run, nodes, sizeof *w->stack);
-    w->since = ex_table(run, nodes, sizeof *w->since);
+    w->maker = ex_table(&run->memory, nodes, sizeof *w->maker);
+    w->before = ex_table(&run->memory, nodes, sizeof *w->before);
+    w->degree = ex_table(&run->memory, nodes, sizeof *w->degree);
+    w->stack = ex_table(&run->memory, nodes, sizeof *w->stack);
+    w->since = ex_table(&run->memory, nodes, sizeof *w->since);
     return (w->waits != NULL) && (w->begins != NULL) && (w->maker != NULL) && (w->before != NULL) && (w->degree != NULL)
            && (w->stack != NULL) && (w->since != NULL);
 }
@@ -374,15 +375,15 @@ static void close_tables(const wait_t *w)
 {
     ex_run_t *const run = w->queries->run;
     const uint64_t nodes = w->graph->nodes;
-    ex_free(run, w->waits, ex_set_words(w->graph) * sizeof *w->waits);
-    ex_free(run, w->begins, ex_set_words(w->graph) * sizeof *w->begins);
-    ex_free_table(run, w->maker, nodes, sizeof *w->maker);
-    ex_free_table(run, w->before, nodes, sizeof *w->before);
-    ex_free_table(run, w->degree, nodes, sizeof *w->degree);
-    ex_free_table(run, w->stack, nodes, sizeof *w->stack);
-    ex_free_table(run, w->since, nodes, sizeof *w->since);
-    ex_free_table(run, w->now, nodes, sizeof *w->now);
-    ex_free_table(run, w->shift, nodes, sizeof *w->shift);
+    ex_free(&run->memory, w->waits, ex_set_words(w->graph) * sizeof *w->waits);
+    ex_free(&run->memory, w->begins, ex_set_words(w->graph) * sizeof *w->begins);
+    ex_free_table(&run->memory, w->maker, nodes, sizeof *w->maker);
+    ex_free_table(&run->memory, w->before, nodes, sizeof *w->before);
+    ex_free_table(&run->memory, w->degree, nodes, sizeof *w->degree);
+    ex_free_table(&run->memory, w->stack, nodes, sizeof *w->stack);
+    ex_free_table(&run->memory, w->since, nodes, sizeof *w->since);
+    ex_free_table(&run->memory, w->now, nodes, sizeof *w->now);
+    ex_free_table(&run->memory, w->shift, nodes, sizeof *w->shift);
 }
 
 void ex_response(ex_queries_t *queries, ex_question_t *question)

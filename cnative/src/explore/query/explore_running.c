@@ -225,13 +225,13 @@ static bool open_tables(running_t *r)
     ex_run_t *const run = r->queries->run;
     const uint64_t nodes = r->graph->nodes;
     r->is_left = ex_set(r->queries);
-    r->is_out = ex_alloc(run, ((r->graph->arcs / 64U) + 1U) * sizeof *r->is_out);
-    r->component = ex_table(run, nodes, sizeof *r->component);
-    r->number = ex_table(run, nodes, sizeof *r->number);
-    r->low = ex_table(run, nodes, sizeof *r->low);
-    r->stack = ex_table(run, nodes, sizeof *r->stack);
-    r->way = ex_table(run, nodes, sizeof *r->way);
-    r->at = ex_table(run, nodes, sizeof *r->at);
+    r->is_out = ex_alloc(&run->memory, ((r->graph->arcs / 64U) + 1U) * sizeof *r->is_out);
+    r->component = ex_table(&run->memory, nodes, sizeof *r->component);
+    r->number = ex_table(&run->memory, nodes, sizeof *r->number);
+    r->low = ex_table(&run->memory, nodes, sizeof *r->low);
+    r->stack = ex_table(&run->memory, nodes, sizeof *r->stack);
+    r->way = ex_table(&run->memory, nodes, sizeof *r->way);
+    r->at = ex_table(&run->memory, nodes, sizeof *r->at);
     return (r->is_left != NULL) && (r->is_out != NULL) && (r->component != NULL) && (r->number != NULL)
            && (r->low != NULL) && (r->stack != NULL) && (r->way != NULL) && (r->at != NULL);
 }
@@ -240,14 +240,14 @@ static void close_tables(const running_t *r)
 {
     ex_run_t *const run = r->queries->run;
     const uint64_t nodes = r->graph->nodes;
-    ex_free(run, r->is_left, ex_set_words(r->graph) * sizeof *r->is_left);
-    ex_free(run, r->is_out, ((r->graph->arcs / 64U) + 1U) * sizeof *r->is_out);
-    ex_free_table(run, r->component, nodes, sizeof *r->component);
-    ex_free_table(run, r->number, nodes, sizeof *r->number);
-    ex_free_table(run, r->low, nodes, sizeof *r->low);
-    ex_free_table(run, r->stack, nodes, sizeof *r->stack);
-    ex_free_table(run, r->way, nodes, sizeof *r->way);
-    ex_free_table(run, r->at, nodes, sizeof *r->at);
+    ex_free(&run->memory, r->is_left, ex_set_words(r->graph) * sizeof *r->is_left);
+    ex_free(&run->memory, r->is_out, ((r->graph->arcs / 64U) + 1U) * sizeof *r->is_out);
+    ex_free_table(&run->memory, r->component, nodes, sizeof *r->component);
+    ex_free_table(&run->memory, r->number, nodes, sizeof *r->number);
+    ex_free_table(&run->memory, r->low, nodes, sizeof *r->low);
+    ex_free_table(&run->memory, r->stack, nodes, sizeof *r->stack);
+    ex_free_table(&run->memory, r->way, nodes, sizeof *r->way);
+    ex_free_table(&run->memory, r->at, nodes, sizeof *r->at);
 }
 
 /* Of the nodes from which no end can be reached (without ends: of the dead ones) the first dead one, or the first. */

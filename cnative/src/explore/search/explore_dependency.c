@@ -89,7 +89,7 @@ static void *grown(reader_t *r, void *table, uint64_t used, uint64_t *room, size
         return table;
     }
     const uint64_t wanted = (*room * 2U) + 1024U;
-    void *larger = ex_alloc(r->run, wanted * size);
+    void *larger = ex_alloc(&r->run->memory, wanted * size);
     if (larger == NULL) {
         r->is_wrong = true;
         return table;
@@ -98,7 +98,7 @@ static void *grown(reader_t *r, void *table, uint64_t used, uint64_t *room, size
         (void)memcpy(larger, table, used * size);
     }
     if (table != NULL) {
-        ex_free(r->run, table, *room * size);
+        ex_free(&r->run->memory, table, *room * size);
     }
     *room = wanted;
     return larger;
@@ -153,10 +153,11 @@ static void read_all(reader_t *r)
 
 bool ex_dependency_read(ex_run_t *run, ex_reduction_t *reduction, const char *path)
 {
-    reader_t r = { .run = run, .file = fopen(path, "r"), .dependency = ex_alloc(run, sizeof *r.dependency) };
+    reader_t r = { .run = run, .file = fopen(path, "r"), .dependency = ex_alloc(&run->memory, sizeof *r.dependency) };
     r.is_wrong = (r.file == NULL) || (r.dependency == NULL);
     if (!r.is_wrong) {
-        r.dependency->member = ex_alloc(run, ((uint64_t)pn_net.transition_count + 1U) * sizeof *r.dependency->member);
+        r.dependency->member =
+            ex_alloc(&run->memory, ((uint64_t)pn_net.transition_count + 1U) * sizeof *r.dependency->member);
         r.is_wrong = r.dependency->member == NULL;
     }
     if (!r.is_wrong) {
@@ -173,17 +174,17 @@ bool ex_persistent_make(ex_worker_t *worker, const ex_reduction_t *reduction)
 {
     ex_run_t *const run = worker->run;
     const uint64_t count = (uint64_t)pn_net.transition_count + 1U;
-    persistent_t *own = ex_alloc(run, sizeof *own);
+    persistent_t *own = ex_alloc(&run->memory, sizeof *own);
     if (own == NULL) {
         return false;
     }
     worker->persistent = own;
     own->dependency = reduction->dependency;
-    own->is_enabled = ex_alloc(run, count * sizeof *own->is_enabled);
-    own->is_in = ex_alloc(run, count * sizeof *own->is_in);
-    own->is_chosen = ex_alloc(run, count * sizeof *own->is_chosen);
-    own->set = ex_alloc(run, count * sizeof *own->set);
-    own->total = ex_alloc(run, ((uint64_t)pn_net.place_count + 1U) * sizeof *own->total);
+    own->is_enabled = ex_alloc(&run->memory, count * sizeof *own->is_enabled);
+    own->is_in = ex_alloc(&run->memory, count * sizeof *own->is_in);
+    own->is_chosen = ex_alloc(&run->memory, count * sizeof *own->is_chosen);
+    own->set = ex_alloc(&run->memory, count * sizeof *own->set);
+    own->total = ex_alloc(&run->memory, ((uint64_t)pn_net.place_count + 1U) * sizeof *own->total);
     return (own->is_enabled != NULL) && (own->is_in != NULL) && (own->is_chosen != NULL) && (own->set != NULL)
            && (own->total != NULL);
 }

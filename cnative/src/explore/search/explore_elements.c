@@ -37,7 +37,7 @@ static uint32_t number(reader_t *r, uint64_t end)
 
 static void *table(reader_t *r, uint64_t count, size_t size)
 {
-    void *memory = ex_alloc(r->run, (count + 1U) * size);
+    void *memory = ex_alloc(&r->run->memory, (count + 1U) * size);
     if (memory == NULL) {
         (void)refuse(r, "there is not enough memory for the table of elements");
     }
@@ -159,7 +159,7 @@ static bool read_elements(reader_t *r, ex_reduction_t *reduction)
             }
             if (used > 0U) {
                 (void)memcpy(larger, reduction->touch, used * sizeof *larger);
-                ex_free(r->run, reduction->touch, (room + 1U) * sizeof *larger);
+                ex_free(&r->run->memory, reduction->touch, (room + 1U) * sizeof *larger);
             }
             reduction->touch = larger;
             room = wanted;
@@ -327,7 +327,7 @@ bool ex_reduction_make(ex_run_t *run)
     if (!run->options.is_stubborn && !run->options.is_symmetric) {
         return true;
     }
-    ex_reduction_t *reduction = ex_alloc(run, sizeof *reduction);
+    ex_reduction_t *reduction = ex_alloc(&run->memory, sizeof *reduction);
     if (run->options.dependency != NULL) {
         return (reduction != NULL) && make_dependency(run, reduction);
     }

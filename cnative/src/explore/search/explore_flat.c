@@ -4,6 +4,7 @@
  * until it is their turn to be looked up, the lines of the tables that know their numbers are on the way.
  */
 #include "explore_search.h"
+#include "explore_successors.h"
 
 #include <string.h>
 
@@ -57,7 +58,7 @@ bool ex_flat_make(ex_worker_t *worker)
         || (run->reduction != NULL) || pn_net.timed || (worker->local != NULL)) {
         return true;
     }
-    worker->search->flat = ex_alloc(worker->run, sizeof *worker->search->flat);
+    worker->search->flat = ex_alloc(&worker->run->memory, sizeof *worker->search->flat);
     return worker->search->flat != NULL;
 }
 

@@ -24,7 +24,7 @@ ex_chunk_t *ex_chunk_new(ex_level_t *level)
     ex_chunk_t *chunk = ex_chunk_spare(level);
     (void)pthread_mutex_unlock(&level->run->gate);
     if (chunk == NULL) {
-        chunk = ex_alloc(level->run, (uint64_t)EX_CHUNK_SIZE);
+        chunk = ex_alloc(&level->run->memory, (uint64_t)EX_CHUNK_SIZE);
     }
     if (chunk == NULL) {
         ex_stop(level->run, EX_MEMORY);

@@ -9,7 +9,7 @@
 #ifndef EXPLORE_REDUCE_H
 #define EXPLORE_REDUCE_H
 
-#include "../explore_impl.h"
+#include "../explore_run.h"
 
 /* What an element does with a counter. */
 typedef struct ex_touch {

@@ -10,6 +10,9 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include "../state/explore_local.h"
+#include "explore_successors.h"
+#include "../explore_bounds.h"
+#include "../query/explore_early.h"
 #include "explore_search.h"
 
 #include <math.h>
@@ -224,7 +227,7 @@ static void split(ex_level_t *search)
     const uint32_t parts = search->run->options.threads;
     while ((search->parts < parts) && (chunk->count >= (2U * (uint32_t)SHARED_FROM))) {
         ex_chunk_t *other = ex_chunk_spare(search);
-        other = (other != NULL) ? other : ex_alloc(search->run, (uint64_t)EX_CHUNK_SIZE);
+        other = (other != NULL) ? other : ex_alloc(&search->run->memory, (uint64_t)EX_CHUNK_SIZE);
         if (other == NULL) {
             return;
         }
@@ -450,8 +453,9 @@ static bool begin(ex_run_t *run, ex_level_t *search)
     if (!run->options.is_hashed) {
         ex_key_widths(run, width);
     }
-    if (run->options.is_bitstate ? !ex_bits_make(&run->bits, run)
-                                 : !ex_store_make(&run->store, run, width, (uint64_t)FIRST_KEYS)) {
+    if (run->options.is_bitstate
+            ? !ex_bits_make(&run->bits, &run->memory)
+            : !ex_store_make(&run->store, &run->memory, &run->team, ex_has_words(run), width, (uint64_t)FIRST_KEYS)) {
         ex_stop(run, EX_MEMORY);
         return false;
     }
@@ -524,7 +528,7 @@ static void sum_up(ex_run_t *run, const ex_level_t *search)
 
 bool ex_explore(ex_run_t *run)
 {
-    ex_level_t *search = ex_alloc(run, sizeof *search);
+    ex_level_t *search = ex_alloc(&run->memory, sizeof *search);
     if (search == NULL) {
         ex_stop(run, EX_MEMORY);
         return false;
@@ -532,7 +536,7 @@ bool ex_explore(ex_run_t *run)
     search->run = run;
     run->level = search;
     for (uint32_t i = 0U; i < run->options.threads; i++) {
-        run->worker[i].search = ex_alloc(run, sizeof *run->worker[i].search);
+        run->worker[i].search = ex_alloc(&run->memory, sizeof *run->worker[i].search);
         if (run->worker[i].search == NULL) {
             ex_stop(run, EX_MEMORY);
             return false;

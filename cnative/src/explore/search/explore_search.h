@@ -5,7 +5,8 @@
 #ifndef EXPLORE_SEARCH_H
 #define EXPLORE_SEARCH_H
 
-#include "../explore_impl.h"
+#include "../explore_run.h"
+#include "explore_successors.h"
 #include "pn/pn_arena.h"
 
 enum {

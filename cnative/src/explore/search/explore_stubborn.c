@@ -78,24 +78,24 @@ bool ex_stubborn_make(ex_worker_t *worker, const ex_reduction_t *reduction)
     while (slots < (2U * elements)) {
         slots *= 2U;
     }
-    stubborn_t *own = ex_alloc(run, sizeof *own);
+    stubborn_t *own = ex_alloc(&run->memory, sizeof *own);
     if (own == NULL) {
         return false;
     }
     worker->stubborn = own;
     own->reduction = reduction;
     own->table_mask = slots - 1U;
-    own->value = ex_alloc(run, ((uint64_t)reduction->counters + 1U) * sizeof *own->value);
-    own->enabled = ex_alloc(run, elements * sizeof *own->enabled);
-    own->effect_of = ex_alloc(run, elements * sizeof *own->effect_of);
-    own->effect = ex_alloc(run, elements * sizeof *own->effect);
-    own->table = ex_alloc(run, slots * sizeof *own->table);
-    own->is_enabled = ex_alloc(run, bits * sizeof *own->is_enabled);
-    own->is_in = ex_alloc(run, bits * sizeof *own->is_in);
-    own->set = ex_alloc(run, elements * sizeof *own->set);
-    own->best = ex_alloc(run, elements * sizeof *own->best);
-    own->closed = ex_alloc(run, ((uint64_t)reduction->counters + 1U) * sizeof *own->closed);
-    own->next = ex_alloc(run, ((uint64_t)reduction->words + 1U) * sizeof *own->next);
+    own->value = ex_alloc(&run->memory, ((uint64_t)reduction->counters + 1U) * sizeof *own->value);
+    own->enabled = ex_alloc(&run->memory, elements * sizeof *own->enabled);
+    own->effect_of = ex_alloc(&run->memory, elements * sizeof *own->effect_of);
+    own->effect = ex_alloc(&run->memory, elements * sizeof *own->effect);
+    own->table = ex_alloc(&run->memory, slots * sizeof *own->table);
+    own->is_enabled = ex_alloc(&run->memory, bits * sizeof *own->is_enabled);
+    own->is_in = ex_alloc(&run->memory, bits * sizeof *own->is_in);
+    own->set = ex_alloc(&run->memory, elements * sizeof *own->set);
+    own->best = ex_alloc(&run->memory, elements * sizeof *own->best);
+    own->closed = ex_alloc(&run->memory, ((uint64_t)reduction->counters + 1U) * sizeof *own->closed);
+    own->next = ex_alloc(&run->memory, ((uint64_t)reduction->words + 1U) * sizeof *own->next);
     return (own->value != NULL) && (own->enabled != NULL) && (own->effect_of != NULL) && (own->effect != NULL)
            && (own->table != NULL) && (own->is_enabled != NULL) && (own->is_in != NULL) && (own->set != NULL)
            && (own->best != NULL) && (own->next != NULL) && (own->closed != NULL);

@@ -38,24 +38,24 @@ bool ex_symmetry_make(ex_worker_t *worker, const ex_reduction_t *reduction)
     ex_run_t *run = worker->run;
     const uint64_t counters = (uint64_t)reduction->counters + 1U;
     const uint64_t points = (uint64_t)reduction->exchanges.points + 1U;
-    symmetry_t *own = ex_alloc(run, sizeof *own);
+    symmetry_t *own = ex_alloc(&run->memory, sizeof *own);
     if (own == NULL) {
         return false;
     }
     worker->symmetry = own;
     own->reduction = reduction;
-    own->value = ex_alloc(run, counters * sizeof(uint32_t));
-    own->turned = ex_alloc(run, counters * sizeof(uint32_t));
-    own->best = ex_alloc(run, counters * sizeof(uint32_t));
-    own->leaf = ex_alloc(run, counters * sizeof(uint32_t));
-    own->held = ex_alloc(run, counters * sizeof(uint32_t));
-    own->kept = ex_alloc(run, points * (uint64_t)KEPT_LEAVES * counters * sizeof(uint32_t));
-    own->rank = ex_alloc(run, points * points * sizeof(uint32_t));
-    own->mark = ex_alloc(run, points * sizeof *own->mark);
-    own->order = ex_alloc(run, points * sizeof(uint32_t));
-    own->image = ex_alloc(run, points * sizeof(uint32_t));
-    own->tried = ex_alloc(run, points * points * sizeof(uint32_t));
-    own->marking = ex_alloc(run, pn_net.marking_size + (2U * sizeof *own->marking));
+    own->value = ex_alloc(&run->memory, counters * sizeof(uint32_t));
+    own->turned = ex_alloc(&run->memory, counters * sizeof(uint32_t));
+    own->best = ex_alloc(&run->memory, counters * sizeof(uint32_t));
+    own->leaf = ex_alloc(&run->memory, counters * sizeof(uint32_t));
+    own->held = ex_alloc(&run->memory, counters * sizeof(uint32_t));
+    own->kept = ex_alloc(&run->memory, points * (uint64_t)KEPT_LEAVES * counters * sizeof(uint32_t));
+    own->rank = ex_alloc(&run->memory, points * points * sizeof(uint32_t));
+    own->mark = ex_alloc(&run->memory, points * sizeof *own->mark);
+    own->order = ex_alloc(&run->memory, points * sizeof(uint32_t));
+    own->image = ex_alloc(&run->memory, points * sizeof(uint32_t));
+    own->tried = ex_alloc(&run->memory, points * points * sizeof(uint32_t));
+    own->marking = ex_alloc(&run->memory, pn_net.marking_size + (2U * sizeof *own->marking));
     return (own->value != NULL) && (own->turned != NULL) && (own->best != NULL) && (own->leaf != NULL)
            && (own->held != NULL) && (own->kept != NULL) && (own->rank != NULL) && (own->mark != NULL)
            && (own->order != NULL) && (own->image != NULL) && (own->tried != NULL) && (own->marking != NULL);
@@ -126,7 +126,7 @@ bool ex_exchanges_index(ex_run_t *run, ex_reduction_t *reduction)
         slots *= 2U;
     }
     x->table_mask = slots - 1U;
-    x->table = ex_alloc(run, slots * sizeof *x->table);
+    x->table = ex_alloc(&run->memory, slots * sizeof *x->table);
     for (uint32_t c = 0U; (x->table != NULL) && (c < reduction->counters); c++) {
         uint64_t at =
             hash_of_counter(x->shape[c], &x->point[x->first[c]], x->first[c + 1U] - x->first[c], NULL) & x->table_mask;

@@ -10,7 +10,9 @@
  */
 #define _POSIX_C_SOURCE 200809L
 
-#include "../explore_impl.h"
+#include "../explore_run.h"
+#include "explore_roots.h"
+#include "explore_multiset.h"
 
 #include <string.h>
 
@@ -28,7 +30,7 @@ bool ex_scratch_make(ex_worker_t *worker)
 {
     ex_run_t *run = worker->run;
     const ex_codec_t *codec = run->codec;
-    ex_scratch_t *scratch = ex_alloc(run, sizeof *scratch);
+    ex_scratch_t *scratch = ex_alloc(&run->memory, sizeof *scratch);
     if (scratch == NULL) {
         return false;
     }
@@ -37,18 +39,18 @@ bool ex_scratch_make(ex_worker_t *worker)
         return false;
     }
     const uint64_t cells = 2U * ((uint64_t)codec->words + 1U); /* more inner nodes than words there never are */
-    scratch->cell = ex_table(run, cells, sizeof *scratch->cell);
-    scratch->dirty = ex_table(run, (codec->words / 64U) + 1U, sizeof *scratch->dirty);
-    scratch->stale = ex_table(run, (codec->words / 64U) + 1U, sizeof *scratch->stale);
-    scratch->undo_cell = ex_table(run, cells, sizeof *scratch->undo_cell);
-    scratch->undo_value = ex_table(run, cells, sizeof *scratch->undo_value);
-    scratch->decoded = ex_table(run, codec->words - codec->packed_words, sizeof *scratch->decoded);
+    scratch->cell = ex_table(&run->memory, cells, sizeof *scratch->cell);
+    scratch->dirty = ex_table(&run->memory, (codec->words / 64U) + 1U, sizeof *scratch->dirty);
+    scratch->stale = ex_table(&run->memory, (codec->words / 64U) + 1U, sizeof *scratch->stale);
+    scratch->undo_cell = ex_table(&run->memory, cells, sizeof *scratch->undo_cell);
+    scratch->undo_value = ex_table(&run->memory, cells, sizeof *scratch->undo_value);
+    scratch->decoded = ex_table(&run->memory, codec->words - codec->packed_words, sizeof *scratch->decoded);
     scratch->buffer_size = 4096U;
-    scratch->buffer = ex_alloc(run, scratch->buffer_size);
+    scratch->buffer = ex_alloc(&run->memory, scratch->buffer_size);
     /* What is never touched of the large ones costs nothing. */
     worker->marking = ex_reserve(pn_net.marking_size + (size_t)UNIT);
     scratch->next = ex_reserve(pn_net.marking_size + (size_t)UNIT);
-    scratch->binding = ex_alloc(run, pn_binding_size(&pn_net));
+    scratch->binding = ex_alloc(&run->memory, pn_binding_size(&pn_net));
     void *memory = ex_reserve(run->options.arena);
     if ((scratch->cell == NULL) || (scratch->dirty == NULL) || (scratch->stale == NULL) || (scratch->undo_cell == NULL)
         || (scratch->undo_value == NULL) || (scratch->decoded == NULL) || (scratch->buffer == NULL)

@@ -2,7 +2,7 @@
  * explore_derive.c - packed places that follow from others: the net proves that a sum of markings never changes, so one
  * of the places of the sum is no part of a vector. What the sum is, the initial marking says.
  */
-#include "../explore_impl.h"
+#include "../explore_run.h"
 
 enum { UNIT_BITS = 64 };
 
@@ -34,8 +34,8 @@ bool ex_derived_make(ex_run_t *run)
         pieces += (place->share_count > 0U) ? pieces_of(place) : 0U;
         terms += (uint64_t)place->share_count * pieces_of(place);
     }
-    codec->derived = ex_table(run, pieces, sizeof *codec->derived);
-    codec->term = ex_table(run, terms, sizeof *codec->term);
+    codec->derived = ex_table(&run->memory, pieces, sizeof *codec->derived);
+    codec->term = ex_table(&run->memory, terms, sizeof *codec->term);
     if ((codec->derived == NULL) || (codec->term == NULL)) {
         return false;
     }

@@ -5,7 +5,7 @@
  * at in vain. A thread that has something new takes the next number, writes the thing down and only then, by one
  * compare-and-swap, enters it in the index. When another thread was faster with the same, the number is a hole.
  */
-#include "../explore_impl.h"
+#include "explore_intern.h"
 
 #include <string.h>
 
@@ -79,13 +79,14 @@ static uint64_t bytes_hash(uint32_t place, const unsigned char *byte, uint32_t l
 
 /* --- the index ---------------------------------------------------------------------------------------------------- */
 
-static bool index_make(ex_index_t *index, ex_run_t *run)
+static bool index_make(ex_index_t *index, ex_memory_t *memory, const ex_team_t *team)
 {
-    index->run = run;
+    index->memory = memory;
+    index->team = team;
     index->entries = (uint64_t)FIRST_ENTRIES;
     index->limit = (index->entries / 4U) * 3U;
     atomic_init(&index->count, 0U);
-    index->entry = ex_alloc(run, index->entries * sizeof *index->entry);
+    index->entry = ex_alloc(memory, index->entries * sizeof *index->entry);
     return index->entry != NULL;
 }
 
@@ -111,12 +112,12 @@ static bool index_enlarge(ex_index_t *index, uint64_t payload, ex_index_t *old)
     if (limit > index->most) {
         return false;
     }
-    _Atomic uint64_t *entry = ex_alloc(index->run, entries * sizeof *entry);
+    _Atomic uint64_t *entry = ex_alloc(index->memory, entries * sizeof *entry);
     if (entry == NULL) {
         return false;
     }
-    if (!ex_count(index->run, (limit - index->limit) * payload)) {
-        ex_free(index->run, entry, entries * sizeof *entry);
+    if (!ex_count(index->memory, (limit - index->limit) * payload)) {
+        ex_free(index->memory, entry, entries * sizeof *entry);
         return false;
     }
     old->entry = index->entry;
@@ -156,11 +157,12 @@ static uint64_t part_end(const move_t *move, uint32_t part)
 
 static void enter_all(move_t *move, void (*part)(void *user, uint32_t part))
 {
-    ex_run_t *run = move->index->run;
-    const uint32_t threads = run->options.threads;
+    ex_memory_t *const memory = move->index->memory;
+    const ex_team_t *const team = move->index->team;
+    const uint32_t threads = team->threads;
     move->parts = ((threads > 1U) && (move->old->entries >= (uint64_t)SHARED_ENTRIES)) ? (4U * threads) : 1U;
-    ex_together(run, move->parts, part, move);
-    ex_free(run, move->old->entry, move->old->entries * sizeof *move->old->entry);
+    team->together(team->self, move->parts, part, move);
+    ex_free(memory, move->old->entry, move->old->entries * sizeof *move->old->entry);
 }
 
 static bool is_crowded(const ex_index_t *index)
@@ -169,16 +171,16 @@ static bool is_crowded(const ex_index_t *index)
 }
 
 /* Addresses for as many things as there is memory for, or as can be had. */
-static void *reserve(ex_run_t *run, uint64_t size, uint64_t *most)
+static void *reserve(const ex_memory_t *memory, uint64_t size, uint64_t *most)
 {
-    uint64_t number = run->options.memory / size;
+    uint64_t number = memory->limit / size;
     number = (number < (uint64_t)FIRST_ENTRIES) ? (uint64_t)FIRST_ENTRIES : number;
     number = (number > MOST_NUMBERS) ? MOST_NUMBERS : number;
     for (; number >= (uint64_t)FIRST_ENTRIES; number /= 2U) {
-        void *memory = ex_reserve(number * size);
-        if (memory != NULL) {
+        void *block = ex_reserve(number * size);
+        if (block != NULL) {
             *most = number;
-            return memory;
+            return block;
         }
     }
     return NULL;
@@ -186,12 +188,12 @@ static void *reserve(ex_run_t *run, uint64_t size, uint64_t *most)
 
 /* --- tuples ------------------------------------------------------------------------------------------------------- */
 
-bool ex_tuples_make(ex_tuples_t *tuples, ex_run_t *run, uint32_t words)
+bool ex_tuples_make(ex_tuples_t *tuples, ex_memory_t *memory, const ex_team_t *team, uint32_t words)
 {
     tuples->lanes = (words + 1U) / 2U;
-    tuples->lane = reserve(run, tuples->lanes * sizeof *tuples->lane, &tuples->index.most);
-    return (tuples->lane != NULL) && index_make(&tuples->index, run)
-           && ex_count(run, tuples->index.limit * tuples->lanes * sizeof *tuples->lane);
+    tuples->lane = reserve(memory, tuples->lanes * sizeof *tuples->lane, &tuples->index.most);
+    return (tuples->lane != NULL) && index_make(&tuples->index, memory, team)
+           && ex_count(memory, tuples->index.limit * tuples->lanes * sizeof *tuples->lane);
 }
 
 void ex_tuples_free(ex_tuples_t *tuples)
@@ -199,8 +201,8 @@ void ex_tuples_free(ex_tuples_t *tuples)
     ex_index_t *index = &tuples->index;
     const uint64_t size = tuples->lanes * sizeof *tuples->lane;
     ex_unmap(tuples->lane, index->most * size);
-    ex_uncount(index->run, index->limit * size);
-    ex_free(index->run, index->entry, index->entries * sizeof *index->entry);
+    ex_uncount(index->memory, index->limit * size);
+    ex_free(index->memory, index->entry, index->entries * sizeof *index->entry);
     *tuples = (ex_tuples_t){ .lane = NULL };
 }
 
@@ -286,22 +288,22 @@ uint64_t ex_tuples_bytes(const ex_tuples_t *tuples)
 
 /* --- strings of bytes --------------------------------------------------------------------------------------------- */
 
-bool ex_bytes_make(ex_bytes_t *bytes, ex_run_t *run)
+bool ex_bytes_make(ex_bytes_t *bytes, ex_memory_t *memory, const ex_team_t *team)
 {
-    bytes->of = reserve(run, sizeof *bytes->of, &bytes->index.most);
-    bytes->byte = reserve(run, 1U, &bytes->reserved);
+    bytes->of = reserve(memory, sizeof *bytes->of, &bytes->index.most);
+    bytes->byte = reserve(memory, 1U, &bytes->reserved);
     if (bytes->reserved == MOST_NUMBERS) { /* more than that only if it can be had */
-        const uint64_t larger = run->options.memory;
-        void *memory = ex_reserve(larger);
-        if (memory != NULL) {
-            bytes->byte = memory;
+        const uint64_t larger = memory->limit;
+        void *block = ex_reserve(larger);
+        if (block != NULL) {
+            bytes->byte = block;
             bytes->reserved = larger;
         }
     }
     atomic_init(&bytes->used, 0U);
     atomic_init(&bytes->counted, 0U);
-    return (bytes->of != NULL) && (bytes->byte != NULL) && index_make(&bytes->index, run)
-           && ex_count(run, bytes->index.limit * sizeof *bytes->of);
+    return (bytes->of != NULL) && (bytes->byte != NULL) && index_make(&bytes->index, memory, team)
+           && ex_count(memory, bytes->index.limit * sizeof *bytes->of);
 }
 
 /* Room for some bytes; UINT64_MAX when there is none. */
@@ -312,7 +314,7 @@ static uint64_t take_bytes(ex_bytes_t *bytes, uint32_t length)
         uint64_t counted = atomic_load_explicit(&bytes->counted, memory_order_relaxed);
         while ((used + length) > counted) {
             const uint64_t block = ((uint64_t)length / (uint64_t)BLOCK + 1U) * (uint64_t)BLOCK;
-            if (((counted + block) > bytes->reserved) || !ex_count(bytes->index.run, block)) {
+            if (((counted + block) > bytes->reserved) || !ex_count(bytes->index.memory, block)) {
                 return UINT64_MAX;
             }
             counted = atomic_fetch_add(&bytes->counted, block) + block;
@@ -392,7 +394,7 @@ bool ex_bytes_grow(ex_bytes_t *bytes)
     const uint64_t free_bytes = atomic_load(&bytes->counted) - atomic_load(&bytes->used);
     if (!is_crowded(index)) {
         /* Perhaps it was the bytes themselves that could not be had. */
-        return (free_bytes > 0U) || ex_has_room(index->run, (uint64_t)BLOCK);
+        return (free_bytes > 0U) || ex_has_room(index->memory, (uint64_t)BLOCK);
     }
     ex_index_t old;
     if (!index_enlarge(index, sizeof *bytes->of, &old)) {

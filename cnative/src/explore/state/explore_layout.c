@@ -6,7 +6,8 @@
  * later of states from the store, whose keys are then made anew. Beginning with each place for itself, the two parts
  * whose union adds the fewest combinations are united, until there are four.
  */
-#include "../explore_impl.h"
+#include "../explore_run.h"
+#include "../search/explore_successors.h"
 
 #include <string.h>
 
@@ -264,10 +265,10 @@ bool ex_layout(ex_run_t *run)
     }
     const uint64_t values = value_bytes((uint32_t)SAMPLES);
     const uint64_t words = ((uint64_t)codec->words + 1U) * sizeof(uint32_t);
-    layout_t *layout = ex_alloc(run, sizeof *layout);
-    uint64_t *value = ex_alloc(run, values);
-    uint32_t *next = ex_alloc(run, words);
-    uint32_t *word = ex_alloc(run, words);
+    layout_t *layout = ex_alloc(&run->memory, sizeof *layout);
+    uint64_t *value = ex_alloc(&run->memory, values);
+    uint32_t *next = ex_alloc(&run->memory, words);
+    uint32_t *word = ex_alloc(&run->memory, words);
     bool is_fine = true;
     if ((layout != NULL) && (value != NULL) && (next != NULL) && (word != NULL)) {
         layout->run = run;
@@ -284,10 +285,10 @@ bool ex_layout(ex_run_t *run)
         regroup(layout, word);
         is_fine = ex_codec_number(run);
     }
-    ex_free(run, word, words);
-    ex_free(run, next, words);
-    ex_free(run, value, values);
-    ex_free(run, layout, sizeof *layout);
+    ex_free(&run->memory, word, words);
+    ex_free(&run->memory, next, words);
+    ex_free(&run->memory, value, values);
+    ex_free(&run->memory, layout, sizeof *layout);
     return is_fine;
 }
 
@@ -334,7 +335,7 @@ static bool refill(ex_run_t *run, change_t *change)
     ex_store_t *store = &run->store;
     const uint64_t used = atomic_load(&store->used);
     const uint64_t bytes = (used + 1U) * sizeof(ex_key_t);
-    ex_key_t *key = ex_alloc(run, bytes);
+    ex_key_t *key = ex_alloc(&run->memory, bytes);
     uint64_t count = 0U;
     if (key == NULL) {
         return false;
@@ -349,11 +350,12 @@ static bool refill(ex_run_t *run, change_t *change)
     uint32_t width[EX_KEY_WORDS];
     ex_store_t new;
     ex_key_widths(run, width);
-    const bool is_fine = !change->has_failed && ex_store_make(&new, run, width, (used * 3U) / 2U);
+    const bool is_fine = !change->has_failed
+                         && ex_store_make(&new, &run->memory, &run->team, ex_has_words(run), width, (used * 3U) / 2U);
     for (uint64_t i = 0U; is_fine && (i < count); i++) {
         (void)ex_store_insert(&new, &key[i], ex_hash(&key[i]), NULL);
     }
-    ex_free(run, key, bytes);
+    ex_free(&run->memory, key, bytes);
     if (is_fine) {
         ex_store_free(store);
         *store = new;
@@ -369,8 +371,8 @@ static bool rebuild(ex_run_t *run, layout_t *layout, change_t *change, uint32_t 
     ex_codec_t *codec = run->codec;
     const uint64_t words = codec->words;
     ex_codec_t old = *codec;
-    codec->node = ex_alloc(run, (words + 1U) * sizeof *codec->node);
-    codec->parent = ex_alloc(run, 2U * (words + 1U) * sizeof *codec->parent);
+    codec->node = ex_alloc(&run->memory, (words + 1U) * sizeof *codec->node);
+    codec->parent = ex_alloc(&run->memory, 2U * (words + 1U) * sizeof *codec->parent);
     (void)memset(codec->tuples, 0, sizeof codec->tuples);
     if ((codec->node == NULL) || (codec->parent == NULL)) {
         return false;
@@ -403,9 +405,9 @@ bool ex_layout_again(ex_run_t *run, void (*replace)(ex_run_t *run, ex_replace_t 
     }
     const uint64_t cells = (2U * ((uint64_t)codec->words + 1U)) * sizeof(uint32_t);
     const uint64_t values = value_bytes((uint32_t)MOST_SAMPLES);
-    layout_t *layout = ex_alloc(run, sizeof *layout);
-    uint64_t *value = ex_alloc(run, values);
-    uint32_t *cell = ex_alloc(run, 4U * cells);
+    layout_t *layout = ex_alloc(&run->memory, sizeof *layout);
+    uint64_t *value = ex_alloc(&run->memory, values);
+    uint32_t *cell = ex_alloc(&run->memory, 4U * cells);
     bool is_fine = true;
     if ((layout != NULL) && (value != NULL) && (cell != NULL)) {
         const uint64_t table = cells / sizeof *cell;
@@ -425,8 +427,8 @@ bool ex_layout_again(ex_run_t *run, void (*replace)(ex_run_t *run, ex_replace_t 
             is_fine = rebuild(run, layout, &change, &cell[3U * table], replace);
         }
     }
-    ex_free(run, cell, 4U * cells);
-    ex_free(run, value, values);
-    ex_free(run, layout, sizeof *layout);
+    ex_free(&run->memory, cell, 4U * cells);
+    ex_free(&run->memory, value, values);
+    ex_free(&run->memory, layout, sizeof *layout);
     return is_fine;
 }

@@ -18,6 +18,8 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include "explore_local.h"
+#include "../search/explore_successors.h"
+#include "explore_multiset.h"
 
 #include <string.h>
 
@@ -191,16 +193,16 @@ static uint64_t lay_forms(const ex_codec_t *codec, form_t *form, word_t *pool, w
 static form_t *make_forms(ex_run_t *run)
 {
     const ex_codec_t *codec = run->codec;
-    form_t *form = ex_table(run, pn_net.transition_count, sizeof *form);
-    word_t *room = ex_table(run, codec->words, sizeof *room);
+    form_t *form = ex_table(&run->memory, pn_net.transition_count, sizeof *form);
+    word_t *room = ex_table(&run->memory, codec->words, sizeof *room);
     word_t *pool = NULL;
     if ((form != NULL) && (room != NULL)) {
-        pool = ex_table(run, lay_forms(codec, form, NULL, room), sizeof *pool);
+        pool = ex_table(&run->memory, lay_forms(codec, form, NULL, room), sizeof *pool);
     }
     if (pool != NULL) {
         (void)lay_forms(codec, form, pool, NULL);
     }
-    ex_free_table(run, room, codec->words, sizeof *room);
+    ex_free_table(&run->memory, room, codec->words, sizeof *room);
     return (pool != NULL) ? form : NULL;
 }
 
@@ -213,7 +215,7 @@ bool ex_local_make(ex_worker_t *worker)
         || (pn_net.root_count > 0U) || (most < (uint64_t)PAGE_WORDS)) {
         return true;
     }
-    ex_local_t *own = ex_alloc(run, sizeof *own);
+    ex_local_t *own = ex_alloc(&run->memory, sizeof *own);
     if (own == NULL) {
         return false;
     }
@@ -221,11 +223,11 @@ bool ex_local_make(ex_worker_t *worker)
     own->form = make_forms(run);
     own->most = (most < (uint64_t)MOST_WORDS) ? (uint32_t)most : (uint32_t)MOST_WORDS;
     own->entries = (uint32_t)FIRST_ENTRIES;
-    own->entry = ex_alloc(run, own->entries * sizeof *own->entry);
+    own->entry = ex_alloc(&run->memory, own->entries * sizeof *own->entry);
     own->word = ex_reserve(own->most * sizeof *own->word);
-    own->sum = ex_alloc(run, (uint64_t)SUMS * sizeof *own->sum);
-    own->change = ex_table(run, run->codec->words, sizeof *own->change);
-    own->hash = ex_table(run, pn_net.transition_count, sizeof *own->hash);
+    own->sum = ex_alloc(&run->memory, (uint64_t)SUMS * sizeof *own->sum);
+    own->change = ex_table(&run->memory, run->codec->words, sizeof *own->change);
+    own->hash = ex_table(&run->memory, pn_net.transition_count, sizeof *own->hash);
     if ((own->form == NULL) || (own->entry == NULL) || (own->word == NULL) || (own->sum == NULL)
         || (own->change == NULL) || (own->hash == NULL)) {
         return false;
@@ -305,7 +307,8 @@ static void grow(ex_local_t *own)
     ex_run_t *run = own->worker->run;
     const uint32_t before = own->entries;
     uint64_t *old = own->entry;
-    uint64_t *larger = (before < (uint32_t)MOST_ENTRIES) ? ex_alloc(run, 2U * (uint64_t)before * sizeof *larger) : NULL;
+    uint64_t *larger =
+        (before < (uint32_t)MOST_ENTRIES) ? ex_alloc(&run->memory, 2U * (uint64_t)before * sizeof *larger) : NULL;
     if (larger == NULL) {
         forget(own);
         return;
@@ -317,7 +320,7 @@ static void grow(ex_local_t *own)
             put_entry(own, old[i]);
         }
     }
-    ex_free(run, old, before * sizeof *old);
+    ex_free(&run->memory, old, before * sizeof *old);
 }
 
 /* Room for a note; false: there is no memory at all. */
@@ -328,7 +331,7 @@ static bool reserve(ex_local_t *own)
     }
     while ((own->words + (uint32_t)MOST_NOTE) > own->counted) {
         if (((own->counted + (uint32_t)PAGE_WORDS) > own->most)
-            || !ex_count(own->worker->run, (uint64_t)PAGE_WORDS * sizeof *own->word)) {
+            || !ex_count(&own->worker->run->memory, (uint64_t)PAGE_WORDS * sizeof *own->word)) {
             if (own->words == 0U) {
                 return false;
             }

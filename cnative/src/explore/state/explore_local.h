@@ -4,7 +4,8 @@
 #ifndef EXPLORE_LOCAL_H
 #define EXPLORE_LOCAL_H
 
-#include "../explore_impl.h"
+#include "../explore_run.h"
+#include "../search/explore_successors.h"
 
 typedef struct ex_local ex_local_t;
 typedef struct ex_wake ex_wake_t;

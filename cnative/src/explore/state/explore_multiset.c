@@ -5,7 +5,8 @@
  * own, and what the place holds is the number of that string and the stamps. Real stamps, of which hardly any is short,
  * are numbers of strings, too: most of them are in many multi-sets.
  */
-#include "../explore_impl.h"
+#include "../explore_run.h"
+#include "explore_multiset.h"
 
 #include <string.h>
 
@@ -26,13 +27,13 @@ enum {
 bool ex_buffer_grow(ex_worker_t *worker, size_t size)
 {
     ex_scratch_t *scratch = worker->scratch;
-    unsigned char *larger = ex_alloc(worker->run, size * 2U);
+    unsigned char *larger = ex_alloc(&worker->run->memory, size * 2U);
     if (larger == NULL) {
         ex_stop(worker->run, EX_MEMORY);
         worker->failed = true;
         return false;
     }
-    ex_free(worker->run, scratch->buffer, scratch->buffer_size);
+    ex_free(&worker->run->memory, scratch->buffer, scratch->buffer_size);
     scratch->buffer = larger;
     scratch->buffer_size = size * 2U;
     return true;

@@ -5,7 +5,9 @@
  * after each occurrence, by decoding the same bytes into the same empty arena: so everything gets the address that it
  * had, and what a search for bindings has read from references before stays good.
  */
-#include "../explore_impl.h"
+#include "../explore_run.h"
+#include "explore_roots.h"
+#include "explore_multiset.h"
 
 #include "pn/pn_arena.h"
 #include "pn/pn_root.h"

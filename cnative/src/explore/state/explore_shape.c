@@ -3,7 +3,7 @@
  * are words, where the other places have theirs, how words are put together into the parts of a key, and what each
  * transition may change of it.
  */
-#include "../explore_impl.h"
+#include "../explore_run.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -274,8 +274,8 @@ static void lay_tree(ex_codec_t *codec, uint32_t *word)
 static bool lay_touched(ex_run_t *run, ex_codec_t *codec, uint32_t t)
 {
     const pn_transition_t *transition = &pn_net.transition[t];
-    codec->touched_words[t] = ex_table(run, codec->packed_words, sizeof(uint32_t));
-    codec->touched_bags[t] = ex_table(run, transition->touched_count, sizeof(uint32_t));
+    codec->touched_words[t] = ex_table(&run->memory, codec->packed_words, sizeof(uint32_t));
+    codec->touched_bags[t] = ex_table(&run->memory, transition->touched_count, sizeof(uint32_t));
     if ((codec->touched_words[t] == NULL) || (codec->touched_bags[t] == NULL)) {
         return false;
     }
@@ -301,7 +301,7 @@ static bool lay_touched(ex_run_t *run, ex_codec_t *codec, uint32_t t)
 
 bool ex_codec_make(ex_run_t *run)
 {
-    ex_codec_t *codec = ex_alloc(run, sizeof *codec);
+    ex_codec_t *codec = ex_alloc(&run->memory, sizeof *codec);
     if (codec == NULL) {
         return false;
     }
@@ -310,20 +310,20 @@ bool ex_codec_make(ex_run_t *run)
     const uint32_t packed = codec->is_whole ? 0U : (uint32_t)pn_net.packed_size;
     const uint32_t packed_words = rounded_up(packed, 4U);
     const uint64_t most = (2U * (uint64_t)packed_words) + (2U * (uint64_t)pn_net.place_count) + 3U;
-    codec->slice_bit = ex_table(run, most, sizeof(uint32_t));
-    codec->slice_width = ex_table(run, most, sizeof(uint32_t));
-    codec->word_of = ex_table(run, pn_net.place_count, sizeof(uint32_t));
-    codec->place_of = ex_table(run, most, sizeof(uint32_t));
-    codec->touched_words = ex_table(run, pn_net.transition_count, sizeof(uint32_t *));
-    codec->touched_count = ex_table(run, pn_net.transition_count, sizeof(uint32_t));
-    codec->touched_bags = ex_table(run, pn_net.transition_count, sizeof(uint32_t *));
-    codec->touched_bag_count = ex_table(run, pn_net.transition_count, sizeof(uint32_t));
-    codec->touched_parts = ex_table(run, pn_net.transition_count, sizeof(uint8_t));
-    codec->part_of = ex_table(run, most, sizeof(uint32_t));
-    codec->node = ex_table(run, most, sizeof *codec->node);
-    codec->parent = ex_table(run, 2U * most, sizeof(uint32_t));
-    uint32_t *cell = ex_table(run, most, sizeof *cell);
-    codec->is_joined = ex_table(run, most, sizeof(bool));
+    codec->slice_bit = ex_table(&run->memory, most, sizeof(uint32_t));
+    codec->slice_width = ex_table(&run->memory, most, sizeof(uint32_t));
+    codec->word_of = ex_table(&run->memory, pn_net.place_count, sizeof(uint32_t));
+    codec->place_of = ex_table(&run->memory, most, sizeof(uint32_t));
+    codec->touched_words = ex_table(&run->memory, pn_net.transition_count, sizeof(uint32_t *));
+    codec->touched_count = ex_table(&run->memory, pn_net.transition_count, sizeof(uint32_t));
+    codec->touched_bags = ex_table(&run->memory, pn_net.transition_count, sizeof(uint32_t *));
+    codec->touched_bag_count = ex_table(&run->memory, pn_net.transition_count, sizeof(uint32_t));
+    codec->touched_parts = ex_table(&run->memory, pn_net.transition_count, sizeof(uint8_t));
+    codec->part_of = ex_table(&run->memory, most, sizeof(uint32_t));
+    codec->node = ex_table(&run->memory, most, sizeof *codec->node);
+    codec->parent = ex_table(&run->memory, 2U * most, sizeof(uint32_t));
+    uint32_t *cell = ex_table(&run->memory, most, sizeof *cell);
+    codec->is_joined = ex_table(&run->memory, most, sizeof(bool));
     if ((codec->slice_bit == NULL) || (codec->slice_width == NULL) || (codec->is_joined == NULL)
         || (codec->word_of == NULL) || (codec->place_of == NULL) || (codec->touched_words == NULL)
         || (codec->touched_parts == NULL) || (codec->part_of == NULL) || (codec->touched_count == NULL)
@@ -349,8 +349,8 @@ bool ex_codec_make(ex_run_t *run)
     if (codec->is_plain) {
         mask_plain(codec);
     }
-    ex_free_table(run, cell, most, sizeof *cell);
-    return ex_derived_make(run) && ex_bytes_make(&codec->bytes, run) && ex_codec_number(run);
+    ex_free_table(&run->memory, cell, most, sizeof *cell);
+    return ex_derived_make(run) && ex_bytes_make(&codec->bytes, &run->memory, &run->team) && ex_codec_number(run);
 }
 
 bool ex_codec_number(ex_run_t *run)
@@ -360,7 +360,8 @@ bool ex_codec_number(ex_run_t *run)
         if (codec->tuples[i].lane != NULL) {
             ex_tuples_free(&codec->tuples[i]);
         }
-        if ((codec->tuple_words[i] > 0U) && !ex_tuples_make(&codec->tuples[i], run, codec->tuple_words[i])) {
+        if ((codec->tuple_words[i] > 0U)
+            && !ex_tuples_make(&codec->tuples[i], &run->memory, &run->team, codec->tuple_words[i])) {
             return false;
         }
     }

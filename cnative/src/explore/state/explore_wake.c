@@ -29,7 +29,7 @@ bool ex_wakes_make(ex_worker_t *worker)
     if (!has_wakes()) {
         return true;
     }
-    worker->wake = ex_alloc(worker->run, (uint64_t)WAKES * sizeof *worker->wake);
+    worker->wake = ex_alloc(&worker->run->memory, (uint64_t)WAKES * sizeof *worker->wake);
     return worker->wake != NULL;
 }
 

@@ -4,7 +4,7 @@
  * A state whose bits are all set already is taken for known. How probable that is for a new state is measured now and
  * then: in a sample of words, the part of all triples of bits that are set.
  */
-#include "../explore_impl.h"
+#include "explore_bits.h"
 
 #include <math.h>
 
@@ -25,15 +25,15 @@ static uint64_t mask_of(uint64_t hash)
     return mask;
 }
 
-bool ex_bits_make(ex_bits_t *bits, ex_run_t *run)
+bool ex_bits_make(ex_bits_t *bits, ex_memory_t *memory)
 {
-    const uint64_t used = atomic_load(&run->memory_used);
-    const uint64_t left = (run->options.memory > used) ? (run->options.memory - used) : 0U;
+    const uint64_t used = atomic_load(&memory->used);
+    const uint64_t left = (memory->limit > used) ? (memory->limit - used) : 0U;
     bits->bytes = (left / 4U) * 3U; /* the rest is for the frontier */
     bits->words = bits->bytes / sizeof(uint64_t);
     atomic_init(&bits->inserted, 0U);
     (void)pthread_mutex_init(&bits->lock, NULL);
-    bits->word = (bits->words > 0U) ? ex_alloc(run, bits->bytes) : NULL;
+    bits->word = (bits->words > 0U) ? ex_alloc(memory, bits->bytes) : NULL;
     return bits->word != NULL;
 }
 

@@ -180,21 +180,23 @@ static uint64_t buckets_for(const ex_store_t *store, uint64_t keys)
     return (((keys / store->slots) + page) / page) * page;
 }
 
-bool ex_store_make(ex_store_t *store, ex_run_t *run, const uint32_t width[EX_KEY_WORDS], uint64_t keys)
+bool ex_store_make(ex_store_t *store, ex_memory_t *memory, const ex_team_t *team, bool is_word,
+                   const uint32_t width[EX_KEY_WORDS], uint64_t keys)
 {
-    store->run = run;
-    store->is_word = (run->codec != NULL) && run->codec->is_word && !run->options.is_hashed;
+    store->memory = memory;
+    store->team = team;
+    store->is_word = is_word;
     lay(store, width);
     store->buckets = buckets_for(store, keys);
     store->limit = limit_of(store);
     atomic_init(&store->used, 0U);
-    store->bucket = ex_alloc(run, store->buckets * (uint64_t)LINE);
+    store->bucket = ex_alloc(memory, store->buckets * (uint64_t)LINE);
     return store->bucket != NULL;
 }
 
 void ex_store_free(ex_store_t *store)
 {
-    ex_free(store->run, store->bucket, ex_store_bytes(store));
+    ex_free(store->memory, store->bucket, ex_store_bytes(store));
     store->bucket = NULL;
 }
 
@@ -416,7 +418,7 @@ static void move_part(void *user, uint32_t part)
         }
         const uint64_t at = b * (uint64_t)LINE;
         if ((at - done) >= (uint64_t)STEP) {
-            ex_discard(old->run, old->bucket, ex_store_bytes(old), done, at);
+            ex_discard(old->memory, old->bucket, ex_store_bytes(old), done, at);
             done = at & ~((uint64_t)STEP - 1U);
         }
     }
@@ -424,25 +426,25 @@ static void move_part(void *user, uint32_t part)
 
 static bool move_all(const ex_store_t *old, ex_store_t *new)
 {
-    const bool is_shared = (old->run->options.threads > 1U) && (ex_store_bytes(old) >= (uint64_t)SHARED_SIZE);
-    move_t move = { .old = old, .new = new, .parts = is_shared ? (PARTS * old->run->options.threads) : 1U };
+    const bool is_shared = (old->team->threads > 1U) && (ex_store_bytes(old) >= (uint64_t)SHARED_SIZE);
+    move_t move = { .old = old, .new = new, .parts = is_shared ? (PARTS * old->team->threads) : 1U };
     atomic_init(&move.has_failed, false);
-    ex_together(old->run, move.parts, move_part, &move);
+    old->team->together(old->team->self, move.parts, move_part, &move);
     return !atomic_load(&move.has_failed);
 }
 
 /* Counts what the new table takes more than the old one, for which there must be room; false: there is none. */
 static bool count_growth(const ex_store_t *old, const ex_store_t *new)
 {
-    const uint64_t more = ex_is_spilled(new->run, ex_store_bytes(new)) ? 0U : ex_store_bytes(new);
-    const uint64_t less = ex_is_spilled(old->run, ex_store_bytes(old)) ? 0U : ex_store_bytes(old);
+    const uint64_t more = ex_is_spilled(new->memory, ex_store_bytes(new)) ? 0U : ex_store_bytes(new);
+    const uint64_t less = ex_is_spilled(old->memory, ex_store_bytes(old)) ? 0U : ex_store_bytes(old);
     if (ex_store_bytes(old) < SLACK) {
-        return ex_count(new->run, more); /* both at the same time */
+        return ex_count(new->memory, more); /* both at the same time */
     }
     if (more <= less) {
         return true;
     }
-    return ex_has_room(new->run, (more - less) + SLACK) && ex_count(new->run, more - less);
+    return ex_has_room(new->memory, (more - less) + SLACK) && ex_count(new->memory, more - less);
 }
 
 /* With a table of so many buckets and keys of such widths. */
@@ -455,17 +457,17 @@ static bool grow_to(ex_store_t *store, uint64_t buckets, const uint32_t width[EX
     if (!count_growth(store, &new)) {
         return false;
     }
-    new.bucket = ex_map(store->run, ex_store_bytes(&new));
+    new.bucket = ex_map(store->memory, ex_store_bytes(&new));
     if (new.bucket == NULL) {
         return false; /* what was counted stays so: the run ends */
     }
     const bool is_whole = move_all(store, &new);
     ex_unmap(store->bucket, ex_store_bytes(store));
-    if (!ex_is_spilled(store->run, ex_store_bytes(store))) {
+    if (!ex_is_spilled(store->memory, ex_store_bytes(store))) {
         if (ex_store_bytes(store) < SLACK) {
-            ex_uncount(store->run, ex_store_bytes(store));
+            ex_uncount(store->memory, ex_store_bytes(store));
         } else if (ex_store_bytes(&new) < ex_store_bytes(store)) {
-            ex_uncount(store->run, ex_store_bytes(store) - ex_store_bytes(&new));
+            ex_uncount(store->memory, ex_store_bytes(store) - ex_store_bytes(&new));
         }
     }
     const uint64_t used = atomic_load(&store->used);
@@ -508,7 +510,7 @@ bool ex_store_grow(ex_store_t *store, const uint32_t width[EX_KEY_WORDS])
         const uint64_t bytes = ex_store_bytes(&new);
         const uint64_t old = ex_store_bytes(store);
         const uint64_t more = (old < SLACK) ? bytes : (((bytes > old) ? (bytes - old) : 0U) + SLACK);
-        if (ex_is_spilled(store->run, bytes) || ex_has_room(store->run, more)) {
+        if (ex_is_spilled(store->memory, bytes) || ex_has_room(store->memory, more)) {
             return grow_to(store, new.buckets, wider);
         }
     }

@@ -3,6 +3,7 @@
  * state, and the store holds them as they are.
  */
 #include "../search/explore_search.h"
+#include "../search/explore_successors.h"
 #include "explore_words.h"
 
 #include <string.h>
@@ -43,7 +44,7 @@ bool ex_words_make(ex_worker_t *worker)
     if (!is_possible) {
         return true;
     }
-    ex_words_t *const own = ex_alloc(worker->run, sizeof *own);
+    ex_words_t *const own = ex_alloc(&worker->run->memory, sizeof *own);
     if (own == NULL) {
         return false;
     }

@@ -5,7 +5,7 @@
 #ifndef EXPLORE_WORDS_H
 #define EXPLORE_WORDS_H
 
-#include "../explore_impl.h"
+#include "explore_store.h"
 
 #if defined(__AVX2__) && !defined(__SANITIZE_THREAD__)
 #define EX_LINE_VECTOR 1

@@ -6,6 +6,9 @@ fun Misc_split (0, rest, front) = (rest, List.rev front)
   | Misc_split (n, x :: rest, front) = Misc_split (n - 1, rest, x :: front)
   | Misc_split (_, [], _) = raise Match
 
+fun Misc_isSubstring "" _ = true
+  | Misc_isSubstring part s = String.isSubstring part s
+
 fun Misc_basename path =
   let
     fun last ([], found) = String.implode (List.rev found)

@@ -55,7 +55,8 @@ fun Real_toLargeInt mode x =
     else if not (Real.isFinite x) then raise Overflow
     else prim_real_to_large (rounded (mode, x))
 
-fun Real_toInt mode x = trunc (rounded (mode, x))
+fun Real_toInt IEEEReal.TO_POSINF x = ceil x
+  | Real_toInt mode x = trunc (rounded (mode, x))
 
 fun Real_toLarge (x : real) = x
 fun Real_fromLarge (mode : IEEEReal.rounding_mode) (x : real) = x

@@ -150,7 +150,7 @@ String.tokens : (char -> bool) -> string -> string list ; parts between separato
 String.fields : (char -> bool) -> string -> string list ; parts between separators
 String.isPrefix : string -> string -> bool ; whether the second begins with the first
 String.isSuffix : string -> string -> bool ; whether the second ends with the first
-String.isSubstring : string -> string -> bool ; whether the second contains the first
+String.isSubstring : string -> string -> bool ; whether the second, which is not empty, contains the first
 String.compare : string * string -> order ; lexicographic
 String.< : string * string -> bool ; lexicographic
 String.<= : string * string -> bool ; lexicographic

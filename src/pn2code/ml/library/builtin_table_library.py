@@ -159,6 +159,7 @@ Option.composePartial : ('a -> 'b option) * ('c -> 'a option) -> 'c -> 'b option
 Misc.a_cmp : ('a * 'a -> bool) -> 'a * 'a -> order ; a three-way comparison from `less`
 Misc.makelist : ('a -> string) -> 'a list -> string ; the text of a list, `[a,b]`
 Misc.split : int * 'a list * 'a list -> 'a list * 'a list ; the rest behind n elements, and those before (in front: the third, reversed)
+Misc.isSubstring : string -> string -> bool ; whether the second contains the first
 Misc.basename : string -> string ; what follows the last `/` that is not at the end
 Misc.time_of_day : unit -> real ; 0.0 here: runs can be repeated
 

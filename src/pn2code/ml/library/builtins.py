@@ -275,8 +275,7 @@ TOP_LEVEL: dict[str, str] = {
     "sort": "List.sort",
     "unique_sort": "List.unique_sort",
     "flatten": "List.concat",
-    "isSubstring": "String.isSubstring",
-    **{name: f"Misc.{name}" for name in ("a_cmp", "makelist", "split", "basename", "time_of_day")},
+    **{name: f"Misc.{name}" for name in ("a_cmp", "makelist", "split", "basename", "time_of_day", "isSubstring")},
     "fmap": "List.fmap",
     "`": "Ms.`",
     "++": "Ms.++",
@@ -361,7 +360,6 @@ QUALIFIED: dict[str, str] = {
     "Misc.flatten": "List.concat",
     "Misc.sort": "List.sort",
     "Misc.unique_sort": "List.unique_sort",
-    "Misc.isSubstring": "String.isSubstring",
 }  # fmt: skip
 """Qualified names that stand for another full name; all other qualified names stand for themselves."""
 

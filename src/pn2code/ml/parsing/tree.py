@@ -5,15 +5,16 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import NOWHERE, SourceText, Span
 from pn2code.ml.parsing import syntax as s
 from pn2code.ml.parsing.lexer import Lexeme
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Group:
     """Several nodes and the text they cover."""
 
@@ -21,7 +22,7 @@ class Group:
     span: Span
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Dots:
     """`...` in a record pattern."""
 

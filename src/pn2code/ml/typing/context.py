@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Note, Span
 from pn2code.diagnostics.suggestions import nearest
 from pn2code.ml import codes
@@ -42,7 +43,7 @@ class TooDeepError(Exception):
     """Reported already; unwinds to the border."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Draft:
     """An expression whose type may still be partly unknown; `build` gives the core expression once it is known."""
 

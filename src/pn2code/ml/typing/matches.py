@@ -10,8 +10,8 @@ name, its contents are matched in the body, and where they do not match, the rul
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Span
 from pn2code.ml import codes
 from pn2code.ml.core import terms as core
@@ -33,7 +33,7 @@ class _TooLargeError(Exception):
     """A match beyond the limit."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Coverage:
     """What is known of a match.
 
@@ -241,7 +241,7 @@ def _shown_record(labels: Sequence[str], parts: Sequence[str]) -> str:
 # --- warnings ----------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BuiltRule:
     """A rule in core with what is still to be done for the references in its pattern."""
 

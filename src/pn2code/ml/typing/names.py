@@ -243,7 +243,7 @@ class Names:
             hint = (
                 advice.unbound_word(name, self._ctx.colsets)
                 or self._order_hint(name, span)
-                or suggestion(name, self._ctx.scope.own_names(), self._library_names())
+                or suggestion(name, self._ctx.scope.own_names(), self._library_names(name))
             )
             if name in self._ctx.net_variables:
                 hint = advice.variable_out_of_scope(span.source.origin.part)
@@ -258,9 +258,14 @@ class Names:
         self._ctx.error(codes.UNBOUND, f"{quoted(name)} is not declared", span, hint=hint)
         return BROKEN
 
-    def _library_names(self) -> set[str]:
-        """Names that are worth suggesting besides the net's own: almost any short one is like `lt`, `op` or `ms`."""
-        return {n for n in self._ctx.scope.names() if len(n) >= _SHORTEST_SUGGESTED}
+    def _library_names(self, name: str) -> set[str]:
+        """What may be meant besides the net's own names: a short one, like `lt`, is close to almost any short name, and
+        is worth suggesting only where upper and lower case are wrong."""
+        return {
+            n
+            for n in self._ctx.scope.names()
+            if len(n) >= _SHORTEST_SUGGESTED or n.lower() == name.lower()
+        }
 
     def _order_hint(self, name: str, span: Span) -> str:
         """For a name that is declared, but not above."""

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.ml.core.colsets import Colset
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import FlatNet, FlatPlace, FlatTransition
@@ -21,7 +21,7 @@ Binding = Mapping[Symbol, Value]
 """Values of net variables."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Marking:
     """The state of a net: model time, and what each place holds, in the order of `FlatNet.places`.
 
@@ -33,7 +33,7 @@ class Marking:
     references: Held = NOTHING
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BindingElement:
     """A transition with values of its variables.
 

@@ -343,6 +343,7 @@ FUNCTIONS: dict[str, tuple[int, Function]] = {
     "Misc.a_cmp": (2, _compare_by),
     "Misc.makelist": (2, _list_text),
     "Misc.split": (1, _split),
+    "Misc.isSubstring": (2, lambda e, part, s: part in s),
     "Misc.basename": (1, lambda e, path: path.removesuffix("/").rpartition("/")[2]),
     "Misc.time_of_day": (1, lambda e, unit: 0.0),
     "Option.compose": (2, _compose_options),

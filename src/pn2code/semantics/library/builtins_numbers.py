@@ -264,6 +264,11 @@ def _rounded(how: Callable[[float], int]) -> Function:
     return lambda e, x: checked(e, how(_whole(x)))
 
 
+def _ceiling(x: float) -> int:
+    """The integer that SML/NJ's `ceil` gives: its sum rounds, so that 3.0000000000000004 is 3 and 1E~20 is 0."""
+    return -1 - math.floor(-1.0 - x)
+
+
 def _rounded_real(how: Callable[[float], int]) -> Function:
     def function(e: Evaluator, x: float) -> float:
         # What is rounded to zero has no sign there; a zero keeps its own.
@@ -446,7 +451,7 @@ REALS: dict[str, Function] = {
     "fromInt": lambda e, a: float(a),
     "fromLargeInt": lambda e, a: _real_of(a),
     "floor": _rounded(math.floor),
-    "ceil": _rounded(math.ceil),
+    "ceil": _rounded(_ceiling),
     "round": _rounded(round),
     "trunc": _rounded(math.trunc),
     "realFloor": _rounded_real(math.floor),
@@ -554,7 +559,10 @@ FUNCTIONS: dict[str, tuple[int, Function]] = {
     **{f"Word.{name}": (1, f) for name, f in WORDS.items()},
     "Word.fmt": (2, lambda e, radix, w: digits_text(w, BASES[radix.name])),
     **{f"Real.{name}": (1, one_nan(f)) for name, f in REALS.items()},
-    "Real.toInt": (2, lambda e, mode, x: checked(e, _MODES[mode.name](_whole(x)))),
+    "Real.toInt": (
+        2,
+        lambda e, mode, x: checked(e, (_MODES | {"TO_POSINF": _ceiling})[mode.name](_whole(x))),
+    ),
     "Real.toLargeInt": (2, lambda e, mode, x: _MODES[mode.name](_whole(x))),
     "Real.fromLarge": (2, lambda e, mode, x: x),
     "Real.fmt": (2, format_real),

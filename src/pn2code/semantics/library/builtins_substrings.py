@@ -161,7 +161,7 @@ FUNCTIONS: dict[str, tuple[int, Function]] = {
     "Substring.explode": (1, lambda e, s: tuple(str(s))),
     "Substring.isPrefix": (2, lambda e, part, s: str(s).startswith(part)),
     "Substring.isSuffix": (2, lambda e, part, s: str(s).endswith(part)),
-    "Substring.isSubstring": (2, lambda e, part, s: part in str(s)),
+    "Substring.isSubstring": (2, lambda e, part, s: part in str(s) != ""),
     "Substring.compare": (1, lambda e, p: order(str(p[0]), str(p[1]))),
     "Substring.collate": (2, _collate),
     "Substring.splitl": (2, _at(_prefix, left=True, right=True)),

@@ -189,7 +189,7 @@ FUNCTIONS: dict[str, tuple[int, Function]] = {
     "String.fields": (2, _fields),
     "String.isPrefix": (2, lambda e, part, s: s.startswith(part)),
     "String.isSuffix": (2, lambda e, part, s: s.endswith(part)),
-    "String.isSubstring": (2, lambda e, part, s: part in s),
+    "String.isSubstring": (2, lambda e, part, s: part in s != ""),
     "String.collate": (2, _collate),
     "String.toString": (1, lambda e, s: "".join(map(escaped, s))),
     "String.fromString": (1, lambda e, s: _unescape(s)),

@@ -28,6 +28,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from pn2code.base.frozen import frozen
 from pn2code.ml.library.builtins import EXCEPTIONS
 
 if TYPE_CHECKING:
@@ -39,7 +40,7 @@ MAX_INT = 2**30 - 1
 MIN_INT = -(2**30)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Data:
     """A value made by a constructor: enumerations, unions, `SOME x`, user data types, exceptions.
 
@@ -54,7 +55,7 @@ class Data:
     argument: Value | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Timed:
     """A token with its absolute time stamp."""
 
@@ -82,7 +83,7 @@ class Stream:
     __slots__ = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Slice:
     """A substring: a part of a text."""
 

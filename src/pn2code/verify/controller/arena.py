@@ -1,19 +1,18 @@
 """How much memory the lists and strings of a deployed supervisor get: what the state space shows, with room to spare.
 
-size(found)      # 4194304; None: it is not known
+size(found)      # 65536; None: it is not known
 
 The arena of a supervisor (cnative/include/pn/pn_arena.h) has a part for the values of declarations and two halves. A
 firing begins in a half that is used to a half at most, or with what the marking refers to; so a half has to hold twice
 a firing, and a firing with a marking. Twice that is given, since the explored net may be compiled with other places
-packed than the deployed one.
+packed than the deployed one. That is no proof for the deployed one: `emission.arena_size` takes no less than the usual
+size where it has none of its own.
 """
 
 from __future__ import annotations
 
 from pn2code.verify.exploring.result import Exploration
 
-LEAST = 1 << 22
-"""Also what a supervisor gets of which nothing is known."""
 MOST = 1 << 30
 _UNIT = 1 << 16
 
@@ -28,4 +27,4 @@ def size(found: Exploration | None) -> int | None:
         return None
     start, firing, marking = (int(found.arena[part]) for part in ("start", "firing", "marking"))
     half = 2 * max(2 * firing, firing + marking)
-    return max(LEAST, -(-(start + 2 * half) // _UNIT) * _UNIT)
+    return max(-(-(start + 2 * half) // _UNIT), 1) * _UNIT

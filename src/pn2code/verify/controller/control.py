@@ -56,7 +56,7 @@ from pn2code.verify.controller.running import NotModelledError, Running, Silence
 from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.explore import explore
 from pn2code.verify.exploring.limits import Limits, Reduction
-from pn2code.verify.exploring.programs import Sizes
+from pn2code.verify.exploring.programs import Generated, Sizes
 from pn2code.verify.exploring.result import Exploration
 
 DOUBT = (
@@ -158,6 +158,7 @@ def examine(
         wishes = replace(
             plan.wishes,
             sizes=Sizes.start(running.net, plan.storage),
+            generated=Generated(),
             traces=Path(name),
             whole=tuple(c.place for c in partition.channels),
             graph=None,

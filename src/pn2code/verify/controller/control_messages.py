@@ -59,7 +59,7 @@ def memory(found: Exploration | None, why: str = "") -> Check:
     needs = f"{held}, and what is worked out on the way {firing:,} in one firing"
     if size > arena.MOST:
         return Check(MEMORY, "no", f"{needs}, which is too much", firing)
-    says = f"{needs}; the supervisor has {size:,} bytes"
+    says = f"{needs}; the supervisor has room for more than twice that"
     if firing == marking == 0:
         says = "no list or string needs memory while the supervisor runs"
     return Check(MEMORY, "yes", says, firing)

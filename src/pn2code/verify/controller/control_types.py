@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.frozen import frozen
 from pn2code.net.engine_names import EngineNames
 from pn2code.properties import meaning as m
 from pn2code.verify.answers import basis
@@ -55,7 +56,7 @@ MAX_FIRINGS = 100_000
 """What `./supervisor` permits in one cycle unless it is told another number."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Evidence:
     """A run that shows an answer.
 
@@ -78,7 +79,7 @@ class Evidence:
         return {"trace": trace, "steps": self.steps, "loop": self.loop, "node": self.node}
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Check:
     """A check and its answer.
 
@@ -140,7 +141,7 @@ def _is_script(check: Check) -> bool:
     return check.name == BLOCKING and check.why in reasons
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Plan:
     """How to look.
 
@@ -169,7 +170,7 @@ class Plan:
     premises: Premises = Premises()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Control:
     """All checks of a cell, and what they were looked up in.
 

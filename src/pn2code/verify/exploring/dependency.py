@@ -48,6 +48,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
+from pn2code.base.frozen import frozen
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Kind
 from pn2code.net.flat import (
@@ -126,7 +127,7 @@ def _count(arc: FlatArc, index: int) -> int | None:
     return max(coefficient.value, 0)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Reason:
     """A transition is disabled as long as the place has fewer than `least` tokens; `least` 0: as long as it has any."""
 
@@ -135,7 +136,7 @@ class Reason:
     helpers: tuple[int, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Member:
     """A transition in a stubborn set, and what belongs to the set with it.
 
@@ -152,7 +153,7 @@ class Member:
     reasons: tuple[Reason, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Dependency:
     """The table.
 

@@ -34,7 +34,7 @@ from pn2code.verify.codes import (
 from pn2code.verify.exploring import nondeterminism, programs
 from pn2code.verify.exploring.grace import Grace, processor_time
 from pn2code.verify.exploring.limits import Limits, default_memory
-from pn2code.verify.exploring.programs import Sizes
+from pn2code.verify.exploring.programs import Generated, Sizes
 from pn2code.verify.exploring.reductions import OF_ELEMENTS, Chosen, possible, refuse
 from pn2code.verify.exploring.result import Exploration
 
@@ -79,6 +79,7 @@ class ExploreOptions:
         questions: about the states and the runs (`properties.questions`), "" for none; `predicates`: the conditions
             that they mention. `evidence`: a folder for the runs that show the answers.
         sizes: what the places of the compiled net hold at first; None: what their structure and initial marking say.
+        generated: what an exploration of the same net with the same predicates has generated; gets what this one has.
         quick: rather compile quickly than explore quickly.
         pace: seconds between two tellings of progress.
         progress, interrupted: how the outside hears and says that it has been enough.
@@ -96,6 +97,7 @@ class ExploreOptions:
     predicates: tuple[Predicate, ...] = ()
     evidence: Path | None = None
     sizes: Sizes | None = None
+    generated: Generated | None = None
     quick: bool = False
     pace: float = 0.5
     progress: Progress = _nothing
@@ -130,7 +132,8 @@ def explore(
             if nondeterminism.refuse(net, d):
                 return None
             chosen = possible(net, limits.reductions, d, wishes.predicates)
-            sizes = wishes.sizes or Sizes.start(net, storage)
+            made = wishes.generated or Generated()
+            sizes = made.sizes or wishes.sizes or Sizes.start(net, storage)
     except TimeIsOverError:
         return _too_late(net, limits, time.perf_counter() - began, d)
 
@@ -151,6 +154,7 @@ def explore(
                 wishes.predicates,
                 interrupted=interrupted,
                 quick=wishes.quick or is_first,
+                made=made,
             )
             program = None
             with suppress(TimeIsOverError), deadline.enforced():

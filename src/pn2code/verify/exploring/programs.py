@@ -13,9 +13,11 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import pn2code
+from pn2code.base.frozen import frozen
 from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission import c as emit_c
+from pn2code.emission import c_flags
 from pn2code.emission.output import OutputFile
 from pn2code.ir import nodes as ir
 from pn2code.lowering.nets import net as lower_net
@@ -34,11 +36,11 @@ HOST = Host("explore", flags=("-pthread",), own=("-march=native",), libraries=("
 and the runtime that computes its values, are compiled as everywhere else."""
 QUICK = replace(HOST, net=("-O0",))
 """For small spaces: compiled in a fifth of the time. Only the net is slower, up to three times; the explorer is not."""
-LARGE = replace(HOST, net=("-DPN_MANY",))
-"""For nets of many transitions: the compiler decides itself what is worth having in several copies."""
-PACKED = replace(LARGE, net=(*LARGE.net, "-O2", "-finline"))
-"""For those whose places are counters: beyond `c_flags.LARGE` others are compiled with less optimization, which costs
-the explorer of such a net nothing. Counters are what the compiler optimizes best."""
+LARGE = replace(HOST, net=("-DPN_MANY", *c_flags.QUICKER))
+"""For nets of many transitions: less than half of the compiler's time, and the explorer is as fast."""
+PACKED = replace(HOST, net=("-DPN_MANY", "-O2", "-finline"))
+"""For those whose places are counters, which are what the compiler optimizes best. It decides itself (PN_MANY) what is
+worth having in several copies."""
 MANY = 40
 """Transitions of a net that is worth to be compiled quickly first."""
 FIRST_STATES = 100_000
@@ -56,7 +58,7 @@ FEW = 2
 """Places that get more one by one, before all do that may need it."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Sizes:
     """What the places of a compiled net hold.
 
@@ -119,6 +121,21 @@ class Sizes:
         )
 
 
+@dataclass(slots=True)
+class Generated:
+    """What was generated last for a net and its predicates; those who explore both again need not generate it again.
+
+    Args:
+        sizes: what the places of that program hold; None: nothing has been generated yet.
+        files: its C.
+        host: what it is compiled with for a large space.
+    """
+
+    sizes: Sizes | None = None
+    files: tuple[OutputFile, ...] = ()
+    host: Host = HOST
+
+
 def generated(
     net: FlatNet,
     storage: Mapping[str, str],
@@ -166,6 +183,7 @@ def program(
     *,
     interrupted: Callable[[], bool] = lambda: False,
     quick: bool = False,
+    made: Generated | None = None,
 ) -> Iterator[Path | None]:
     """The explorer of a net, as long as the block lasts; None after a diagnostic, or when it was interrupted.
 
@@ -177,13 +195,16 @@ def program(
         predicates: what can be asked of its markings.
         interrupted: asked while compilers run.
         quick: rather compile quickly than run quickly, unless it has been compiled already.
+        made: what was generated for the same net and predicates; gets what is generated here.
     """
-    lowered = _lowered(net, storage, sizes, d, predicates)
-    if lowered is None:
-        yield None
-        return
-    files = emit_c.emit(lowered, pn2code.__version__)
-    best = _host(lowered)
-    host = QUICK if quick and not programs.is_kept(best, files) else best
-    with programs.program(host, files, d, interrupted=interrupted) as found:
+    made = Generated() if made is None else made
+    if made.sizes != sizes:
+        lowered = _lowered(net, storage, sizes, d, predicates)
+        if lowered is None:
+            yield None
+            return
+        made.files = emit_c.emit(lowered, pn2code.__version__)
+        made.host, made.sizes = _host(lowered), sizes
+    host = QUICK if quick and not programs.is_kept(made.host, made.files) else made.host
+    with programs.program(host, made.files, d, interrupted=interrupted) as found:
         yield found

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.frozen import frozen
 from pn2code.ml.core.colsets import Colset
 from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet
@@ -17,7 +18,7 @@ from pn2code.semantics.values.colours import TEXTS
 FAIRNESS = ("impartial", "fair", "just", "none")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Bounds:
     """Of one place: least and greatest number of tokens, and for each colour (JSON of the traces) the same.
 
@@ -33,7 +34,7 @@ class Bounds:
     upper_colours: int = 0
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Seen:
     """What an answer may rest on.
 
@@ -48,7 +49,7 @@ class Seen:
     components: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Graph:
     """What only the whole graph tells. Nodes are numbered breadth first; 1 is the initial marking.
 
@@ -71,7 +72,7 @@ class Graph:
     seconds: float
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Trace:
     """A shortest run to a marking."""
 
@@ -85,7 +86,7 @@ class Trace:
         return Trace(found["node"], Path(found["file"]), found["steps"])
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Exploration:
     """The state space, or the part of it that was seen.
 

@@ -11,10 +11,10 @@ import json
 import tempfile
 from collections.abc import Iterator, Mapping
 from contextlib import closing
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.evaluation.files import Files
@@ -29,7 +29,7 @@ MOST_NODES = 200_000
 """Of a graph that is written; in a larger one the run is not looked for."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Run:
     """A run. `file` is None if the trace could not be written."""
 
@@ -39,7 +39,7 @@ class Run:
     file: Path | None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Graph:
     """What is needed of a graph: the node with the token, and by which arc each node was reached first."""
 

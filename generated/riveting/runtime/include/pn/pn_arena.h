@@ -18,6 +18,7 @@
 #include "pn/pn_types.h"
 
 #define PN_ARENA_DEFAULT_SIZE ((size_t)1U << 22)
+#define PN_ARENA_ALIGNMENT    sizeof(max_align_t) /* what is allocated takes a multiple of it */
 
 typedef struct pn_arena {
     unsigned char *memory; /* aligned as max_align_t */
@@ -30,7 +31,7 @@ typedef struct pn_arena {
     size_t start;          /* largest `used` until then */
 } pn_arena_t;
 
-/* `memory` is aligned as max_align_t and lives as long as the arena. */
+/* `memory` is aligned as max_align_t and lives as long as the arena; NULL where `size` is 0. */
 void pn_arena_init(pn_arena_t *arena, void *memory, size_t size);
 
 /* Forgets everything, also what is permanent. */

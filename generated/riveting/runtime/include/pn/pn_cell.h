@@ -121,8 +121,7 @@ typedef struct pn_cell {
     const pn_cell_peer_t *peer;
     uint32_t final_count;
     const uint32_t *final_place;
-    void *arena; /* memory for lists and strings (pn_arena.h), aligned as max_align_t; as much as was found to be enough
-                  */
+    void *arena; /* memory for lists, strings and moves (pn_arena.h), aligned as max_align_t; or NULL */
     size_t arena_size;
     pn_cell_room_t room;
     pn_cell_needs_t needs;

@@ -454,11 +454,23 @@ uint32_t pn_bag_token(const pn_bag_t *bag, const void *marking, uint32_t i, pn_l
     return pn_to_leaves(bag->type, part(pn_bag_entry(bag, marking, i), bag->value), leaf, capacity);
 }
 
+/* Whether a token made of these leaves refers to the arena: only its strings do. */
+static bool has_strings(const pn_leaf_t *leaf, uint32_t leaves)
+{
+    bool has = false;
+    for (uint32_t i = 0U; (i < leaves) && !has; i++) {
+        has = (leaf[i].kind == PN_LEAF_STRING);
+    }
+    return has;
+}
+
 bool pn_bag_put(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const pn_leaf_t *leaf, uint32_t leaves)
 {
     const char *origin = cx->origin;
+    const size_t mark = pn_arena_mark(cx->arena);
+    pn_colour_t small;
     cx->origin = bag->origin;
-    void *value = pn_arena_alloc(cx, bag->type->size);
+    void *value = (bag->type->size <= sizeof small) ? &small : pn_arena_alloc(cx, bag->type->size);
     if ((value != NULL) && pn_from_leaves(cx, bag->type, value, leaf, leaves)) {
         pn_narrow(cx, bag->type, value);
         if (!pn_is_legal(cx, bag->type, value)) {
@@ -466,6 +478,9 @@ bool pn_bag_put(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const pn_leaf_
         }
     }
     const bool is_put = pn_ok(cx) && (value != NULL) && pn_bag_add(cx, bag, marking, value, 1U, cx->now);
+    if (!is_put || !has_strings(leaf, leaves)) {
+        pn_arena_release(cx->arena, mark); /* a refused message may come again and again */
+    }
     cx->origin = origin;
     return is_put;
 }

@@ -13,6 +13,10 @@
 #include "pn_bag_impl.h"
 #include "../value/pn_type_impl.h"
 
+/* The arena of a net without lists and strings is made for moves of this size (emission/arena_size.py). */
+_Static_assert(sizeof(pn_move_t) <= 96U, "a move is larger than what the arena was made for");
+_Static_assert(PN_ARENA_ALIGNMENT <= 32U, "values are aligned wider than what the arena was made for");
+
 void pn_moves_init(pn_moves_t *moves, pn_ctx_t *cx)
 {
     moves->cx = cx;

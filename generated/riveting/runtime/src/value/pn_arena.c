@@ -6,17 +6,15 @@
 #include "pn/pn_num.h"
 #include "pn/pn_random.h"
 
-#define PN_ALIGNMENT sizeof(max_align_t)
-
 static size_t aligned_up(size_t size)
 {
-    return (size + (PN_ALIGNMENT - 1U)) / PN_ALIGNMENT * PN_ALIGNMENT;
+    return (size + (PN_ARENA_ALIGNMENT - 1U)) / PN_ARENA_ALIGNMENT * PN_ARENA_ALIGNMENT;
 }
 
 void pn_arena_init(pn_arena_t *arena, void *memory, size_t size)
 {
     arena->memory = memory;
-    arena->size = size / PN_ALIGNMENT * PN_ALIGNMENT;
+    arena->size = size / PN_ARENA_ALIGNMENT * PN_ARENA_ALIGNMENT;
     pn_arena_reset(arena);
 }
 
@@ -75,7 +73,7 @@ void pn_arena_seal(pn_arena_t *arena)
 {
     arena->permanent = arena->used;
     arena->start = arena->peak;
-    arena->half = (arena->size - arena->permanent) / 2U / PN_ALIGNMENT * PN_ALIGNMENT;
+    arena->half = (arena->size - arena->permanent) / 2U / PN_ARENA_ALIGNMENT * PN_ARENA_ALIGNMENT;
     arena->active = 0U;
     arena->used = 0U;
     arena->peak = 0U;

@@ -1,0 +1,16 @@
+/* SPDX-License-Identifier: MIT
+ * explore_bounds.h - the bounds of places (explore_bounds.c).
+ */
+#ifndef EXPLORE_BOUNDS_H
+#define EXPLORE_BOUNDS_H
+
+#include "explore_run.h"
+
+typedef struct ex_bounds ex_bounds_t;
+bool ex_bounds_make(ex_worker_t *worker);
+/* Called once for each state, with worker->marking that of the state. */
+void ex_bounds_see(ex_worker_t *worker);
+/* After the exploration: ,"bounds": [...] as a member of the report. */
+void ex_bounds_json(ex_run_t *run, FILE *out);
+
+#endif /* EXPLORE_BOUNDS_H */

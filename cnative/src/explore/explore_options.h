@@ -1,0 +1,74 @@
+/* SPDX-License-Identifier: MIT
+ * explore_options.h - what the explorer was asked for, and how it ended.
+ */
+#ifndef EXPLORE_OPTIONS_H
+#define EXPLORE_OPTIONS_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#define EX_MOST_THREADS 64U
+#define EX_MOST_OWNERS  256U
+
+typedef struct ex_options {
+    bool is_depth_first;
+    uint32_t threads;
+    uint64_t max_states; /* UINT64_MAX: no limit; so the others */
+    double max_seconds;  /* 0: no limit */
+    uint64_t memory;     /* bytes */
+    uint64_t arena;      /* bytes of each thread, for lists and strings */
+    uint64_t seed;
+    bool is_still;      /* traces say that random numbers are the same at each step */
+    uint64_t lay_again; /* states after which the layout of keys is looked at once more */
+    bool has_graph;     /* wanted */
+    bool has_notes;     /* what transitions do is remembered (explore_local.c) */
+    bool is_bitstate;
+    bool is_hashed;       /* hash compaction */
+    bool is_time_reduced; /* stamps count from the model time on, which is always 0; those that are not after it are
+                             equal */
+    bool shows_progress;
+    bool shows_help;
+    bool is_stubborn; /* reductions: see explore_reduce.h */
+    bool is_symmetric;
+    const char *elements;    /* file: the table that these need */
+    const char *dependency;  /* file: the table that partial order needs where there is no such table */
+    const char *spill;       /* folder; NULL: none */
+    const char *write_graph; /* file; NULL: none */
+    uint64_t write_limit;    /* most nodes of a graph that is written */
+    double progress_every;   /* seconds between lines */
+    const char *trace_to;    /* what the names of traces to dead markings begin with; NULL: none */
+    const char *initial; /* JSON: initial markings that a trace names, because the file of the net has others; NULL */
+    uint64_t dead_limit;
+    uint64_t traces;            /* most traces in trace_to */
+    const char *queries;        /* file of questions; NULL: none */
+    const char *query_trace_to; /* what the names of traces that prove their answers begin with */
+    const char *error_trace_to; /* the same for the trace to an exception */
+    const char *ends_in; /* phase in which the time ends as soon as it begins, whatever the clock says; NULL: none */
+    uint64_t multiset_limit; /* colours of a multi-set bound that are printed */
+    const char *whole;       /* places of which all are, numbers with commas between; NULL: none */
+    uint64_t parent;         /* process that started it, and without which it is to end; 0: none */
+} ex_options_t;
+
+/* Why it ended, in the order of importance. */
+typedef enum ex_why {
+    EX_COMPLETE,
+    EX_DECIDED,     /* all questions have been answered before that */
+    EX_APPROXIMATE, /* nothing was in the way, but states may have been taken for others: it is never complete */
+    EX_STATES,
+    EX_SECONDS,
+    EX_MEMORY,
+    EX_INTERRUPTED,
+    EX_CAPACITY, /* a place has too little room, or an arena: the program can be built or started with more */
+    EX_ERROR     /* an inscription raised an exception */
+} ex_why_t;
+
+/* The first error of an evaluation. */
+typedef struct ex_error {
+    char message[256];
+    char where[512];
+    const char *kind;   /* "capacity": of the place; "memory": of lists and strings; "exception" */
+    int64_t place;      /* index, -1: none */
+    int64_t transition; /* index, -1: none */
+} ex_error_t;
+
+#endif /* EXPLORE_OPTIONS_H */
