@@ -11,7 +11,7 @@
  * are
  * channels: yes; at most 1 message in each of 8 channels
  * messages: yes; each of the 14 values that come into channels can be written into its file and read back
- * memory: yes; there are no lists and strings
+ * memory: yes; no list or string needs memory while the supervisor runs
  * ownership: yes; all 255 arcs keep to places of their owner and channels in their direction
  * Assumed:
  * a measurement gives the result of `measure` in the net

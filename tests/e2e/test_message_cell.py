@@ -189,6 +189,7 @@ def test_lists_and_strings_have_room(tmp_path: Path) -> None:
         ("ü" * 81, "has more than 160 bytes"),
         (" blank", "begins or ends with a blank"),
         ("supervisor.status", "is the status file of a program"),
+        ("Device.Status", "is the status file of a program"),
         ("device.status", "is the status file of a program"),
         ("done.other", "would both be called `done`"),
         ("done", "would both be called `done`"),

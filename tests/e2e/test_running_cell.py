@@ -825,7 +825,9 @@ def test_whoever_waits_for_others_may_owe_for_ever(tmp_path: Path) -> None:
     looked = examined(folder)
     ends = looked.checks["non-blocking"]
     assert (ends.answer, ends.why) == ("unknown", "late")
-    assert "device `A` may have to wait for others while it owes an answer" in ends.says
+    assert "device `A` may give no answer: after a message of `toA.robcad`" in ends.says
+    assert "`Top.A.Keep` leads back to where the script waits for the next message" in ends.says
+    assert 'say `kind = "data"` of the message' in ends.says
     assert ends.evidence[0].transitions[-1] == "Top.A.Keep"
     assert "has not answered" in str(ran(folder)[-1]["reason"])
 

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import PurePath
+from unicodedata import normalize
 
 from pn2code.cell import codes
 from pn2code.cell.config import CellConfig
@@ -19,6 +20,11 @@ MOST_NAME = 80
 GENERATED = ("Makefile", "cell_config.c", "manifest.json", "net.c", "net.h", "runtime")
 
 
+def one_name(name: str) -> str:
+    """The same for all names that some file systems (of Windows and macOS, USB sticks) take for one."""
+    return normalize("NFC", name).casefold()
+
+
 def check_files(config: CellConfig, d: Diagnostics) -> None:
     """Reports what is wrong with the names of channels' and input files, and of those who run programs."""
     parties = ("supervisor", *(p.name for p in config.programs))
@@ -26,12 +32,12 @@ def check_files(config: CellConfig, d: Diagnostics) -> None:
         if len(p.name) > MOST_NAME:
             text = f"the name `{p.name}` has more than {MOST_NAME} characters"
             d.error(codes.CELL_VALUE, text, p.origin, hint="choose a shorter one")
-    statuses = {f"{name}.status" for name in parties}
+    statuses = {one_name(f"{name}.status") for name in parties}
     seen: dict[str, str] = {}
     for i, channel in enumerate(config.channels):
         at = config.locator.origin("channel", i, "file")
         _one(channel.file, at, d)
-        if channel.file in statuses:
+        if one_name(channel.file) in statuses:
             d.error(
                 codes.CELL_VALUE,
                 f"the channel's file `{channel.file}` is the status file of a program",
@@ -48,11 +54,11 @@ def check_files(config: CellConfig, d: Diagnostics) -> None:
                     hint="a channel is named by its file, with and without its ending: choose another name",
                 )
                 break
-    taken = {*GENERATED, *(f"{name}.tdl" for name in parties)}
+    taken = {one_name(name) for name in (*GENERATED, *(f"{name}.tdl" for name in parties))}
     for i, entry in enumerate(config.inputs):
         at = config.locator.origin("input", i, "file")
         _one(entry.file, at, d)
-        if entry.file in taken:
+        if one_name(entry.file) in taken:
             d.error(
                 codes.CELL_VALUE,
                 f"the input file `{entry.file}` has the name of a generated file, beside which a copy of it lies",

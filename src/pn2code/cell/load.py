@@ -25,7 +25,7 @@ from pn2code.cell.config import (
     SensorConfig,
     SupervisorConfig,
 )
-from pn2code.cell.files import check_files
+from pn2code.cell.files import check_files, one_name
 from pn2code.cell.partition import ChannelKind
 from pn2code.cell.tables import KeyPath, Tables
 from pn2code.cell.toml_file import Locator, read
@@ -267,7 +267,7 @@ def _capacity(r: Tables, data: dict[str, Any]) -> dict[str, int]:
 
 
 def _inputs(r: Tables, data: dict[str, Any]) -> Iterable[InputConfig]:
-    files: dict[str, str] = {}
+    files: dict[str, tuple[str, str]] = {}
     for i, table in enumerate(r.tables(data, "input")):
         at: KeyPath = ("input", i)
         r.keys(table, at, {"place", "file"})
@@ -277,21 +277,40 @@ def _inputs(r: Tables, data: dict[str, Any]) -> Iterable[InputConfig]:
         yield InputConfig(place, file, r.at(*at, "place"))
 
 
-def _once(r: Tables, files: dict[str, str], file: str, place: str, at: KeyPath, what: str) -> None:
-    """Each file is used once; those of channels are told apart by their names without what follows the dot."""
+def _once(
+    r: Tables, files: dict[str, tuple[str, str]], file: str, place: str, at: KeyPath, what: str
+) -> None:
+    """Each file is used once; names differ before the ending, and not in upper and lower case alone.
+
+    `files`: file and place of those before, by the part of the name that must differ.
+    """
     stem = PurePath(file).stem
-    if stem and stem in files:
+    key = one_name(stem)
+    if stem and key in files:
+        other, its_place = files[key]
+        if other == file:
+            text = f"file `{file}` is used by two {what}, `{its_place}` and `{place}`"
+        elif PurePath(other).stem == stem:
+            text = (
+                f"the files `{other}` and `{file}` of the {what} `{its_place}` and `{place}` "
+                "differ only in the ending"
+            )
+        else:
+            text = (
+                f"the files `{other}` and `{file}` of the {what} `{its_place}` and `{place}` differ only in upper and "
+                "lower case, so they are one file on many file systems"
+            )
         r.d.error(
             codes.CELL_VALUE,
-            f"file `{file}` is used by two {what}, `{files[stem]}` and `{place}`",
+            text,
             r.at(*at, "file"),
-            hint="give each a file of its own, whose name differs before the dot",
+            hint="give each a file of its own, whose name differs before the dot in more than case",
         )
-    files.setdefault(stem, place)
+    files.setdefault(key, (file, place))
 
 
 def _channels(r: Tables, data: dict[str, Any]) -> Iterable[ChannelConfig]:
-    files: dict[str, str] = {}
+    files: dict[str, tuple[str, str]] = {}
     for i, table in enumerate(r.tables(data, "channel")):
         at: KeyPath = ("channel", i)
         r.keys(table, at, {"place", "file", "kind"})

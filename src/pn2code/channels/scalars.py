@@ -126,6 +126,8 @@ _WORD = re.compile(r'(?:"(?:\\.|[^"\\])*"?|[^ \t\r"])+')
 _INTEGER = re.compile(r"[-+]?[0-9]+")
 _NUMBER = re.compile(r"[-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?")
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_']*")
+_MOST_NAMES = 8
+"""Constructors that a message names."""
 _MAX_NUMBER = 512
 """No number's text is as long."""
 _ESCAPE = re.compile(r'\\(?:(["\\])|x([0-9a-f]{2}))')
@@ -141,9 +143,26 @@ def quote(text: str) -> str:
     return f"`{shown}`" + ("..." if len(text) > 60 else "")
 
 
+def _where(scalar: Scalar) -> str:
+    """The component and its colour set; the latter alone where the token is one scalar."""
+    colset = f"colour set `{scalar.colset}`"
+    return colset if scalar.label == scalar.colset else f"`{scalar.label}` of {colset}"
+
+
+def _no_constructor(scalar: Scalar, word: str) -> str:
+    component = "" if scalar.label == scalar.colset else f" (component `{scalar.label}`)"
+    values = f"; its values are {', '.join(f'`{n}`' for n in scalar.names[:_MOST_NAMES])}"
+    if len(scalar.names) > _MOST_NAMES:
+        values += ", ..."
+    return (
+        f"{quote(word)} is not a value of colour set `{scalar.colset}`{component}"
+        f"{values if scalar.names else ''}"
+    )
+
+
 def _parse_scalar(scalar: Scalar, word: str) -> ScalarValue | str:
     """The value, or (as `_Wrong`) what is wrong with the word."""
-    where = f"`{scalar.label}` of colour set `{scalar.colset}`"
+    where = _where(scalar)
     value: ScalarValue
     match scalar.kind:
         case ScalarKind.UNIT:
@@ -154,7 +173,7 @@ def _parse_scalar(scalar: Scalar, word: str) -> ScalarValue | str:
             return word == "1"
         case ScalarKind.ENUM:
             is_one = _is_constructor(scalar, word)
-            return word if is_one else _Wrong(f"{quote(word)} is not a value of {where}")
+            return word if is_one else _Wrong(_no_constructor(scalar, word))
         case ScalarKind.STRING:
             if _STRING.fullmatch(word) is None:
                 return _Wrong(f"{quote(word)} is not a string in double quotes ({where})")
@@ -204,7 +223,7 @@ def parse_scalars(scalars: Sequence[Scalar], line: str) -> tuple[ScalarValue, ..
         missing = scalars[len(values)]
         text = (
             f"found {len(values)} values where {len(scalars)} are expected; "
-            f"the next would be `{missing.label}` of colour set `{missing.colset}`"
+            f"the next would be {_where(missing)}"
         )
         return Malformed(text, len(line) + 1, True)
     return tuple(values)

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
+from pn2code.cell.channel_table import lines as channel_lines
 from pn2code.cli.options import (
     DEFAULT_INT_BITS,
     Format,
@@ -49,9 +51,14 @@ def check(
     if as_json:
         items = [_as_json(item, str(checked.file)) for item in d.sorted()]
         shape = {"file": str(checked.file), "ok": checked.is_fine, **numbers, "diagnostics": items}
+        if checked.channels:
+            shape["channels"] = [asdict(c) for c in checked.channels]
         typer.echo(json.dumps(shape, indent=1))
     else:
         print_diagnostics(d.sorted(), form)
+        if checked.channels:
+            table = channel_lines(checked.channels)
+            typer.echo("\n".join(["Channels (docs/cell.md explains the kinds):", *table, ""]))
         words = (f"{n} {key if n != 1 else key[:-1]}" for key, n in numbers.items())
         counted = ", ".join(words) + ": "
         typer.echo(f"{checked.file}: {counted if elements else ''}{render.count(d)}")

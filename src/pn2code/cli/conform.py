@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 import typer
 
+from pn2code.base.progress_line import Line
 from pn2code.cell.locate import locate
 from pn2code.cli.nets import refuse_wide
 from pn2code.cli.options import (
@@ -20,8 +21,9 @@ from pn2code.cli.options import (
     IntBitsOption,
     JsonOption,
     SetOption,
+    UncheckedOption,
     parse_values,
-    print_diagnostics,
+    print_but_known,
     stop,
 )
 from pn2code.conform.cell import Conformance, conform_cell
@@ -65,6 +67,7 @@ def conform(
             help="Compare the generated files in this folder instead of newly generated ones.",
         ),
     ] = None,
+    unchecked: UncheckedOption = False,
     as_json: JsonOption = False,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
@@ -78,9 +81,17 @@ def conform(
     if int_bits != DEFAULT_INT_BITS:
         where = locate(net, Diagnostics())  # what is wrong there is said below
         refuse_wide(None if where is None else where[1], int_bits)
-    found = conform_cell(
-        net, d, values=parse_values(settings), int_bits=int_bits, most=most, generated=generated
-    )
+    with Line(shown=not as_json, plain=True, first="reading and checking the net ...") as progress:
+        found = conform_cell(
+            net,
+            d,
+            values=parse_values(settings),
+            int_bits=int_bits,
+            most=most,
+            generated=generated,
+            checked=not unchecked,
+            stage=progress.stage,
+        )
     if found is None:
         stop(d, form)
     if as_json:
@@ -88,7 +99,7 @@ def conform(
     else:
         for line in _lines(found):
             typer.echo(line)
-    print_diagnostics(d.sorted(), form)
+    print_but_known(d, net, form)
     if found.deviates:
         raise typer.Exit(Exit.MODEL)
     if not found.complete:

@@ -14,6 +14,7 @@ from pn2code.base.progress_line import Line
 from pn2code.base.whole_file import whole_file
 from pn2code.cli.nets import open_net, playing
 from pn2code.cli.options import (
+    OUTPUT_FLAGS,
     Exit,
     Format,
     FormatOption,
@@ -50,8 +51,7 @@ def convert(
     output: Annotated[
         Path,
         typer.Option(
-            "-o",
-            "--output",
+            *OUTPUT_FLAGS,
             metavar="FILE",
             help="The file to write: FILE.pnml, FILE.pml (SPIN) or FILE.cpn.",
         ),

@@ -14,6 +14,7 @@ from pn2code.base.whole_file import whole_file
 from pn2code.cell.locate import locate
 from pn2code.cli.options import (
     DEFAULT_SEED,
+    OUTPUT_FLAGS,
     Exit,
     Format,
     FormatOption,
@@ -58,8 +59,7 @@ def draw(
     output: Annotated[
         str,
         typer.Option(
-            "-o",
-            "--output",
+            *OUTPUT_FLAGS,
             metavar="FILE|DIR|-",
             help="Where to write: FILE.svg, FILE.html (all pages, linked), DIR/ (an SVG for each page), "
             "or - (an SVG on stdout).",

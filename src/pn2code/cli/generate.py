@@ -9,12 +9,14 @@ import typer
 
 from pn2code import pipeline
 from pn2code.cli.options import (
+    OUTPUT_FLAGS,
     Exit,
     Format,
     FormatOption,
     SetOption,
+    UncheckedOption,
     parse_values,
-    print_diagnostics,
+    print_but_known,
     stop,
 )
 from pn2code.diagnostics import Diagnostics
@@ -34,19 +36,13 @@ def generate(
     net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
     output: Annotated[
         Path | None,
-        typer.Option("-o", "--output", help="The output folder (default: generated/<net>)."),
+        typer.Option(*OUTPUT_FLAGS, help="The output folder (default: generated/<net>)."),
     ] = None,
     check: Annotated[
         bool,
         typer.Option("--check", help="Write nothing, and exit with code 1 if a file would change."),
     ] = False,
-    unchecked: Annotated[
-        bool,
-        typer.Option(
-            "--unchecked",
-            help="Generate the supervisor without checking it.",
-        ),
-    ] = False,
+    unchecked: UncheckedOption = False,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,
 ) -> None:
@@ -60,7 +56,7 @@ def generate(
     result = pipeline.generate(net, d, values=parse_values(settings), checked=not unchecked)
     if result is None:
         stop(d, form)
-    print_diagnostics(d.sorted(), form)
+    print_but_known(d, net, form)
     folder = output or Path("generated") / result.partition.net.name
     try:
         written = write(folder, result.files, check=check)

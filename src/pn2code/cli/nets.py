@@ -16,18 +16,26 @@ from pn2code.verdict.opened import OpenNet, read
 
 
 def open_net(
-    path: Path, values: Mapping[str, str], form: Format = Format.FULL, *, int_bits: int = 31
+    path: Path,
+    values: Mapping[str, str],
+    form: Format = Format.FULL,
+    *,
+    int_bits: int = 31,
+    warnings: Diagnostics | None = None,
 ) -> OpenNet:
     """The net that a path means, with `val`s replaced; leaves with a report when it is wrong.
 
-    What is `unsupported-...` is said before the net is played: applying it will stop the run.
+    What is `unsupported-...` is said before the net is played: applying it will stop the run. Other warnings are added
+    to `warnings`, for verbs that tell them; `check` does.
     """
     d = Diagnostics()
     opened = read(path, values, d, int_bits=int_bits)
     if opened is None:
         stop(d, form)
-    unsupported = [i for i in d.sorted() if i.code.startswith("unsupported-")]
-    print_diagnostics((i for i in unsupported if i.severity is Severity.WARNING), form)
+    found = [i for i in d.sorted() if i.severity is Severity.WARNING]
+    print_diagnostics((i for i in found if i.code.startswith("unsupported-")), form)
+    if warnings is not None:
+        warnings.items += [i for i in found if not i.code.startswith("unsupported-")]
     return opened
 
 

@@ -97,6 +97,17 @@ SetOption = Annotated[
     ),
 ]
 
+OUTPUT_FLAGS = ("-o", "--out", "--output")
+"""Where results go, in every verb that writes them."""
+
+UncheckedOption = Annotated[
+    bool,
+    typer.Option(
+        "--unchecked",
+        help="Take the supervisor without checking it against its execution scheme (docs/execution.md).",
+    ),
+]
+
 FilesOption = Annotated[
     Path | None,
     typer.Option(
@@ -178,6 +189,33 @@ def print_diagnostics(items: Iterable[Diagnostic], form: Format = Format.FULL) -
     text = render.report(items, form.value, render.coloured if _has_colours() else render.plain)
     if text:
         print(text + omitted, file=sys.stderr)
+
+
+def print_but_known(d: Diagnostics, net: Path, form: Format = Format.FULL) -> None:
+    """Print what a verb that was asked for something else has to say besides.
+
+    People have seen the warnings about the net itself in `check`, and get their number. Programs get all.
+    """
+    items = d.sorted()
+    known = [i for i in items if i.severity is Severity.WARNING and i.code in _of_nets()]
+    if form is not Format.FULL or not known:
+        print_diagnostics(items, form)
+        return
+    print_diagnostics((i for i in items if i not in known), form)
+    count = "is a warning" if len(known) == 1 else f"are {len(known)} warnings"
+    print(f"There {count} about the net itself: see `pn2code check {net}`.", file=sys.stderr)
+
+
+def _of_nets() -> frozenset[str]:
+    """The codes of what `check` says of any net; things that a run stops at are worth repeating."""
+    # The list of verbs is printed without loading these.
+    from pn2code.ml import codes as ml_codes
+    from pn2code.net import codes as net_codes
+    from pn2code.reading import codes as reading_codes
+
+    named = (v for codes in (net_codes, ml_codes, reading_codes) for v in vars(codes).values())
+    texts = frozenset(v for v in named if isinstance(v, str))
+    return frozenset(c for c in texts if not c.startswith("unsupported-"))
 
 
 def _pages(item: Diagnostic) -> set[str]:

@@ -10,13 +10,15 @@ import typer
 
 from pn2code.base.os_reason import os_reason
 from pn2code.cli.options import (
+    OUTPUT_FLAGS,
     Exit,
     Format,
     FormatOption,
     SetOption,
+    UncheckedOption,
     finite,
     parse_values,
-    print_diagnostics,
+    print_but_known,
     stop,
 )
 from pn2code.diagnostics import Diagnostics
@@ -57,7 +59,9 @@ def run(
             help="`bullet` uses PyBullet and measures clearances; `fake` computes only the kinematics."
         ),
     ] = BackendChoice.BULLET,
-    out: Annotated[Path, typer.Option(help="The folder for the results.")] = Path("run"),
+    out: Annotated[Path, typer.Option(*OUTPUT_FLAGS, help="The folder for the results.")] = Path(
+        "run"
+    ),
     pictures: Annotated[
         bool, typer.Option("--pictures/--no-pictures", help="Make pictures and charts.")
     ] = True,
@@ -82,13 +86,7 @@ def run(
         int | None,
         typer.Option(metavar="K", help="The seed of the values that sensors draw at random."),
     ] = None,
-    unchecked: Annotated[
-        bool,
-        typer.Option(
-            "--unchecked",
-            help="Run the supervisor without checking it.",
-        ),
-    ] = False,
+    unchecked: UncheckedOption = False,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,
 ) -> None:
@@ -149,7 +147,7 @@ def run(
             charts.draw(result.record, names, limits, out)
     if result is None:
         stop(d, form)
-    print_diagnostics(d.sorted(), form)
+    print_but_known(d, cell, form)
     console.print(summaries.page(result.summary))
     console.print(f"results in {out}/", style="dim")
     if result.record.verdict != "finished":

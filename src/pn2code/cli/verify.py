@@ -265,7 +265,7 @@ def verify(
     d = Diagnostics()
     try:
         with deadline.enforced():
-            opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
+            opened = open_net(net, parse_values(settings), form, int_bits=int_bits, warnings=d)
             refuse_wide(opened.config, int_bits)
             opened = with_inputs(opened, d)
             asked = question(opened, texts, file, d, found=found_properties)
@@ -304,6 +304,7 @@ def verify(
                 evidence=unnamed,
                 covering=not unbounded_ok,
                 progress=progress.update,
+                stage=progress.stage,
                 interrupted=interrupts.is_wanted,
             )
             with playing(form):

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
@@ -74,6 +74,8 @@ def conform_cell(
     int_bits: int = 31,
     most: int = MOST_STATES,
     generated: Path | None = None,
+    checked: bool = True,
+    stage: Callable[[str], None] = lambda _: None,
 ) -> Conformance | None:
     """Compares all programs of a cell, or the compiled net alone; None after an error that was reported.
 
@@ -84,8 +86,10 @@ def conform_cell(
         int_bits: width of `int`.
         most: states up to which all are compared.
         generated: a folder with generated files, which may have been edited; None: they are generated now.
+        checked: whether the supervisor must pass its checks (docs/execution.md).
+        stage: hears what is done next.
     """
-    made = generate(path, d, values=values, int_bits=int_bits)
+    made = generate(path, d, values=values, int_bits=int_bits, checked=checked)
     if made is None:
         return None
     found: Folder | None = None
@@ -97,12 +101,13 @@ def conform_cell(
         found, files = given
     storage = made.config.storage if made.config else {}
     try:
+        stage("comparing net.c with the token game ...")
         compared = core.compare(made.partition.net, storage, d, most=most)
         if compared is None:
             return None
         if made.config is None or not made.partition.channels:
             return Conformance(compared, None, (), found)
-        done = _programs(ProgramComparison(made, most), files, d)
+        done = _programs(ProgramComparison(made, most), files, d, stage)
         return None if done is None else Conformance(compared, *done, found)
     except GameError as error:
         error.report(d)
@@ -119,7 +124,9 @@ def _programs(
     comparison: ProgramComparison,
     files: Sequence[OutputFile],
     d: Diagnostics,
+    stage: Callable[[str], None],
 ) -> tuple[supervisor.Report, tuple[robot.RobotReport, ...]] | None:
+    stage("comparing the supervisor with the net ...")
     own = [f for f in files if f.path in PROGRAM]
     with programs.program(HOST, own, d) as program:
         if program is None:
@@ -128,6 +135,7 @@ def _programs(
     texts = {f.path: f.text for f in files}
     robots = []
     for owner in comparison.made.partition.owners[1:]:
+        stage(f"comparing {owner.name}.tdl with its page ...")
         report = comparison.script(owner, texts[f"{owner.name}.tdl"], d)
         if report is None:
             return None

@@ -66,6 +66,12 @@ FUSION_MISMATCH = register(
     "initial marking. Like CPN Tools pn2code compares the tokens, not the texts; but `3` and 1`3, a token and a "
     "multi-set, differ. Where it cannot say what an initial marking is, it warns.",
 )
+NET_EMPTY = register(
+    "net-empty",
+    "nothing can happen in a net",
+    "The net has no transitions, or no places. It is well-formed, but every answer about it is idle: its only marking "
+    "is the initial one. Substitution transitions are no transitions of their own: the transitions of their pages are.",
+)
 FUSION_MEMBER = register(
     "fusion-member",
     "a fusion set and its places do not agree",

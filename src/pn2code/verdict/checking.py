@@ -11,14 +11,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pn2code.cell.channel_table import ChannelRow, rows
 from pn2code.cell.locate import locate
 from pn2code.diagnostics import Diagnostics
-from pn2code.net import front
+from pn2code.net import emptiness, front
 from pn2code.net.front import Examined
 from pn2code.semantics.evaluation.constants import compute
 
 if TYPE_CHECKING:
     from pn2code.cell.config import CellConfig
+    from pn2code.cell.partition import Partition
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,11 +31,13 @@ class Checked:
         file: the file of the net; what was given where that means none.
         examined: what the front end made of it.
         is_fine: whether there are no errors.
+        channels: of a cell that could be divided among its programs.
     """
 
     file: Path
     examined: Examined
     is_fine: bool
+    channels: tuple[ChannelRow, ...] = ()
 
 
 def check(path: Path, values: Mapping[str, str], d: Diagnostics, *, int_bits: int = 31) -> Checked:
@@ -51,16 +55,23 @@ def check(path: Path, values: Mapping[str, str], d: Diagnostics, *, int_bits: in
     file, config = found
     replaced = {**(config.values if config else {}), **values}
     result = front.examine(file, d, replaced, int_bits=int_bits, compute=compute)
+    if result.flat is not None:
+        emptiness.warn(result.flat, d)
+    channels: tuple[ChannelRow, ...] = ()
     if config is not None:
-        examine_cell(file, config, result, d)
+        partition = examine_cell(file, config, result, d)
+        if partition is not None:
+            channels = rows(partition, config)
     else:
         _properties(file, None, result, d)
-    return Checked(file, result, is_fine=result.flat is not None and not d.has_errors)
+    return Checked(
+        file, result, is_fine=result.flat is not None and not d.has_errors, channels=channels
+    )
 
 
 def examine_cell(
     net: Path, config: CellConfig, result: Examined, d: Diagnostics, *, ahead: bool = True
-) -> None:
+) -> Partition | None:
     """What cell.toml says of the net; the robots' programs; the robots and the scene, in all layouts; properties.
 
     Args:
@@ -69,6 +80,9 @@ def examine_cell(
         result: what the front end made of the net.
         d: gets the errors.
         ahead: whether files beside the cell and the robots' places are looked at, which takes longer.
+
+    Returns:
+        Who runs what; None after an error in that.
     """
     # Most nets have no cell, and these load NumPy and the like.
     from pn2code.division import check_geometry, divided
@@ -76,7 +90,7 @@ def examine_cell(
 
     if result.flat is None or d.has_errors:
         check_geometry(config, d, to_run=True)
-        return
+        return None
     partition = divided(result.flat, config, d, to_run=True)
     programs = lower_robots(partition, config, d) if partition is not None else None
     _properties(net, config, result, d)
@@ -84,6 +98,7 @@ def examine_cell(
         from pn2code.verdict.ahead import look_ahead
 
         look_ahead(partition, config, programs, d)
+    return partition
 
 
 def _properties(net: Path, config: CellConfig | None, result: Examined, d: Diagnostics) -> None:

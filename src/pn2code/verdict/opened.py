@@ -10,7 +10,7 @@ from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
 from pn2code.cell.locate import locate
 from pn2code.diagnostics import Diagnostics
-from pn2code.net import front
+from pn2code.net import emptiness, front
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.evaluation.constants import compute
 from pn2code.semantics.evaluation.files import Files
@@ -84,4 +84,5 @@ def read(
     examined = front.examine(net_path, d, replaced, int_bits=int_bits, compute=compute)
     if examined.flat is None or d.has_errors:
         return None
+    emptiness.warn(examined.flat, d)
     return OpenNet(examined.flat, config, examined)

@@ -180,10 +180,14 @@ def look(
         return None
     control: Control | None = None
     if checks.controller or asked:
+        if opened.config is not None:
+            wishes.stage("exploring the cell as its programs run ...")
         control = controller.look(opened, found, limits, wishes, folder, d, asked.plain)
     more = properties.of_bindings(asked, opened, found, limits, wishes, d, control)
     seen: medium.Answers = ()
     if checks.medium:
+        if opened.config is not None:
+            wishes.stage("exploring the cell together with its shared files ...")
         looked = control if checks.controller else None
         seen = medium.look(opened, found, limits, wishes, d, looked)
     return Looked(found, control, more, seen)

@@ -35,6 +35,34 @@ def test_nothing_is_written_where_nobody_looks() -> None:
     assert hidden.getvalue() == pipe.getvalue() == ""
 
 
+def test_in_a_pipe_whole_lines_stay_one_for_each_stage_and_few_between() -> None:
+    now, stream = 100.0, io.StringIO()
+    with Line(stream=stream, first="reading", plain=True, clock=lambda: now) as line:
+        line.say("1 state")
+        now += 9.9
+        line.say("2 states")
+        now += 0.1
+        line.say("3 states")
+        line.say("4 states")
+        line.stage("comparing")
+        line.say("5 states")
+    assert stream.getvalue() == "reading\n3 states\ncomparing\n"
+
+
+def test_lines_of_a_pipe_are_hidden_like_those_of_a_terminal() -> None:
+    stream = io.StringIO()
+    with Line(shown=False, stream=stream, plain=True) as line:
+        line.stage("one")
+    assert stream.getvalue() == ""
+
+
+def test_an_exploration_says_in_a_pipe_that_it_has_begun() -> None:
+    stream = io.StringIO()
+    with exploration.ProgressLine(stream=stream):
+        pass
+    assert stream.getvalue() == "compiling and exploring the net ...\n"
+
+
 def test_a_text_never_goes_on_in_a_second_row(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "20")
     stream = Terminal()

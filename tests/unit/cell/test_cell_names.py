@@ -42,7 +42,11 @@ MISTAKES = {
                      "cell-value", "has two inputs", "remove"),
     "input: one file": ("[primitives]", INPUT.format("Pieces", "a.txt") + INPUT.format("Going", "a.txt")
                         + "[primitives]", "cell-value", "used by two inputs", "file of its own"),
-    "channels: one file but for its end": ('"flag.robcad"', '"data.txt"', "cell-value", "used by two channels", "dot"),
+    "channels: one file": ('"flag.robcad"', '"data.robcad"', "cell-value", "used by two channels", "dot"),
+    "channels: one file but for its end": ('"flag.robcad"', '"data.txt"', "cell-value", "differ only in the ending",
+                                           "dot"),
+    "channels: one file but for case": ('"flag.robcad"', '"Data.robcad"', "cell-value",
+                                        "differ only in upper and lower case", "more than case"),
     "occurrences: misspelt": ("[primitives]", '[report]\noccurrences = { x = "Nxt" }\n[primitives]', "cell-value",
                               "`occurrences.x` names `Nxt`", "did you mean `Next`?"),
     "occurrences: a number": ("[primitives]", "[report]\noccurrences = { x = 3 }\n[primitives]", "cell-value",

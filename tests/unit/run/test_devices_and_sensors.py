@@ -178,7 +178,10 @@ def test_a_sensor_says_its_default_where_there_is_no_file(tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     ("default", "words"),
     [
-        ('"hold"', "sensor `grip`: default: `hold` is not a value of `GRIP` of colour set `GRIP`"),
+        (
+            '"hold"',
+            "sensor `grip`: default: `hold` is not a value of colour set `GRIP`; its values are `held`, `lost`",
+        ),
         ("1", "sensor `grip`: default: `1` is no value"),
         ("[1]", "`default` is `[1]`, but a value of the variable is expected"),
     ],
@@ -201,11 +204,14 @@ def test_a_default_must_be_a_value_of_the_variable(
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("held\nhold\n", "2:1 `hold` is not a value of `GRIP` of colour set `GRIP`"),
+        (
+            "held\nhold\n",
+            "2:1 `hold` is not a value of colour set `GRIP`; its values are `held`, `lost`",
+        ),
         ("# nothing\n", "0:0 sensor `grip`: `"),
         (
             "held # as\u2028before\nhold\n",
-            "2:1 `hold` is not a value of `GRIP` of colour set `GRIP`",
+            "2:1 `hold` is not a value of colour set `GRIP`; its values are `held`, `lost`",
         ),
         (None, "sensor `grip`: there is no file `grip.txt`"),
     ],

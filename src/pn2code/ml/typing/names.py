@@ -38,6 +38,8 @@ from pn2code.ml.typing.inference import (
     to_type,
 )
 
+_SHORTEST_SUGGESTED = 4
+"""Characters of a name of the library that a misspelt name may mean."""
 _MOST_ADVICE = 200
 """After so many errors no advice is looked for, which takes longer than the errors themselves."""
 _STRUCTURE_TYPES = {
@@ -241,7 +243,7 @@ class Names:
             hint = (
                 advice.unbound_word(name, self._ctx.colsets)
                 or self._order_hint(name, span)
-                or suggestion(name, self._ctx.scope.own_names(), self._ctx.scope.names())
+                or suggestion(name, self._ctx.scope.own_names(), self._library_names(name))
             )
             if name in self._ctx.net_variables:
                 hint = advice.variable_out_of_scope(span.source.origin.part)
@@ -255,6 +257,15 @@ class Names:
                 hint = "declare it above what uses it"
         self._ctx.error(codes.UNBOUND, f"{quoted(name)} is not declared", span, hint=hint)
         return BROKEN
+
+    def _library_names(self, name: str) -> set[str]:
+        """What may be meant besides the net's own names: a short one, like `lt`, is close to almost any short name, and
+        is worth suggesting only where upper and lower case are wrong."""
+        return {
+            n
+            for n in self._ctx.scope.names()
+            if len(n) >= _SHORTEST_SUGGESTED or n.lower() == name.lower()
+        }
 
     def _order_hint(self, name: str, span: Span) -> str:
         """For a name that is declared, but not above."""

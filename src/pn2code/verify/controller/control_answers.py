@@ -121,10 +121,13 @@ def can_more(partition: Partition) -> bool:
 def silent(running: Running, rows: Sequence[Mapping[str, Any]]) -> str:
     """Why somebody may owe an answer for too long, by the answers to `of_cell`: it waits for others meanwhile."""
     for silence, row in zip(running.silences, rows[OTHERS:], strict=False):
+        if row["answer"] == "no" and silence.unanswered:
+            return f"{silence.who} may give no answer: {silence.unanswered}"
         if row["answer"] == "no":
             return (
                 f"{silence.who} may have to wait for others while it owes an answer, and whoever owes one for "
-                "longer than `reply_timeout_s` stops the cell"
+                'longer than `reply_timeout_s` stops the cell; a message that is never answered is `kind = "data"` in '
+                "cell.toml (docs/protocol.md, I8)"
             )
     return ""
 

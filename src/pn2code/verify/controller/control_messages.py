@@ -61,5 +61,5 @@ def memory(found: Exploration | None, why: str = "") -> Check:
         return Check(MEMORY, "no", f"{needs}, which is too much", firing)
     says = f"{needs}; the supervisor has room for more than twice that"
     if firing == marking == 0:
-        says = "there are no lists and strings"
+        says = "no list or string needs memory while the supervisor runs"
     return Check(MEMORY, "yes", says, firing)

@@ -23,6 +23,7 @@ from pn2code.ml.core import terms as core
 from pn2code.robot_scripts.machine import Machine
 from pn2code.verify.controller.commands import lasts, seconds
 from pn2code.verify.controller.stops import NoProgramError, machine
+from pn2code.verify.controller.unanswered import ADVICE, unanswered
 
 _ENDLESS = math.inf
 
@@ -75,10 +76,14 @@ class Replies:
             who = partition.owners[owner].phrase
             # An answer takes a little longer than its commands: with as much time as there is, it is late.
             if time.seconds >= limit:
+                none = unanswered(program)
+                if none:
+                    return Replies(f"{who} may give no answer: {none}")
                 needs = "any time" if time.seconds == _ENDLESS else f"{time.seconds:g} s"
                 return Replies(
                     f"{who} may need {needs} for an answer, by its tools, waits and delays alone, and "
-                    f"`reply_timeout_s` is {limit:g}: whoever owes an answer for that long stops the cell"
+                    f"`reply_timeout_s` is {limit:g}: whoever owes an answer for that long stops the cell "
+                    f"(make it longer, or {ADVICE})"
                 )
             most = Time.longest((most, time))
         if not asked:

@@ -49,6 +49,7 @@ from pn2code.trace.parties import VERIFY
 from pn2code.verify.controller.moments import Moments
 from pn2code.verify.controller.refusals import refusing
 from pn2code.verify.controller.stops import MOST_MESSAGES, NoProgramError, machine, waits
+from pn2code.verify.controller.unanswered import unanswered
 from pn2code.verify.controller.unsure import Conditions
 from pn2code.verify.exploring import time_reduction
 
@@ -73,12 +74,14 @@ class Silence:
         states: the control places at which all transitions need messages; of each transition, for each of its
             messages, the places that are marked if it is there.
         answers: of each channel to the supervisor, its place and that of what the supervisor has seen.
+        unanswered: where its script ends without an answer, see `unanswered`; "": it always answers.
     """
 
     who: str
     owes: int
     states: tuple[tuple[int, tuple[tuple[tuple[int, ...], ...], ...]], ...]
     answers: tuple[tuple[int, int], ...]
+    unanswered: str = ""
 
 
 @frozen
@@ -397,7 +400,8 @@ class _Composer:
             mine = [c.place for c in self.looked if c.writer == owner]
             if states:
                 answers = tuple((place, self.seen[place]) for place in mine)
-                yield Silence(self.partition.owners[owner].phrase, owes, tuple(states), answers)
+                who = self.partition.owners[owner].phrase
+                yield Silence(who, owes, tuple(states), answers, unanswered(program))
 
     def _shown(self, place: int) -> tuple[int, ...]:
         return (self.out[place],) if place in self.out else ()

@@ -62,6 +62,10 @@ def _nothing(_: Mapping[str, Any]) -> None:
     """For those who do not care."""
 
 
+def _silent(_: str) -> None:
+    """For those who do not care."""
+
+
 def _never() -> bool:
     return False
 
@@ -85,6 +89,7 @@ class ExploreOptions:
         covering: look for a run that shows that a place grows without bound, and end when there is one.
         pace: seconds between two tellings of progress.
         progress, interrupted: how the outside hears and says that it has been enough.
+        stage: hears in words what is explored next, where several things are.
     """
 
     traces: Path | None = None
@@ -104,6 +109,7 @@ class ExploreOptions:
     pace: float = 0.5
     progress: Progress = _nothing
     interrupted: Callable[[], bool] = _never
+    stage: Callable[[str], None] = _silent
 
 
 def explore(

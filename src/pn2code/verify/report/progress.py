@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import IO, Any
 
 from pn2code.base.progress_line import Line
 
@@ -17,7 +17,12 @@ _PHASES = {
 
 
 class ProgressLine(Line):
-    """Shows states, rate, frontier, depth and memory."""
+    """Shows states, rate, frontier, depth and memory; a few plain lines where the stream is no terminal."""
+
+    def __init__(self, *, shown: bool = True, stream: IO[str] | None = None) -> None:
+        super().__init__(
+            shown=shown, stream=stream, first="compiling and exploring the net ...", plain=True
+        )
 
     def update(self, said: Mapping[str, Any]) -> None:
         """What the explorer says of itself, twice a second."""
