@@ -61,6 +61,8 @@ NEVER = {
     "./dev bench --database-15": "the same, and gigabytes",
     "./dev contest --seconds 10 --examinations ReachabilityDeadlock UpperBounds --log contest.jsonl": "hours; "
     "test_contest_command does it for one net",
+    'make CC="python3 -m ziglang cc -target aarch64-linux-musl" supervisor supervisor.traced simulate': "test_aarch64 "
+    "does it where there is a compiler for it",
     "make misra": "test_misra does it",
     "make mutation": "twenty minutes; test_conform changes programs, too",
     ". .venv/bin/activate": "the environment of the tests is one of another place",

@@ -156,6 +156,12 @@ def run(
     return [json.loads(line) for line in done.stdout.splitlines()]
 
 
+def _arena(program: Path) -> str:
+    """The bytes for a program: of one that was not built for a single net, the usual ones."""
+    proven = program.parent / ARENA
+    return proven.read_text() if proven.exists() else str(arena_size.DEFAULT)
+
+
 def agrees(
     flat: FlatNet,
     program: Path,
@@ -169,8 +175,7 @@ def agrees(
 
     An exception of the net must be raised in both at the same step. The program has no more memory than a deployed one.
     """
-    arena = (program.parent / ARENA).read_text()
-    lines = run(program, seed, steps, arena, environment=environment)
+    lines = run(program, seed, steps, _arena(program), environment=environment)
     try:
         game = Game(flat, dict(storage or {}), seed=seed)
     except GameError as error:
