@@ -12,7 +12,7 @@ from typing import Annotated
 import typer
 
 from pn2code.base.deadline import Deadline, TimeIsOverError
-from pn2code.cli.options import Exit, Format, print_diagnostics, stop
+from pn2code.cli.options import Exit, Format, print_diagnostics, seconds_option, stop
 from pn2code.contest.engine import Space, engine
 from pn2code.contest.examinations import ALL, SPACE, Asked, asked
 from pn2code.contest.formulas import FormulaError
@@ -40,9 +40,7 @@ UNKNOWN = "CANNOT_COMPUTE"
 def contest(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="The folder of an input.")],
     examination: Annotated[Examination, typer.Argument(help="What is asked.")],
-    max_seconds: Annotated[
-        float, typer.Option(metavar="S", min=0.0, help="Stop after S seconds.")
-    ] = 60.0,
+    max_seconds: Annotated[float, seconds_option("Stop after S seconds.")] = 60.0,
     memory: Annotated[
         int, typer.Option(metavar="MIB", min=16, help="The most memory for all methods.")
     ] = 8192,

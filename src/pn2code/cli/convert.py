@@ -20,9 +20,9 @@ from pn2code.cli.options import (
     FormatOption,
     SetOption,
     check_writable,
-    finite,
     parse_values,
     print_diagnostics,
+    seconds_option,
     stop,
 )
 from pn2code.diagnostics import Diagnostics, Origin
@@ -64,12 +64,7 @@ def convert(
     ] = False,
     max_seconds: Annotated[
         float | None,
-        typer.Option(
-            metavar="S",
-            min=0.0,
-            callback=finite,
-            help="Stop after S seconds, without a file.",
-        ),
+        seconds_option("Stop after S seconds, without a file."),
     ] = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,

@@ -9,7 +9,7 @@ import sys
 from collections.abc import Iterable
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated, NoReturn
+from typing import Annotated, Any, NoReturn
 
 import typer
 
@@ -49,6 +49,11 @@ def finite(number: float | None) -> float | None:
     if number is not None and not math.isfinite(number):
         raise typer.BadParameter(f"{number} is not a finite number")
     return number
+
+
+def seconds_option(help_text: str) -> Any:
+    """The option that limits the time of a command, with what happens then."""
+    return typer.Option(metavar="S", min=0.0, callback=finite, help=help_text)
 
 
 def check_writable(path: Path | None, option: str) -> None:

@@ -26,9 +26,9 @@ from pn2code.cli.options import (
     JsonOption,
     SetOption,
     check_writable,
-    finite,
     parse_values,
     print_diagnostics,
+    seconds_option,
     stop,
 )
 from pn2code.cli.subject import Subject
@@ -80,11 +80,8 @@ def verify(
     ] = None,
     max_seconds: Annotated[
         float | None,
-        typer.Option(
-            metavar="S",
-            min=0.0,
-            callback=finite,
-            help="Stop after S seconds. Reading, compiling, exploring and answering count together.",
+        seconds_option(
+            "Stop after S seconds. Reading, compiling, exploring and answering count together."
         ),
     ] = None,
     memory: Annotated[

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Set
+from collections.abc import Callable, Set
 
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.reading.codes import (
@@ -117,12 +117,8 @@ class PageReader:
             )
         elif identity in self.seen:
             first = self.seen[identity]
-            self.d.error(
-                DUPLICATE_ID,
-                f"{what} has the id `{identity}`, which is already used",
-                origin,
-                notes=[Note(f"`{identity}` is first used here", first)],
-                hint="give one of them another id",
+            self._repeated(
+                self.d.error, what, identity, origin, first, "give one of them another id"
             )
         else:
             self.seen[identity] = origin
@@ -136,18 +132,27 @@ class PageReader:
                 self.claim(node, origin, what)
             self.arcs_seen[identity] = origin
             return identity
-        self.d.warning(
-            DUPLICATE_ID,
-            f"{what} has the id `{identity}`, which is already used",
-            origin,
-            notes=[Note(f"`{identity}` is first used here", first)],
-            hint="nothing refers to arcs by their ids, so both count; give one of them another id",
-        )
+        hint = "nothing refers to arcs by their ids, so both count; give one of them another id"
+        self._repeated(self.d.warning, what, identity, origin, first, hint)
         number = 2
         while (other := f"{identity}/{number}") in self.arcs_seen:
             number += 1
         self.arcs_seen[other] = origin
         return other
+
+    @staticmethod
+    def _repeated(
+        tell: Callable[..., None],
+        what: str,
+        identity: str,
+        origin: Origin,
+        first: Origin,
+        hint: str,
+    ) -> None:
+        """Say, as an error or a warning, that an id has been used before."""
+        text = f"{what} has the id `{identity}`, which is already used"
+        notes = [Note(f"`{identity}` is first used here", first)]
+        tell(DUPLICATE_ID, text, origin, notes=notes, hint=hint)
 
     def check_children(self, node: Node) -> None:
         """Warn of unknown elements."""

@@ -133,7 +133,6 @@ static void mark_automaton(ex_queries_t *queries, const ex_automaton_t *automato
     }
 }
 
-/* Marks the items on which the questions rest that can be answered. */
 /* Whether a part of the graph tells for each of its nodes whether it is in an item: not of what can occur there, since
  * arcs may be missing. */
 static bool is_known_in_part(const ex_queries_t *queries, uint32_t number)
@@ -182,6 +181,7 @@ static bool is_of_part(const ex_queries_t *queries, const ex_question_t *questio
     return is_fine;
 }
 
+/* Marks the items on which the questions rest that can be answered. */
 static void mark_needed(ex_queries_t *queries)
 {
     for (uint32_t i = 0U; i < queries->questions; i++) {

@@ -10,9 +10,9 @@ from typing import Any, Literal
 from pn2code.properties import meaning as m
 from pn2code.verify.answers import basis
 from pn2code.verify.answers.reasons import clause
+from pn2code.verify.exploring.limits import REACHED
 from pn2code.verify.exploring.result import Exploration
 
-_LIMITS = ("states", "seconds", "memory")
 Verdict = Literal["yes", "no", "inconclusive"]
 
 
@@ -119,7 +119,7 @@ def answers(
     nothing: Mapping[str, Any] = {"answer": "unknown", "why": found.why}
     padded = [*said, *[nothing] * (len(properties.properties) - len(said))]
     if found.covering is not None:  # no limit would have been high enough
-        padded = [{**one, "why": found.why} if one.get("why") in _LIMITS else one for one in padded]
+        padded = [{**one, "why": found.why} if one.get("why") in REACHED else one for one in padded]
     return tuple(_answer(p, one) for p, one in zip(properties.properties, padded, strict=True))
 
 

@@ -33,7 +33,7 @@ from pn2code.verify.codes import (
 )
 from pn2code.verify.exploring import covering, nondeterminism, programs
 from pn2code.verify.exploring.grace import Grace, processor_time
-from pn2code.verify.exploring.limits import Limits, default_memory
+from pn2code.verify.exploring.limits import REACHED, Limits, default_memory
 from pn2code.verify.exploring.meanwhile import Meanwhile
 from pn2code.verify.exploring.programs import Generated, Sizes
 from pn2code.verify.exploring.reductions import OF_ELEMENTS, Chosen, possible, refuse
@@ -52,7 +52,7 @@ _TABLES = {
 }
 INFINITE = "infinite"
 """Why an exploration has ended: a covering run was found, so there is no end of markings."""
-_LIMITS = ("states", "seconds", "memory", INFINITE)
+_LIMITS = (*REACHED, INFINITE)
 """Ends of an exploration after which it is asked whether there would have been another one."""
 LEAST_SECONDS = 1e-6
 """No time at all is a limit, too; the explorer wants a positive one."""

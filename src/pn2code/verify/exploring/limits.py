@@ -10,6 +10,8 @@ from pathlib import Path
 
 from pn2code.base.deadline import NEVER, Deadline
 
+REACHED = ("states", "seconds", "memory")
+"""Why an exploration has ended, where it was for a limit."""
 _LEAST = 64
 _UNKNOWN = 2048
 """MiB, when the system does not say what is free."""
