@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from pn2code.arms import Arms
 from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.properties import meaning as m
@@ -13,6 +14,7 @@ from pn2code.verify.answers.properties import Verdict
 from pn2code.verify.codes import TRACE_UNWRITABLE
 from pn2code.verify.controller import control
 from pn2code.verify.controller.control_types import Control, Plan
+from pn2code.verify.controller.poses import Poses
 from pn2code.verify.controller.premises import Premises
 from pn2code.verify.controller.proofs import declared
 from pn2code.verify.exploring.explore import ExploreOptions
@@ -51,9 +53,12 @@ def look(
     if partition is None:
         return None
     # An approximate exploration came to its end; the checks make an exact one of their own.
+    arms = Arms.of(config, d)
     is_partial = not found.complete and found.why not in ("decided", "approximation")
     if is_partial and (found.why in ("interrupted", "error") or limits.deadline.is_over()):
-        return control.not_looked(found.why, partition, declared(partition, config, d), found)
+        poses = None if arms is None else Poses(partition, config.primitives, arms, opened.storage)
+        capacities = declared(partition, config, d)
+        return control.not_looked(found.why, partition, capacities, found, poses)
     if is_partial and not opened.flat.timed:
         # All of it will not be seen either, but what is wrong in a part is wrong.
         most = max(found.nodes, LEAST_STATES)
@@ -71,6 +76,8 @@ def look(
         evidence=wishes.evidence,
         wishes=replace(wishes, quick=found.nodes <= QUICK_STATES, covering=False),
         premises=Premises.of(partition, config, {g.place: g.says for g in opened.given}),
+        primitives=config.primitives,
+        arms=arms,
     )
     looked = control.examine(partition, plan, replace(limits, traces=0), d, found)
     if looked is not None:

@@ -19,6 +19,7 @@ from dataclasses import replace
 from functools import reduce
 from pathlib import Path
 
+from pn2code.base.deadline import NEVER
 from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import ArcKind
@@ -52,6 +53,8 @@ from pn2code.verify.controller.control_types import (
     Control,
     Plan,
 )
+from pn2code.verify.controller.poses import Bad, Poses
+from pn2code.verify.controller.reach_check import reach
 from pn2code.verify.controller.running import NotModelledError, Running, Silence
 from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.explore import explore
@@ -143,11 +146,12 @@ def examine(
     Raises:
         GameError: a declaration or an initial marking raises an exception.
     """
+    poses = plan.poses(partition)
     try:
         running = Running.of(partition, plan.properties.predicates)
     except NotModelledError as problem:
         why = f"the cell as it runs cannot be modelled: {problem}"
-        return replace(not_looked(why, partition, plan.capacities, closed), why=why)
+        return replace(not_looked(why, partition, plan.capacities, closed, poses), why=why)
     limits = replace(
         limits,
         approximation=None,
@@ -160,7 +164,7 @@ def examine(
             sizes=Sizes.start(running.net, plan.storage),
             generated=Generated(),
             traces=Path(name),
-            whole=tuple(c.place for c in partition.channels),
+            whole=(*(c.place for c in partition.channels), *(poses.places if poses else ())),
             graph=None,
             questions=of_cell(running, plan),
             predicates=plan.properties.predicates,
@@ -179,6 +183,21 @@ def examine(
         if orders is None:
             return None
         keep = Keeper(plan, running)
+
+        def again(moves: Sequence[Bad]) -> Exploration | None:
+            other = Running.of(partition, (), moves)
+            lines = "".join(f"{line}\n" for line in other.lines(first=True))
+            own = replace(
+                wishes,
+                sizes=Sizes.start(other.net, plan.storage),
+                generated=Generated(),
+                questions=lines,
+                predicates=(),
+                stem="reach",
+                quick=True,
+            )
+            return explore(other.net, plan.storage, limits, d, own)
+
         asked = orders.answers if orders is not found else ()
         said = found.answers[count:]
         doubt = ""
@@ -190,6 +209,7 @@ def examine(
             *cell_answers(partition, found, said, plan, keep, closed),
             *formats(partition, found, plan, d),
             memory(found),
+            *reach(poses, partition, found, again, keep, limits.deadline),
             ownership(partition),
         )
         checks = tuple(hesitating(c, said, keep) for c in checks)
@@ -239,6 +259,7 @@ def not_looked(
     partition: Partition,
     capacities: Mapping[int, int] | None = None,
     closed: Exploration | None = None,
+    poses: Poses | None = None,
 ) -> Control:
     """When there is no space of the cell to look in."""
     nothing = {"answer": "unknown", "why": why}
@@ -254,4 +275,5 @@ def not_looked(
     seen = closed if closed is not None and can_more(partition) else None
     checks += formats(partition, seen, Plan(), Diagnostics(), why)
     checks.append(memory(seen, why))
+    checks += reach(poses, partition, seen, None, keep, NEVER, why)
     return Control((*checks, ownership(partition)), None, why=why)
