@@ -116,7 +116,9 @@ def test_a_move_that_never_comes(tmp_path: Path) -> None:
     cell = write(tmp_path, net, TOML + ARM)
     done, checks = verified(cell)
     assert checks["reach"]["answer"] == "yes", done.output
-    assert checks["reach"]["says"].startswith("each of the 3 poses that arms are told can be reached; one more ")
+    assert checks["reach"]["says"].startswith(
+        "each of the 3 poses that arms are told can be reached; one more "
+    )
     assert ran(cell)[0] == "finished"
 
 
