@@ -15,6 +15,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import reduce
 from pathlib import Path
@@ -53,8 +54,9 @@ from pn2code.verify.controller.control_types import (
     Control,
     Plan,
 )
+from pn2code.verify.controller.equals import NoPatternError
 from pn2code.verify.controller.poses import Bad, Poses
-from pn2code.verify.controller.reach_check import reach
+from pn2code.verify.controller.reach_check import reach, suspects, tell
 from pn2code.verify.controller.running import NotModelledError, Running, Silence
 from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.explore import explore
@@ -175,29 +177,40 @@ def examine(
         if found is None:
             return None
         count = len(plan.properties.properties)
-        wishes = replace(wishes, questions=of_orders(running, plan.firings), stem="orders")
         wishes = replace(wishes, evidence=Path(name))
-        orders: Exploration | None = found
-        if found.complete or found.why == "decided":
-            orders = explore(running.net, plan.storage, limits, d, wishes)
-        if orders is None:
-            return None
-        keep = Keeper(plan, running)
 
-        def again(moves: Sequence[Bad]) -> Exploration | None:
+        def again(moves: Sequence[Bad], *, first: bool = True) -> Exploration | None:
             other = Running.of(partition, (), moves)
-            lines = "".join(f"{line}\n" for line in other.lines(first=True))
+            lines = other.lines(first=True)
             own = replace(
                 wishes,
                 sizes=Sizes.start(other.net, plan.storage),
                 generated=Generated(),
-                questions=lines,
+                questions="".join(f"{x}\n" for x in lines)
+                if first
+                else of_orders(other, plan.firings),
                 predicates=(),
-                stem="reach",
+                stem="reach" if first else "orders",
                 quick=True,
             )
             return explore(other.net, plan.storage, limits, d, own)
 
+        told = tell(poses, found, limits.deadline)
+        orders: Exploration | None = found
+        ruled_out = False
+        if found.complete or found.why == "decided":
+            moves = suspects(told, found)
+            if moves:
+                # All orders are more than the cell does: what is not met there is met nowhere.
+                with suppress(NoPatternError):
+                    orders = again(moves, first=False)
+                    ruled_out = orders is not None and orders.seen.markings
+            if not ruled_out:
+                own = replace(wishes, questions=of_orders(running, plan.firings), stem="orders")
+                orders = explore(running.net, plan.storage, limits, d, own)
+        if orders is None:
+            return None
+        keep = Keeper(plan, running)
         asked = orders.answers if orders is not found else ()
         said = found.answers[count:]
         doubt = ""
@@ -209,7 +222,7 @@ def examine(
             *cell_answers(partition, found, said, plan, keep, closed),
             *formats(partition, found, plan, d),
             memory(found),
-            *reach(poses, partition, found, again, keep, limits.deadline),
+            *reach(told, partition, found, again, keep, ruled_out=ruled_out),
             ownership(partition),
         )
         checks = tuple(hesitating(c, said, keep) for c in checks)
@@ -275,5 +288,5 @@ def not_looked(
     seen = closed if closed is not None and can_more(partition) else None
     checks += formats(partition, seen, Plan(), Diagnostics(), why)
     checks.append(memory(seen, why))
-    checks += reach(poses, partition, seen, None, keep, NEVER, why)
+    checks += reach(tell(poses, seen, NEVER), partition, seen, None, keep, why)
     return Control((*checks, ownership(partition)), None, why=why)

@@ -1,6 +1,8 @@
 """The check `reach`: no arm is told a pose that it cannot reach.
 
-checks = reach(poses, partition, found, again, keep, deadline)
+told = tell(poses, found, deadline)                # what arms may be told
+suspects(told, found)                              # impossible moves that one exploration can rule out
+reach(told, partition, found, again, keep)         # the check
 """
 
 from __future__ import annotations
@@ -11,6 +13,7 @@ from typing import Any
 from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.cell.partition import Partition
 from pn2code.semantics.game.report import value_text
+from pn2code.verify.answers.reasons import clause
 from pn2code.verify.controller.control_answers import Keeper, unknown
 from pn2code.verify.controller.control_types import REACH, Check
 from pn2code.verify.controller.equals import NoPatternError
@@ -26,34 +29,55 @@ Again = Callable[[Sequence[Bad]], Exploration | None]
 """Explores the cell once more, with exceptions where it comes to one of the moves."""
 
 
+def tell(poses: Poses | None, found: Exploration | None, deadline: Deadline) -> Told | None:
+    """What arms may be told; None: no arm is told a pose, or nothing is known of arms.
+
+    Args:
+        poses: what arms are told; None: nothing is known of arms.
+        found: a space that has at least all that the cell can reach, as far as it is complete; None: there is none.
+        deadline: when it is over the answer is not known.
+    """
+    if poses is None or not poses.moving:
+        return None
+    try:
+        with deadline.enforced():
+            return poses.told(found)
+    except TimeIsOverError:
+        return Told(open=clause("seconds"))
+
+
+def suspects(told: Told | None, found: Exploration) -> Sequence[Bad]:
+    """Moves that another exploration of the whole cell can rule out all at once."""
+    fits = told is not None and not told.open and len(told.bad) <= MOST_AT_ONCE
+    return told.bad if told is not None and fits and found.seen.markings else ()
+
+
 def reach(
-    poses: Poses | None,
+    told: Told | None,
     partition: Partition,
     found: Exploration | None,
     again: Again | None,
     keep: Keeper,
-    deadline: Deadline,
     why: str = "",
+    *,
+    ruled_out: bool = False,
 ) -> list[Check]:
     """The check; nothing where no arm is told a pose.
 
     Args:
-        poses: what arms are told; None: nothing is known of arms.
+        told: what arms may be told.
         partition: the cell.
-        found: a space that has at least all that the cell can reach, as far as it is complete; None: there is none.
+        found: where that was seen, as for `tell`.
         again: looks whether the cell comes to a move; None: nobody can look.
         keep: keeps runs.
-        deadline: when it is over the answer is not known.
         why: there is no space.
+        ruled_out: the cell comes to none of the moves that are not possible.
     """
-    if poses is None or not poses.moving:
+    if told is None:
         return []
-    try:
-        with deadline.enforced():
-            told = poses.told(found)
-    except TimeIsOverError:
-        return [unknown(REACH, {"why": "seconds"})]
-    shown = _shown(told, partition, found, again, keep) if found is not None else None
+    shown = None
+    if found is not None and told.bad and not ruled_out:
+        shown = _shown(told, partition, found, again, keep)
     if shown is not None and shown.answer == "no":
         return [shown]
     if found is None or not found.seen.markings:
@@ -81,9 +105,7 @@ def _fine(told: Told) -> str:
 def _shown(
     told: Told, partition: Partition, found: Exploration, again: Again | None, keep: Keeper
 ) -> Check | None:
-    """Whether the cell comes to a move that an arm cannot make; None: there is none, or it never does."""
-    if not told.bad:
-        return None
+    """Whether the cell comes to a move that an arm cannot make; None: it never does."""
     first = told.bad[0]
     where = f"`{partition.net.transitions[first.transition].name}`"
     open_ = Check(
