@@ -437,7 +437,7 @@ def test_a_robot_that_moves_is_assumed_to_reach_its_poses(tmp_path: Path) -> Non
     text = net(ONE, {"A": counting("act ()", 3)}, ACT + N)
     moving = checks(write(tmp_path / "moves", text, of_robot(toml(["A"], HOME))))
     assert moving["non-blocking"]["answer"] == "yes"
-    saying = [n for n, c in moving.items() if any("reach each pose" in x for x in c["assumes"])]
+    saying = [n for n, c in moving.items() if any("told to go" in x for x in c["assumes"])]
     assert saying == ["non-blocking"]
     acting = checks(write(tmp_path / "acts", text, toml(["A"], TOOL)))
     assert not any("reach each pose" in x for c in acting.values() for x in c["assumes"])

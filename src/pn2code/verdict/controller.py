@@ -55,11 +55,11 @@ def look(
     # An approximate exploration came to its end; the checks make an exact one of their own.
     arms = Arms.of(config, d)
     is_partial = not found.complete and found.why not in ("decided", "approximation")
-    if is_partial and (found.why in ("interrupted", "error") or limits.deadline.is_over()):
+    if is_partial and (found.why == "interrupted" or limits.deadline.is_over()):
         poses = None if arms is None else Poses(partition, config.primitives, arms, opened.storage)
         capacities = declared(partition, config, d)
         return control.not_looked(found.why, partition, capacities, found, poses)
-    if is_partial and not opened.flat.timed:
+    if is_partial and found.why != "error" and not opened.flat.timed:
         # All of it will not be seen either, but what is wrong in a part is wrong.
         most = max(found.nodes, LEAST_STATES)
         limits = replace(limits, max_states=min(most, limits.max_states or most))

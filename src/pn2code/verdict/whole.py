@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from pn2code.base.deadline import NEVER, Deadline, TimeIsOverError
-from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.division import divided
 from pn2code.net.flat import FlatNet
 from pn2code.robot_scripts.translate import lower_robots
@@ -19,6 +19,7 @@ from pn2code.verdict import controller, properties
 from pn2code.verdict.asked import Asked, gather
 from pn2code.verdict.opened import OpenNet
 from pn2code.verify.answers import outcome
+from pn2code.verify.answers.culprit import culprit
 from pn2code.verify.answers.outcome import Counts
 from pn2code.verify.answers.properties import Answer, Verdict, kind
 from pn2code.verify.answers.reasons import raised
@@ -264,7 +265,14 @@ def _tell_error(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
     index = error.get("transition")
     t = None if index is None else opened.flat.transitions[index]
     where = f"transition `{t.name}`" if t is not None else error["where"]
-    notes = [error["where"]] if error["where"] else []
+    says, origin = f"{where} raises {raised(error['message'])}", t.origin if t is not None else None
+    notes: list[str | Note] = [error["where"]] if error["where"] and t is None else []
+    exact = None
+    if t is not None and trace is not None:
+        exact = culprit(opened.flat, opened.storage, trace.file, t.index, error.get("binding"))
+    if exact is not None:
+        says, origin = exact.message, exact.origin
+        notes += exact.notes()
     if error.get("binding"):
         values = ", ".join(f"{name} = {value}" for name, value in error["binding"].items())
         notes.append(f"the occurrence with {values}")
@@ -274,8 +282,8 @@ def _tell_error(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
         notes.append(f"{trace.steps} steps lead to that marking: {trace.file}")
     d.error(
         STATE_ERROR,
-        f"{where} raises {raised(error['message'])} in a reachable marking",
-        t.origin if t is not None else Origin(opened.flat.file),
+        f"{says} in a reachable marking",
+        origin or Origin(opened.flat.file),
         notes=notes,
         hint="`pn2code simulate` can reach it, too; guard the inscription, or handle the exception",
     )

@@ -10,6 +10,8 @@ from typing import Any
 
 from pn2code.base.whole_file import whole_file
 from pn2code.cell.partition import OwnerKind, Partition
+from pn2code.semantics.game.token_game import GameError
+from pn2code.verify.answers.culprit import culprit
 from pn2code.verify.answers.reasons import clause, raised
 from pn2code.verify.controller.control_types import (
     BLOCKING,
@@ -177,17 +179,22 @@ def refusal(partition: Partition, found: Exploration, keep: Keeper) -> Check | N
     owner = partition.owners[partition.transition_owner[index]]
     trace = found.error_trace
     evidence = keep.all({"trace": trace and trace.file, "loop": None}, BLOCKING)
+    by = ""
+    if trace is not None:
+        exact = keep.culprit(trace.file, index, found.error.get("binding"))
+        by = f" by `{' '.join(exact.span.text.split())}`" if exact and exact.span else ""
     after = f", {_steps(evidence[0].steps)} after the start" if evidence else ""
     where = f"`{partition.net.transitions[index].name}`{after}"
     if owner.kind is OwnerKind.SUPERVISOR:
-        says = f"the supervisor stops in {where}: {raised(str(found.error.get('message')))} is raised there"
+        says = f"the supervisor stops in {where}: {raised(str(found.error.get('message')))} is raised there{by}"
     else:
         says = (
             f"the script of {owner.phrase} stops in {where}: an exception, or what no robot can carry out (a time "
             "that is negative, a number that is not finite)"
         )
     says += "; this stops the whole cell"
-    return Check(BLOCKING, "no", says, why="stopped", evidence=evidence)
+    t = (partition.net.transitions[index].name,)
+    return Check(BLOCKING, "no", says, why="stopped", evidence=evidence, transitions=t)
 
 
 class Keeper:
@@ -236,6 +243,14 @@ class Keeper:
             except OSError:
                 kept = None
         return Evidence(length, loop, None, tuple(named), kept)
+
+    def culprit(
+        self, trace: Path, transition: int, binding: Mapping[str, str] | None
+    ) -> GameError | None:
+        """What raises an exception after a run that has been read; None: the token game does not know."""
+        assert self.running is not None
+        net = self.running.partition.net
+        return culprit(net, self._plan.storage, trace, transition, binding)
 
     def all(self, row: Mapping[str, Any], name: str) -> tuple[Evidence, ...]:
         """The run of an answer, if there is one."""

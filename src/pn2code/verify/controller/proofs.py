@@ -117,8 +117,11 @@ def prove(
         other = (
             f"the file of `{given[0]}` brings a token that the net does not have" if given else ""
         )
-        run = rooms.growing(net, storage, found)
-        rooms.refuse(net, found, other or clause(why or ""), d, run)
+        if not any(
+            c.why == "stopped" for c in looked.failed
+        ):  # an exception is why nothing is known
+            run = rooms.growing(net, storage, found)
+            rooms.refuse(net, found, other or clause(why or ""), d, run)
     rooms.refuse_large(net, found, d)
     if d.has_errors:
         return None
