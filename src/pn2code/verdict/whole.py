@@ -38,6 +38,12 @@ MOST_COLOURS = 200
 _KINDS = {"yes": "good", "no": "bad"}
 
 
+NET_PART = 0.4
+"""Of the time for a cell, what the closed net may take of it; it is the cell as it runs that counts."""
+CELL_PART = 0.7
+"""Of the rest, what the cell as it runs may take; then come the shared files."""
+
+
 @dataclass(frozen=True, slots=True)
 class Checks:
     """What is looked at besides the state space of the net, where it is the net of a cell.
@@ -176,14 +182,18 @@ def look(
         sizes = Sizes.start(opened.flat, opened.storage)
         wishes = replace(wishes, sizes=sizes)
         own_wishes = replace(own_wishes, sizes=sizes) if own_wishes is not None else None
-    found = explore(opened.flat, opened.storage, limits, d, own_wishes or wishes)
+    is_cell = opened.config is not None and bool(checks.controller or checks.medium or asked)
+    part = replace(limits, deadline=limits.deadline.share(NET_PART)) if is_cell else limits
+    found = explore(opened.flat, opened.storage, part, d, own_wishes or wishes)
     if found is None:
         return None
     control: Control | None = None
     if checks.controller or asked:
         if opened.config is not None:
             wishes.stage("exploring the cell as its programs run ...")
-        control = controller.look(opened, found, limits, wishes, folder, d, asked.plain)
+        has_more = checks.medium and is_cell
+        part = replace(limits, deadline=limits.deadline.share(CELL_PART)) if has_more else limits
+        control = controller.look(opened, found, part, wishes, folder, d, asked.plain)
     more = properties.of_bindings(asked, opened, found, limits, wishes, d, control)
     seen: medium.Answers = ()
     if checks.medium:

@@ -55,7 +55,7 @@ def of_check(name: str, answer: str, why: str | None, *, has_run: bool) -> str |
     """What the answer to a check of a supervisor rests on; `name` and `why` as in `control.Check`."""
     if answer == "unknown":
         return None
-    if name == "ownership":
+    if name == "ownership" or why == "structure":
         return NET
     if name in _OF_MARKINGS:
         return MARKINGS if answer == "yes" else RUN if has_run else MARKING

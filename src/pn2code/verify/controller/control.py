@@ -19,6 +19,8 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import reduce
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
 from pn2code.base.deadline import NEVER
 from pn2code.cell.partition import OwnerKind, Partition
@@ -68,6 +70,10 @@ DOUBT = (
     "a condition of a script that waits for a message raises an exception in a state of the cell, and whether the "
     "script comes to it is not known"
 )
+
+NO_BOUNDS: Mapping[int, int] = MappingProxyType({})
+CELL_PART = 0.8
+"""Of the time, what the exploration may take that most answers come from."""
 
 # --- questions -----------------------------------------------------------------------------------
 
@@ -153,7 +159,8 @@ def examine(
         running = Running.of(partition, plan.properties.predicates)
     except NotModelledError as problem:
         why = f"the cell as it runs cannot be modelled: {problem}"
-        return replace(not_looked(why, partition, plan.capacities, closed, poses), why=why)
+        nothing = not_looked(why, partition, plan.capacities, closed, poses, plan.bounds)
+        return replace(nothing, why=why)
     limits = replace(
         limits,
         approximation=None,
@@ -173,9 +180,15 @@ def examine(
             evidence=plan.evidence or Path(name),
             stem="cell",
         )
-        found = explore(running.net, plan.storage, limits, d, wishes)
+        # Where the whole is too large, there is time left to see how it comes to what is wrong.
+        part = replace(limits, deadline=limits.deadline.share(CELL_PART))
+        found = explore(running.net, plan.storage, part, d, wishes)
         if found is None:
             return None
+        if plan.cut and found.why == "states":
+            found = replace(
+                found, why=plan.cut, answers=tuple(_cut(a, plan.cut) for a in found.answers)
+            )
         count = len(plan.properties.properties)
         wishes = replace(wishes, evidence=Path(name))
 
@@ -238,6 +251,12 @@ def examine(
         return settled(replace(control, late=late, doubt=doubt, premises=premises))
 
 
+def _cut(answer: Mapping[str, Any], why: str) -> Mapping[str, Any]:
+    """The answer, with the reason for which it is not known."""
+    is_so = answer["answer"] == "unknown" and answer.get("why") == "states"
+    return {**answer, "why": why} if is_so else answer
+
+
 # --- the net itself ------------------------------------------------------------------------------
 
 
@@ -273,13 +292,14 @@ def not_looked(
     capacities: Mapping[int, int] | None = None,
     closed: Exploration | None = None,
     poses: Poses | None = None,
+    bounds: Mapping[int, int] = NO_BOUNDS,
 ) -> Control:
     """When there is no space of the cell to look in."""
     nothing = {"answer": "unknown", "why": why}
     checks = [unknown(name, nothing) for name in (FINITE, BOUNDED, CONFLUENT, BLOCKING)]
     declared = capacities or {}
     open_rows = [nothing] * (len(partition.channels) + len(declared))
-    rows = [*known(partition, declared, open_rows, closed)]
+    rows = [*known(partition, declared, open_rows, closed, bounds)]
     keep = Keeper(Plan(), None)
     if partition.channels:
         checks.append(channels_check(partition, rows[: len(partition.channels)], keep))

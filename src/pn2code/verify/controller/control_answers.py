@@ -35,6 +35,8 @@ SCRIPTS, ALONE, MOVING, STILL = 2, 3, 4, 5
 """Rows of the answers about `Moments.sets`, after those about the end and about scripts that stop."""
 OTHERS = 6
 """The row after these."""
+STRUCTURE = "structure"
+"""Why a bound is known: invariants of the net prove it, without any state."""
 _WAYS = 60
 """Transitions of a run that are named."""
 
@@ -92,7 +94,7 @@ def cell_answers(
     if ending.answer == "yes" and shown is not None:  # `settled` says what it means
         ending = replace(ending, evidence=keep.all(shown, BLOCKING))
     yield ending
-    bounds = [*known(partition, plan.capacities, bounds, closed)]
+    bounds = [*known(partition, plan.capacities, bounds, closed, plan.bounds)]
     if partition.channels:
         yield channels_check(partition, bounds[:channels], keep)
     if plan.capacities:
@@ -104,12 +106,18 @@ def known(
     capacities: Mapping[int, int],
     rows: Sequence[Mapping[str, Any]],
     closed: Exploration | None,
+    proven: Mapping[int, int],
 ) -> Iterator[Mapping[str, Any]]:
-    """Bounds that are not known of the cell follow from those of a closed net that can do all that the cell can."""
+    """Bounds that are not known of the cell follow from those of a closed net that can do all that the cell can.
+
+    What the structure proves (`proven`) is so of each sequence of firings, whatever priorities and time hold back.
+    """
     most = [*((c.place, 1) for c in partition.channels), *capacities.items()]
     bounds = closed.bounds if closed and closed.seen.markings and can_more(partition) else None
     for row, (place, limit) in zip(rows, most, strict=True):
-        if row["answer"] == "unknown" and bounds is not None and bounds[place].upper <= limit:
+        if row["answer"] == "unknown" and place in proven and proven[place] <= limit:
+            yield {"answer": "yes", "value": proven[place], "trace": None, "why": STRUCTURE}
+        elif row["answer"] == "unknown" and bounds is not None and bounds[place].upper <= limit:
             yield {"answer": "yes", "value": bounds[place].upper, "trace": None}
         else:
             yield row
@@ -395,7 +403,14 @@ def channels_check(partition: Partition, rows: Sequence[Mapping[str, Any]], keep
     most = max(int(row["value"]) for _, row in pairs)
     count = len(pairs)
     says = f"at most {most} message in {'each of ' if count > 1 else ''}{count} channel{'s' * (count > 1)}"
-    return Check(CHANNELS, "yes", says, most)
+    return _bounded_by(CHANNELS, says, most, rows)
+
+
+def _bounded_by(name: str, says: str, most: int, rows: Sequence[Mapping[str, Any]]) -> Check:
+    """A "yes", which may rest on the structure of the net alone."""
+    if all(row.get("why") == STRUCTURE for row in rows):
+        return Check(name, "yes", f"{says}, by the structure of the net", most, STRUCTURE)
+    return Check(name, "yes", says, most)
 
 
 def capacities_check(
@@ -423,7 +438,7 @@ def capacities_check(
         if count > 1
         else "the declared capacity is enough"
     )
-    return Check(CAPACITY, "yes", says, most)
+    return _bounded_by(CAPACITY, says, most, rows)
 
 
 def _steps(count: int) -> str:

@@ -94,7 +94,7 @@ class Check:
         answer: "yes", "no" or "unknown".
         says: one line for people.
         value: the number that belongs to it, if there is one.
-        why: of "unknown", as in `reasons`; of a blocked cell "deadlock" or "endless".
+        why: of "unknown", as in `reasons`; of a blocked cell "deadlock" or "endless"; of a bound "structure".
         is_accepted: cell.toml says that it need not be so.
         evidence: the run; of confluence a second one, which goes on in another way.
         transitions: the two whose order matters; those that touch what is another's.
@@ -172,6 +172,8 @@ class Plan:
         evidence: a folder for the runs that answer these; None: they are not kept.
         wishes: of the exploration. What it is asked, and the files it writes, are ours.
         premises: what answers rest on besides.
+        cut: why no more states of the cell are looked at than its closed net has shown; "": as many as the limits say.
+        bounds: by place, most tokens, where the structure of the net proves it.
         primitives, arms: the functions that are commands, and what the robots can reach; None: nothing is known of it.
     """
 
@@ -185,6 +187,8 @@ class Plan:
     evidence: Path | None = None
     wishes: ExploreOptions = ExploreOptions()
     premises: Premises = Premises()
+    cut: str = ""
+    bounds: Mapping[int, int] = field(default_factory=dict)
     primitives: Mapping[str, Primitive] = field(default_factory=dict)
     arms: Arms | None = None
 

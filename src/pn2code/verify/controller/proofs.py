@@ -97,6 +97,7 @@ def prove(
         order_decides=config.supervisor.order_decides,
         capacities=capacities,
         premises=Premises.of(partition, config),
+        bounds={k: b.bound for k, b in structural.items() if b.bound is not None},
         primitives=config.primitives,
         arms=arms,
     )
@@ -170,7 +171,9 @@ def _look(partition: Partition, plan: Plan, d: Diagnostics) -> Control | None:
         return None
     if found is None and any(i.code == TOOL_MISSING for i in own.errors):
         poses = plan.poses(partition)
-        return control.not_looked("compiler", partition, plan.capacities, poses=poses)
+        return control.not_looked(
+            "compiler", partition, plan.capacities, poses=poses, bounds=plan.bounds
+        )
     # A place that grows without end is one without a bound, which is refused with a better hint.
     d.items += [i for i in own.items if i.code != BEYOND_ROOM]
     return found

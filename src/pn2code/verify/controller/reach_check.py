@@ -78,14 +78,12 @@ def reach(
     shown = None
     if found is not None and told.bad and not ruled_out:
         shown = _shown(told, partition, found, again, keep)
-    if shown is not None and shown.answer == "no":
+    if shown is not None:
         return [shown]
     if found is None or not found.seen.markings:
         return [unknown(REACH, {"why": why if found is None else found.why})]
     if told.open:
         return [Check(REACH, "unknown", f"not known: {told.open}", why="poses")]
-    if shown is not None:
-        return [shown]
     return [Check(REACH, "yes", _fine(told), told.poses)]
 
 
