@@ -29,7 +29,7 @@ from pn2code.channels import GRACE_S, SharedDirectory, specs_of
 from pn2code.diagnostics import Diagnostics, Note, Origin, SourceText
 from pn2code.diagnostics.codes import register
 from pn2code.emission.output import OutputFile
-from pn2code.emission.write import OutputFolderError, write
+from pn2code.emission.write import OutputFolderError, expect_writable, write
 from pn2code.net.flat import FlatNet
 from pn2code.report.rows import rows_tsv
 from pn2code.report.summary import summarise
@@ -209,6 +209,7 @@ def run_cell(
             hint="correct the path after --input",
         )
         return None
+    expect_writable(options.out)
     prepared = prepare(path, options, d, tokens)
     if prepared is None:
         return None
