@@ -31,6 +31,7 @@ from pn2code.diagnostics.codes import register
 from pn2code.emission.output import OutputFile
 from pn2code.emission.write import OutputFolderError, expect_writable, write
 from pn2code.net.flat import FlatNet
+from pn2code.report.messages import messages_tsv
 from pn2code.report.rows import rows_tsv
 from pn2code.report.summary import summarise
 from pn2code.robot import scene
@@ -451,6 +452,7 @@ def _write_results(
     texts = {
         f"{name}.trace.jsonl": trace_text(record.header, record.events),
         "rows.tsv": rows_tsv(record.messages, prepared.config.report.rows),
+        "messages.tsv": messages_tsv(prepared.generated.partition, record.traffic),
         "summary.json": json.dumps(summary, indent=1, ensure_ascii=False) + "\n",
     }
     partial = {file: out / f".{file}.tmp" for file in texts}
