@@ -38,6 +38,7 @@ from pn2code.robot import scene
 from pn2code.robot.backend import Backend, BackendName
 from pn2code.robot.choose_backend import open_backend
 from pn2code.robot.executor import RobotExecutor
+from pn2code.robot.kinematics import condition_text
 from pn2code.robot.monitor import Monitor
 from pn2code.run.device import DeviceExecutor
 from pn2code.run.engine import Engine, Observer
@@ -433,7 +434,7 @@ def _warn(record: RunRecord, config: CellConfig) -> None:
                 RunWarning(
                     record.sample_t[above[0]],
                     robot.name,
-                    f"comes close to a singularity: condition number {values[worst]:.0f} at "
+                    f"comes close to a singularity: condition number {condition_text(values[worst])} at "
                     f"{record.sample_t[worst]:.2f} s, elbow {elbow:.1f} deg from straight "
                     f"(warning above {limit:g})",
                 )
