@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 
 import pytest
@@ -135,3 +136,54 @@ def test_generate_says_it_before_anything_else(tmp_path: Path) -> None:
     text = " ".join(done.stderr.split())
     assert "place `Top.Robot.Made` grows without bound in the closed net: " in text
     assert "`Top.Robot.Report`" in text and "is one drawn the wrong way round" in text
+
+
+GROWING = """
+net Grow
+  standard
+  colset L = list INT;
+  var n: INT;
+  var l: L;
+  page Top
+    place Count : INT = 1`0
+    place Free = 1
+    place Busy
+    trans Begin
+      in Count : n
+      out Count : n + 1
+      in Free : ()
+      out Busy : ()
+    trans Finish
+      in Busy : ()
+      out Free : ()
+"""
+QUEUE = GROWING.replace("place Count : INT = 1`0", "place Count : L = 1`[]").replace(
+    "      in Count : n\n      out Count : n + 1\n",
+    "      in Count : l\n      out Count : l ^^ [1]\n",
+)
+
+
+@pytest.mark.parametrize("text", [GROWING, QUEUE], ids=["a number", "a list"])
+@pytest.mark.parametrize("options", [(), ("--full",)], ids=["screen", "full"])
+def test_what_grows_inside_a_token(tmp_path: Path, text: str, options: tuple[str, ...]) -> None:
+    """No place holds more than one token, and there is no end of markings."""
+    net = write(text, tmp_path / "net.cpn")
+    done = pn2code("verify", net, "--max-states", "3000", *options)
+    assert done.returncode == 3, done.stderr
+    said = " ".join(done.stdout.split())
+    assert re.search(r"place `Top.Count` has held 1,50\d different multi-sets", said)
+
+
+def test_places_that_differ_seldom_are_not_named(tmp_path: Path) -> None:
+    """The counter ends; what makes the markings many is how they are put together."""
+    text = GROWING.replace("trans Begin\n", "trans Begin guard [n < 30]\n")
+    text = text.replace("    trans Finish\n", THREE + "    trans Finish\n")
+    done = pn2code("verify", write(text, tmp_path / "net.cpn"), "--max-states", "3000")
+    assert done.returncode == 3, done.stderr
+    assert "Grows" not in done.stdout
+
+
+THREE = "".join(
+    f"    place X{k} : INT = 1`0\n    trans Up{k} guard [n < 30]\n      in X{k} : n\n      out X{k} : n + 1\n"
+    for k in range(3)
+)

@@ -45,6 +45,7 @@ static void print_help(void)
         "  --threads N         threads that explore (default 1)\n"
         "  --max-states N      stop at N states\n"
         "  --max-seconds S     stop after S seconds\n"
+        "  --late-seconds S    after S seconds work out nothing more about what was seen\n"
         "  --memory MIB        most memory of all tables together (default 4096)\n"
         "  --arena MIB         of each thread, for lists and strings (default 64)\n"
         "  --no-graph          states and bounds alone: no components, no traces\n"
@@ -164,6 +165,7 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
            || ((strcmp(option, "--dead-limit") == 0) && read_number(value, UINT32_MAX, &options->dead_limit))
            || ((strcmp(option, "--write-graph") == 0) && read_text(value, &options->write_graph))
            || ((strcmp(option, "--write-limit") == 0) && read_number(value, UINT64_MAX, &options->write_limit))
+           || ((strcmp(option, "--late-seconds") == 0) && read_seconds(value, &options->late_seconds))
            || ((strcmp(option, "--progress-every") == 0) && read_seconds(value, &options->progress_every))
            || ((strcmp(option, "--trace-to") == 0) && read_text(value, &options->trace_to))
            || ((strcmp(option, "--parent") == 0) && read_number(value, INT32_MAX, &options->parent))

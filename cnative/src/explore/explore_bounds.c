@@ -397,7 +397,8 @@ static bool see_multiset(place_bounds_t *own, const char *text)
 static bool is_late(const ex_run_t *run)
 {
     const double most = run->options.max_seconds;
-    return (most > 0.0) && ((ex_clock() - run->started) > ((most * 1.1) + 1.0));
+    const double late = (run->options.late_seconds > 0.0) ? run->options.late_seconds : ((most * 1.1) + 1.0);
+    return (most > 0.0) && ((ex_clock() - run->started) > late);
 }
 
 /* All multi-sets that the places which are not packed ever held. */
@@ -534,6 +535,26 @@ static uint64_t most_printed(const ex_options_t *options, uint32_t place)
     return options->multiset_limit;
 }
 
+/* For each place, how many multi-sets it ever held; 0 for a packed one, whose colours are few. */
+static void different_json(const ex_run_t *run, FILE *out)
+{
+    const ex_bytes_t *const all = ex_interned(run);
+    uint64_t *const held = calloc((pn_net.place_count > 0U) ? pn_net.place_count : 1U, sizeof *held);
+    const uint64_t count = (all != NULL) ? atomic_load(&all->index.count) : 0U;
+    for (uint64_t i = 0U; (held != NULL) && (i < count); i++) {
+        const uint32_t place = all->of[i].place;
+        if (place < pn_net.place_count) { /* no hole, and no time */
+            held[place] += 1U;
+        }
+    }
+    (void)fprintf(out, ",\n \"different\": [");
+    for (uint32_t p = 0U; (held != NULL) && (p < pn_net.place_count); p++) {
+        (void)fprintf(out, "%s%" PRIu64, (p > 0U) ? ", " : "", held[p]);
+    }
+    (void)fprintf(out, "]");
+    free(held);
+}
+
 void ex_bounds_json(ex_run_t *run, FILE *out)
 {
     ex_bounds_t *const bounds = run->worker[0].bounds;
@@ -573,4 +594,5 @@ void ex_bounds_json(ex_run_t *run, FILE *out)
     (void)fprintf(out, "%s", is_known ? "]" : "");
     free(buffer);
     arena_json(run, is_known ? bounds : NULL, out);
+    different_json(run, out);
 }

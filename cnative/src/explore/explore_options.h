@@ -15,6 +15,7 @@ typedef struct ex_options {
     uint32_t threads;
     uint64_t max_states; /* UINT64_MAX: no limit; so the others */
     double max_seconds;  /* 0: no limit */
+    double late_seconds; /* when nothing more is worked out about what was seen; 0: a tenth and a second later */
     uint64_t memory;     /* bytes */
     uint64_t arena;      /* bytes of each thread, for lists and strings */
     uint64_t seed;

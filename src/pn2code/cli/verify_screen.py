@@ -72,6 +72,7 @@ def full(said: Said) -> str:
     parts = [
         report(net, found, None, said.answers, said.control, said.counts).rstrip(),
         _figures(found),
+        *(f"Perhaps {line}" for line in _growing(net, found)),
     ]
     with suppress(TimeIsOverError), said.deadline.enforced():
         if said.control is not None:
@@ -181,6 +182,18 @@ def _sizes(said: Said) -> Iterator[str]:
         yield from _row("Live transitions", f"{live} of {len(net.transitions)}")
     if found.bounds is not None:
         yield from _row("Bounds", _most(net, found))
+    yield from (x for line in _growing(net, found) for x in _row("Grows, perhaps", line))
+
+
+def _growing(net: FlatNet, found: Exploration) -> Iterator[str]:
+    """What may be the reason that there is no end of markings."""
+    growing = found.growing()
+    if growing is not None:
+        place, count = net.places[growing[0]].name, growing[1]
+        yield (
+            f"place `{place}` has held {count:,} different multi-sets of tokens: a number, text or list in a token may "
+            "grow for ever, so that there is no end of markings; is there a guard that limits it?"
+        )
 
 
 def _as_it_runs(said: Said) -> Iterator[str]:

@@ -54,6 +54,8 @@ INFINITE = "infinite"
 """Why an exploration has ended: a covering run was found, so there is no end of markings."""
 _LIMITS = (*REACHED, INFINITE)
 """Ends of an exploration after which it is asked whether there would have been another one."""
+SEARCH_PART = 0.85
+"""Of the time until a deadline, what an explorer may search; the rest is for telling what it has seen."""
 LEAST_SECONDS = 1e-6
 """No time at all is a limit, too; the explorer wants a positive one."""
 
@@ -200,7 +202,7 @@ def _explored(
                 if d.has_errors or not interrupted():
                     return None
                 if not wishes.interrupted() and first is not None:
-                    # The compiler was not done in time: what the quick one has seen is what is known.
+                    # The compiler was not done in time: what the program before has seen is what is known.
                     seen = {**first, "why": "seconds"}
                     return Exploration.of(net, seen, compiling)
                 if not wishes.interrupted():
@@ -251,6 +253,7 @@ def _explored(
             )
             return Exploration.of(net, {**found, "why": "memory"}, compiling)
         sizes = larger
+        first = {**found, "error": None}
 
 
 def _is_too_much(found: Mapping[str, Any], own: Limits, limits: Limits) -> bool:
@@ -291,14 +294,18 @@ def nothing(net: FlatNet, limits: Limits, why: str = "interrupted") -> dict[str,
 
 
 def _options(limits: Limits, chosen: Chosen, sizes: Sizes, wishes: ExploreOptions) -> list[str]:
-    ends = [s for s in (limits.max_seconds, limits.deadline.left) if s is not None]
-    seconds = min(ends, default=None)
+    left = limits.deadline.left
+    late = None if left is None else max(left, LEAST_SECONDS)
+    # What was seen has to be told within the deadline, too.
+    ends = [limits.max_seconds, None if left is None else left * SEARCH_PART]
+    seconds = min((s for s in ends if s is not None), default=None)
     given: list[tuple[str, object]] = [
         ("--threads", limits.threads),
         ("--order", limits.order.value),
         ("--arena", sizes.memory >> 20),
         ("--max-states", limits.max_states),
         ("--max-seconds", None if seconds is None else max(seconds, LEAST_SECONDS)),
+        ("--late-seconds", late),
         ("--memory", limits.memory or default_memory()),
         ("--parent", os.getpid()),
         ("--approximate", limits.approximation.value if limits.approximation else None),

@@ -16,6 +16,10 @@ from pn2code.semantics.values.colour_json import from_json
 from pn2code.semantics.values.colours import TEXTS
 from pn2code.verify.exploring.covering import Covering
 
+LEAST_GROWING = 1_000
+"""Markings from which on it says something that a place differs in most of them ..."""
+GROWING = 0.2
+"""... which is so when it does in more than this part of them."""
 FAIRNESS = ("impartial", "fair", "just", "none")
 
 
@@ -111,6 +115,7 @@ class Exploration:
         answers: what the explorer says of each question, in order.
         arena: bytes for lists and strings: "start" (before the first marking), "firing" (one occurrence), "marking";
             None where bounds are not known.
+        different: for each place, how many multi-sets it held; 0 where that is not counted, since its colours are few.
         covering: of "infinite": the run that shows that places grow without bound.
     """
 
@@ -137,6 +142,7 @@ class Exploration:
     symmetries: tuple[str, ...] = ()
     answers: tuple[Mapping[str, Any], ...] = ()
     arena: Mapping[str, int] | None = None
+    different: tuple[int, ...] = ()
     covering: Covering | None = None
 
     @property
@@ -148,6 +154,13 @@ class Exploration:
     def knows_dead_transitions(self) -> bool:
         """Whether a transition without arcs never occurs."""
         return "partial-order" not in self.reductions
+
+    def growing(self) -> tuple[int, int] | None:
+        """Of a space not seen to its end: the place that differs in most of its markings, and in how many; or None."""
+        if self.seen.markings or self.nodes < LEAST_GROWING or not self.different:
+            return None
+        count, place = max((n, -i) for i, n in enumerate(self.different))
+        return (-place, count) if count > self.nodes * GROWING else None
 
     @property
     def states_per_second(self) -> float:
@@ -181,6 +194,7 @@ class Exploration:
             seen=Seen(**(found.get("seen") or {})),
             answers=tuple(found.get("queries") or ()),
             arena=found.get("arena"),
+            different=tuple(found.get("different") or ()),
         )
 
     @property
