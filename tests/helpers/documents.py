@@ -26,6 +26,7 @@ COMMANDS = (
     "./supervisor",
     "generated/riveting/supervisor",
     "generated/riveting/supervisor.traced",
+    "minimal/supervisor.traced",
     "spin",
     ".",
     "cd",
