@@ -15,6 +15,7 @@ from pn2code.cli.options import (
     FormatOption,
     SetOption,
     UncheckedOption,
+    check_folder_writable,
     parse_values,
     print_but_known,
     stop,
@@ -52,6 +53,8 @@ def generate(
     first. It is not generated if it does not keep to its execution scheme, or if nothing proves how many tokens a place
     can hold.
     """
+    if not check:
+        check_folder_writable(output or Path("generated"))
     d = Diagnostics()
     result = pipeline.generate(net, d, values=parse_values(settings), checked=not unchecked)
     if result is None:
