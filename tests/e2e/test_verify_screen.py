@@ -251,18 +251,3 @@ def test_what_is_not_known(
     assert code == 3
     assert lines[-1] == words
     assert ("warning[time-over]" in errors) == ("0" in options)
-
-
-def test_an_invariant_about_what_is_enabled_says_that_it_is_not_kept(
-    tmp_path: Path, here: Path
-) -> None:
-    cell = write(tmp_path / "cell")
-    words = "this may become false where programs do less than was explored"
-    asked = 'tokens("Top.Robot.Over") <= 1'
-    for text, is_said in (
-        (f"always {asked}", False),
-        (f'always (enabled("Top.Robot.Report") -> {asked})', True),
-    ):
-        code, lines, _ = verify(cell, "--no-medium", "--full", "--property", text)
-        assert code == 0
-        assert (words in "\n".join(lines)) == is_said

@@ -26,7 +26,6 @@ COMMANDS = (
     "./supervisor",
     "generated/riveting/supervisor",
     "generated/riveting/supervisor.traced",
-    "minimal/supervisor.traced",
     "spin",
     ".",
     "cd",

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from pn2code.net.flat import FlatNet
-from pn2code.properties import meaning as m
 from pn2code.semantics.game.token_game import GameError
 from pn2code.trace.script import TraceRefusedError
 from pn2code.verify.answers import basis
@@ -55,16 +54,11 @@ def remarks(a: Answer) -> list[str]:
         played = ", and the token game has played it" if a.evidence and a.evidence.confirmed else ""
         seen = f"{basis.SAYS[a.rests_on]}{played * (a.rests_on == basis.RUN)}"
         found.append(f"rests on this: {'; '.join((seen, *a.assumes))}")
-    if a.cell and a.answer == "yes" and not a.kept and isinstance(a.about.asked, m.Invariant):
-        asked = {x.kind for x in m.atoms(a.about.asked.condition)} - {"true", "pred"}
-        if a.about.asked.wanted and asked:
-            found.append(_NOT_KEPT)
     if not a.about.expect and a.answer != "inconclusive":
         found.append("as expected" if a.is_expected else "expected to be false")
     return found
 
 
-_NOT_KEPT = "this may become false where programs do less than was explored, because it asks what is enabled"
 _VALUES = {"bound": "most tokens", "response": "longest wait"}
 
 
