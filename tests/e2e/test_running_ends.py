@@ -200,8 +200,8 @@ def test_an_exception_of_the_supervisor_alone(tmp_path: Path) -> None:
     row = blocking(found)
     assert found["error"] is None and (row["answer"], row["why"]) == ("no", "stopped")
     assert (
-        "the supervisor stops 4 steps after the start: the occurrence of `Top.Supervisor.Hear` raised the "
-        "exception `Div`" in row["says"]
+        "the supervisor stops in `Top.Supervisor.Hear`, 4 steps after the start: `Div`"
+        in row["says"]
     )
     (run,) = row["evidence"]
     assert run["steps"] == 4 and Path(run["trace"]).is_file()

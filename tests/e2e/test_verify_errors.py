@@ -9,8 +9,6 @@ import pytest
 
 from helpers.netbuilder import flat, write
 from helpers.processes import pn2code
-from helpers.small_cell import NET as CELL
-from helpers.small_cell import write as cell_of
 from pn2code.semantics.game.token_game import GameError
 from pn2code.verify.answers.path import play
 
@@ -129,33 +127,3 @@ def test_no_way(tmp_path: Path) -> None:
     page = (tmp_path / "r.html").read_text()
     assert "Then Top.Push with l = [], n = 0 raises Div." in page
     assert "Partial: an inscription raised an exception" in page
-
-
-def test_one_wording_whoever_meets_an_exception(tmp_path: Path) -> None:
-    """`verify`, `simulate` and `generate` name the same exception with the same words, place and advice."""
-    place = r"""net One
-      standard
-      page Top
-        place A : INT = 1`1
-        place B : INT = 1`(1 div 0)"""
-    net = write(place, tmp_path / "one.cpn")
-    said = [pn2code(*words, net).stderr for words in (("verify",), ("marking",))]
-    for text in said:
-        assert (
-            "error[runtime-error]: the initial marking of `Top.B` raised the exception `Div`"
-            in text
-        )
-        assert "e handle Div => 0" in text
-    cell = cell_of(tmp_path / "cell", CELL.replace("guard [n <= 3]", "guard [6 div (2 - n) <= 30]"))
-    words = "the search for bindings of `Top.Supervisor.Next` raised the exception `Div`"
-    for command in (
-        ("verify", cell, "--no-medium", "--traces", tmp_path),
-        ("generate", cell, "-o", tmp_path / "made"),
-        ("simulate", cell / "cell.cpn"),
-    ):
-        done = pn2code(*command)
-        assert done.returncode == 1
-        message = done.stderr.partition(words)[2]
-        assert message, done.stderr
-        assert "page `Sup`, transition `Next` (ID" in message.split("\n")[2]
-    assert "state-error" not in done.stderr

@@ -8,9 +8,8 @@ RUNTIME_ERROR = register(
     "runtime-error",
     "the net failed while it ran",
     "An inscription raised an exception of CPN ML (e.g. `Overflow`, `Div`, `Empty`), did not terminate, or gave a "
-    "token that is not in the colour set of its place. CPN Tools stops its simulation, and the calculation of a state "
-    "space, there, too; what was seen until then is reported as partial. The message names the element; if the "
-    "exception was raised in a declaration, a note says where.",
+    "token that is not in the colour set of its place. CPN Tools stops the simulation there, too. The message names "
+    "the element; if the exception was raised in a declaration, a note says where.",
 )
 TRACE_REFUSED = register(
     "trace-refused",

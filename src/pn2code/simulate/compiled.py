@@ -24,7 +24,6 @@ from pn2code.monitors.compiling import Instrumented
 from pn2code.monitors.simple import Simple
 from pn2code.monitors.watch import not_one_list
 from pn2code.net.flat import FlatNet, FlatTransition
-from pn2code.semantics.failing import of_transition, stopped
 from pn2code.semantics.game.marking import BindingElement, Marking, place_from_json
 from pn2code.semantics.game.report import value_text
 from pn2code.semantics.values.colour_json import from_json
@@ -351,12 +350,15 @@ def _failure(net: FlatNet, last: Mapping[str, Any], simple: Simple | None = None
         return Failure(not_one_list(m, tokens), m.origin, None, t, _binding(t, last))
     name = last["error"]
     if t is None:
-        what = last["origin"] or "the declarations"
-        return Failure(stopped(what, name), Origin(net.file))
+        message = f"`{name}` in the declarations or an initial marking: {last['origin']}"
+        return Failure(message, Origin(net.file))
+    doing = "the occurrence of" if "binding" in last else "the search for bindings of"
     said = last["origin"]
     where = f" ({said})" if said and said != t.origin.describe() else ""
-    message = stopped(of_transition(t.name, is_bound="binding" in last), name)
-    return Failure(message + where, t.origin, None, t, _binding(t, last))
+    # An exception has a name; limits and what is not available here are told in words.
+    what = f"raised `{name}`" if name.isidentifier() else f"cannot go on: {name}"
+    message = f"{doing} `{t.name}` {what}{where}"
+    return Failure(message, t.origin, None, t, _binding(t, last))
 
 
 def _binding(t: FlatTransition | None, last: Mapping[str, Any]) -> dict[str, str] | None:

@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from pn2code.diagnostics import Diagnostics, Origin, Span
+from pn2code.diagnostics import Diagnostics, Note, Origin, Span
 from pn2code.monitors.functions import MonitorProgram
 from pn2code.net.flat import FlatNet, FlatTransition
-from pn2code.semantics.failing import report_failure, with_binding
+from pn2code.semantics.codes import RUNTIME_ERROR
 from pn2code.semantics.game.enabling import GameError
 from pn2code.semantics.game.marking import Marking
 
@@ -92,11 +92,14 @@ class Failure:
 
     def report(self, d: Diagnostics, steps: int) -> None:
         """As a diagnostic."""
-        notes = []
+        notes: list[Note | str] = []
+        if self.span is not None:
+            notes.append(Note(f"raised by `{' '.join(self.span.text.split())}`", self.span.origin))
         if self.transition is not None:
-            played = with_binding(self.transition.name, self.binding)
-            notes.append(f"{played}, after {steps} step{'s' * (steps != 1)}")
-        report_failure(d, self.message, self.origin, self.span, notes)
+            values = ", ".join(f"{k} = {v}" for k, v in (self.binding or {}).items())
+            with_binding = f" with {values}" if values else ""
+            notes.append(f"transition `{self.transition.name}`{with_binding}, after {steps} steps")
+        d.error(RUNTIME_ERROR, self.message, self.origin, notes=notes)
 
     def row(self) -> dict[str, Any]:
         """For programs."""

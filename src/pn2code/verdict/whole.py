@@ -15,7 +15,6 @@ from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.division import divided
 from pn2code.net.flat import FlatNet
 from pn2code.robot_scripts.translate import lower_robots
-from pn2code.semantics.failing import of_transition, report_failure, stopped, with_binding
 from pn2code.verdict import channel_model as medium
 from pn2code.verdict import controller, properties
 from pn2code.verdict.asked import Asked, gather
@@ -23,7 +22,8 @@ from pn2code.verdict.opened import OpenNet
 from pn2code.verify.answers import outcome
 from pn2code.verify.answers.outcome import Counts
 from pn2code.verify.answers.properties import Answer, Verdict, kind
-from pn2code.verify.codes import TRACE_UNWRITABLE
+from pn2code.verify.answers.reasons import raised
+from pn2code.verify.codes import STATE_ERROR, TRACE_UNWRITABLE
 from pn2code.verify.controller.control_types import Control
 from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.explore import ExploreOptions, explore
@@ -267,20 +267,22 @@ def _tell_error(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
     assert error is not None
     index = error.get("transition")
     t = None if index is None else opened.flat.transitions[index]
-    binding = error.get("binding")
-    doing = error["where"] or "the declarations"
-    notes = []
-    if t is not None:
-        doing = of_transition(t.name, is_bound=binding is not None)
-        notes.append(f"{with_binding(t.name, binding)}, in a reachable marking")
-        if error["where"] and error["where"] != t.origin.describe():
-            notes.append(f"raised in {error['where']}")
+    where = f"transition `{t.name}`" if t is not None else error["where"]
+    notes = [error["where"]] if error["where"] else []
+    if error.get("binding"):
+        values = ", ".join(f"{name} = {value}" for name, value in error["binding"].items())
+        notes.append(f"the occurrence with {values}")
     if error.get("node") is None:
         notes.append("the run to it is not known: that needs memory, and stored markings")
     if trace is not None:
         notes.append(f"{trace.steps} steps lead to that marking: {trace.file}")
-    origin = t.origin if t is not None else Origin(opened.flat.file)
-    report_failure(d, stopped(doing, error["message"]), origin, notes=notes)
+    d.error(
+        STATE_ERROR,
+        f"{where} raises {raised(error['message'])} in a reachable marking",
+        t.origin if t is not None else Origin(opened.flat.file),
+        notes=notes,
+        hint="`pn2code simulate` can reach it, too; guard the inscription, or handle the exception",
+    )
 
 
 def _unwritable(goal: str, folder: Path, d: Diagnostics) -> None:

@@ -19,6 +19,13 @@ TIME_OVER = register(
     "including the C compiler. Answers that are missing because of this are reported as not known (exit code 3). Give "
     "it more time. The compiled net is kept, so a second run needs less.",
 )
+STATE_ERROR = register(
+    "state-error",
+    "an inscription raises an exception in a reachable marking",
+    "While the state space was computed, an arc inscription, a guard, a delay or a code segment raised an exception "
+    "(Overflow, Div, a value outside its colour set, ...), as in a simulation that reaches this marking. CPN Tools "
+    "stops its calculation, too. What was seen until then is reported as partial.",
+)
 BEYOND_ROOM = register(
     "place-unbounded",
     "a place gets more tokens than can be explored",

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
-from pn2code.diagnostics import Diagnostics, Origin, Span
+from pn2code.diagnostics import Diagnostics, Note, Origin, Span
 from pn2code.ml.core.terms import Pat, Symbol
 from pn2code.net.flat import (
     ArcKind,
@@ -23,9 +23,9 @@ from pn2code.net.flat import (
     FlatTransition,
     Term,
 )
+from pn2code.semantics.codes import RUNTIME_ERROR
 from pn2code.semantics.evaluation.evaluate import Evaluator, match, variables
 from pn2code.semantics.evaluation.random import bindings_of
-from pn2code.semantics.failing import failed, report_failure
 from pn2code.semantics.game.marking import (
     Binding,
     BindingElement,
@@ -59,7 +59,12 @@ class GameError(Exception):
 
     def report(self, d: Diagnostics) -> None:
         """As a diagnostic."""
-        report_failure(d, self.message, self.origin, self.span)
+        notes = (
+            [Note(f"raised by `{_one_line(self.span.text)}`", self.span.origin)]
+            if self.span
+            else []
+        )
+        d.error(RUNTIME_ERROR, self.message, self.origin, notes=notes)
 
 
 class running:  # noqa: N801 - a context manager reads as a word
@@ -87,7 +92,8 @@ class running:  # noqa: N801 - a context manager reads as a word
             return
         origin = replace(self.origin, part=self.part) if self.part else self.origin
         if isinstance(raised, MlException):
-            raise GameError(failed(self.doing, str(raised)), origin, raised.span) from None
+            message = f"{self.doing} raised the exception `{raised}`"
+            raise GameError(message, origin, raised.span) from None
         if isinstance(raised, MlUnavailable):
             raise GameError(f"{self.doing} cannot go on: {raised}", origin) from None
         if isinstance(raised, MlLimit | RecursionError):

@@ -10,8 +10,7 @@ from typing import Any
 
 from pn2code.base.whole_file import whole_file
 from pn2code.cell.partition import OwnerKind, Partition
-from pn2code.semantics.failing import of_transition, stopped
-from pn2code.verify.answers.reasons import clause
+from pn2code.verify.answers.reasons import clause, raised
 from pn2code.verify.controller.control_types import (
     BLOCKING,
     BOUNDED,
@@ -179,18 +178,16 @@ def refusal(partition: Partition, found: Exploration, keep: Keeper) -> Check | N
     trace = found.error_trace
     evidence = keep.all({"trace": trace and trace.file, "loop": None}, BLOCKING)
     after = f", {_steps(evidence[0].steps)} after the start" if evidence else ""
-    name = partition.net.transitions[index].name
-    where = f"`{name}`{after}"
+    where = f"`{partition.net.transitions[index].name}`{after}"
     if owner.kind is OwnerKind.SUPERVISOR:
-        doing = of_transition(name, is_bound=bool(found.error.get("binding")))
-        says = f"the supervisor stops{after.removeprefix(',')}: {stopped(doing, str(found.error.get('message')))}"
+        says = f"the supervisor stops in {where}: {raised(str(found.error.get('message')))} is raised there"
     else:
         says = (
             f"the script of {owner.phrase} stops in {where}: an exception, or what no robot can carry out (a time "
             "that is negative, a number that is not finite)"
         )
     says += "; this stops the whole cell"
-    return Check(BLOCKING, "no", says, why="stopped", evidence=evidence, transitions=(name,))
+    return Check(BLOCKING, "no", says, why="stopped", evidence=evidence)
 
 
 class Keeper:
