@@ -7,7 +7,7 @@ print(full(said))        # the report of CPN Tools, all answers, all runs step b
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import islice
@@ -16,18 +16,14 @@ from pathlib import Path
 from pn2code.base.deadline import TimeIsOverError
 from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.game.marking import BindingElement
-from pn2code.semantics.game.report import element
-from pn2code.semantics.game.token_game import Game, GameError
-from pn2code.trace.script import Trace as Recorded
+from pn2code.semantics.game.token_game import GameError
 from pn2code.trace.script import TraceRefusedError
 from pn2code.verdict import channel_model
 from pn2code.verdict.whole import Said
 from pn2code.verify.answers import basis, outcome, why_disabled
 from pn2code.verify.answers.outcome import error_text
-from pn2code.verify.answers.path import Step, play, steps, text
+from pn2code.verify.answers.path import play, steps, text
 from pn2code.verify.answers.properties import kind as kind_of
-from pn2code.verify.answers.waiting import Scripts
 from pn2code.verify.controller.control_types import TITLES
 from pn2code.verify.exploring.result import Exploration, Trace
 from pn2code.verify.report import control_text
@@ -41,12 +37,8 @@ SHOWN_STEPS = 40
 """Of a longer run only the first steps are printed with `--full`."""
 LAST_STEPS = 8
 """Of the run that is told on one screen the last ones: what they lead to is what matters."""
-LEAST_STEPS = 3
-"""Of it are always there, whatever else the screen has to say."""
 MOST_STEPS = 3_000
-"""A longer run is not played again: its last steps are shown as they are recorded."""
-LEAST_WAY = 10
-"""Lines that a run gets before further failures do: its head, steps, and why it goes on no more."""
+"""A longer run is not played again to show its last steps."""
 MOST_ITEMS = 8
 """Failures and open questions that have lines of their own on one screen."""
 MOST_NAMES = 6
@@ -66,7 +58,6 @@ class _Item:
     file: Path | None = None
     lines: tuple[str, ...] = ()
     loop: int | None = None
-    is_deadlock: bool = False
 
 
 # --- everything ----------------------------------------------------------------------------------
@@ -81,16 +72,10 @@ def full(said: Said) -> str:
     ]
     with suppress(TimeIsOverError), said.deadline.enforced():
         if said.control is not None:
-            texts = control_text.told(net, said.storage, said.control, most=SHOWN_STEPS)
-            for (check, run, _), text_ in zip(control_text.runs(said.control), texts, strict=True):
-                assert run.file is not None
-                is_deadlock = check.why == "deadlock"
-                end = [] if run.loop is not None else _end(said, run.file, is_deadlock)
-                parts.append("\n".join([text_, *end]))
-        for a in said.answers:
-            if a.evidence is not None:
-                end = [] if a.evidence.loop is not None else _end(said, a.evidence.trace, False)
-                parts.append("\n".join([told(net, said.storage, a, SHOWN_STEPS), *end]))
+            parts += control_text.told(net, said.storage, said.control, most=SHOWN_STEPS)
+        parts += [
+            told(net, said.storage, a, SHOWN_STEPS) for a in said.answers if a.evidence is not None
+        ]
         for trace in found.traces:
             parts.append(_told(said, trace, f"the dead marking {trace.node}"))
         if found.error_trace is not None:
@@ -108,40 +93,7 @@ def _told(said: Said, trace: Trace, goal: str) -> str:
         shown = steps(said.net, said.storage, trace.file, most=SHOWN_STEPS)
     except (TraceRefusedError, GameError, OSError) as problem:
         return f"{head}\n  (it cannot be shown: {problem})"
-    end = [] if trace is said.found.error_trace else _end(said, trace.file, False)
-    return "\n".join([head, *([text(shown, trace.steps)] if trace.steps else ()), *end])
-
-
-def _end(said: Said, file: Path, is_deadlock: bool) -> list[str]:
-    """Why nothing can occur after a run; nothing where something can, or the run is too long to be played."""
-    try:
-        game, played = play(said.net, said.storage, file)
-        if sum(1 for _ in islice(played, MOST_STEPS)) == MOST_STEPS:
-            return []
-        return _after(_obstacles(said, game, is_deadlock))
-    except (TraceRefusedError, GameError, OSError):
-        return []  # the run is told above, with what is wrong with it
-
-
-def _after(why: Sequence[str]) -> list[str]:
-    return ["  After that nothing can occur:", *(f"    {x}" for x in why)] if why else []
-
-
-def _obstacles(said: Said, game: Game, is_deadlock: bool) -> list[str]:
-    """What each script waits for, then which transitions are nearest to occurring and what they lack.
-
-    A cell may be in a deadlock where its closed net can go on.
-
-    Raises:
-        GameError: an inscription raises an exception.
-    """
-    found = why_disabled.reasons(game)
-    control = said.control
-    if (not found and not is_deadlock) or said.config is None:
-        return found
-    if control is None or control.running is None:
-        return found
-    return [*Scripts.of(control.running.partition, said.config).standing(game), *found]
+    return f"{head}\n{text(shown, trace.steps)}" if trace.steps else head
 
 
 def _figures(found: Exploration) -> str:
@@ -173,12 +125,9 @@ def screen(said: Said) -> str:
     wrong = sorted((i for i in items if i.kind != "good"), key=lambda i: i.kind != "bad")
     if items:
         lines += ["", *_counts(said), *_premises(said)]
-    end = ["", *textwrap.wrap(_MORE, _WIDTH), *textwrap.wrap(closing(said), _WIDTH)]
     if wrong:
-        has_run = any(i.file is not None or i.lines for i in wrong) or said.found.error_trace
-        kept = LEAST_WAY + 1 if has_run else 0
-        room = MOST_LINES - len(lines) - len(end) - 1 - kept
-        lines += ["", *_wrong(wrong, room)]
+        lines += ["", *_wrong(wrong)]
+    end = ["", *textwrap.wrap(_MORE, _WIDTH), *textwrap.wrap(closing(said), _WIDTH)]
     room = MOST_LINES - len(lines) - len(end) - 1
     way = _way(said, wrong, room)
     if way:
@@ -278,10 +227,8 @@ def _items(said: Said) -> Iterator[_Item]:
     for check in said.control.checks if said.control else ():
         run = next((run for run in check.evidence if run.file is not None), None)
         loop = None if run is None else run.loop
-        file = None if run is None else run.file
-        is_deadlock = check.why == "deadlock"
         yield _Item(
-            TITLES[check.name], check.kind, check.says, file, loop=loop, is_deadlock=is_deadlock
+            TITLES[check.name], check.kind, check.says, None if run is None else run.file, loop=loop
         )
     for m in said.medium:
         kind = {"yes": "good", "no": "bad"}.get(m.answer, "open")
@@ -353,111 +300,80 @@ def _rest(rests: Sequence[str | None]) -> str:
     return f"; the answers rest on {', '.join(counted)}" if counted else ""
 
 
-def _wrong(wrong: Sequence[_Item], room: int) -> list[str]:
-    """Failures, then open questions: as many as there is room for, the first in any case."""
-    lines: list[str] = []
-    for number, item in enumerate(wrong):
+def _wrong(wrong: Sequence[_Item]) -> Iterator[str]:
+    for item in wrong[:MOST_ITEMS]:
         mark = {"bad": "NO", "open": "?"}[item.kind]
         run = f" (run: {item.file})" if item.file is not None else ""
-        wrapped = textwrap.wrap(
+        yield from textwrap.wrap(
             f"{mark:<3}{item.name}: {item.says}{run}",
             _WIDTH,
             subsequent_indent="   ",
             break_long_words=False,
             break_on_hyphens=False,
         )[:3]
-        is_last = number == len(wrong) - 1
-        is_full = len(lines) + len(wrapped) + (not is_last) > room
-        if number and (number == MOST_ITEMS or is_full):
-            return [*lines, f"   and {len(wrong) - number} more"]
-        lines += wrapped
-    return lines
+    if len(wrong) > MOST_ITEMS:
+        yield f"   and {len(wrong) - MOST_ITEMS} more"
 
 
 def _way(said: Said, wrong: Sequence[_Item], room: int) -> list[str]:
     """The last steps of one run: of the exception, of the first failure, or to the first dead marking."""
     found = said.found
-    # Where there is no room for the least of a run, the screen is longer.
-    most = max(min(LAST_STEPS, room - 2), LEAST_STEPS)
+    if room < 3:
+        return []
+    most = min(LAST_STEPS, room - 2)
     if found.error_trace is not None:
         lines = _last(said, found.error_trace.file, "to the exception", most - 1)
         return [*lines, f"  then {error_text(said.net, found)}"]
     for item in wrong:
         if item.file is not None:
-            what = f"for `{item.name}`"
-            return _last(said, item.file, what, most, item.loop, is_deadlock=item.is_deadlock)
+            return _last(said, item.file, f"for `{item.name}`", most, item.loop)
         if item.lines:
             before = len(item.lines) - most
-            cut = [f"  ... {_count_of(before, 'line')} before; `--full` prints them all"]
-            shown = [f"  {x}" for x in item.lines[-most:]]
-            return [f"The run for `{item.name}`:", *(cut if before > 0 else ()), *shown]
+            cut = _earlier(before)
+            return [f"The run for `{item.name}`:", *cut, *(f"  {x}" for x in item.lines[-most:])]
     if found.traces and not wrong and not said.answers and said.control is None:
         trace = found.traces[0]
         return _last(said, trace.file, f"to the dead marking {trace.node}", most)
     return []
 
 
-def _count_of(count: int, what: str) -> str:
-    return f"{count} {what}{'s' * (count != 1)}"
+def _earlier(count: int) -> list[str]:
+    return [f"  ... {count} step{'s' * (count != 1)} before"] if count > 0 else []
 
 
-def _last(
-    said: Said,
-    file: Path,
-    goal: str,
-    most: int,
-    loop: int | None = None,
-    *,
-    is_deadlock: bool = False,
-) -> list[str]:
-    """The last steps of a run, at least `LEAST_STEPS`, and why nothing can occur then: about `most` lines."""
+def _last(said: Said, file: Path, goal: str, most: int, loop: int | None = None) -> list[str]:
     why: list[str] = []
     try:
         with said.deadline.enforced():
             game, played = play(said.net, said.storage, file)
-            shown = [_step(step) for step, _ in islice(played, MOST_STEPS)]
-            if len(shown) == MOST_STEPS:
-                shown = _recorded(said, file)
-            elif loop is None:
+            shown = [step for step, _ in islice(played, MOST_STEPS)]
+            if loop is None and len(shown) < MOST_STEPS:
                 with suppress(GameError):  # an inscription raises an exception there
-                    why = _obstacles(said, game, is_deadlock)
+                    why = why_disabled.reasons(game)
     except TimeIsOverError:
         return [f"The run {goal} is in {file}; there was no time to show it."]
     except (TraceRefusedError, GameError, OSError) as problem:
         return [f"The run {goal} is in {file}; it cannot be shown: {problem}"]
-    lines = [f"The run {goal}, {_count_of(len(shown), 'step')}, {file}:"]
-    least = min(LEAST_STEPS, len(shown))
-    after = [_cut(x) for x in _after(why[: max(most - least - 1, 1)])]
-    last = max(most - len(after), least)
-    if len(shown) > last:
-        lines.append(f"  ... {_count_of(len(shown) - last, 'step')} before")
-    lines += shown[-last:] if last else ()
-    lines += after
+    if len(shown) == MOST_STEPS:
+        return [f"The run {goal} is in {file}; it is too long to be shown."]
+    head = f"The run {goal}, {len(shown)} step{'s' * (len(shown) != 1)}, {file}:"
+    why = why[: max(most - 1, 0)]
+    rest = ["  After that nothing can occur:", *(f"    {_cut(x, 4)}" for x in why)] if why else []
+    most -= len(rest)
+    lines = _earlier(len(shown) - most)
+    for step in shown[-most:] if most else ():
+        values = ", ".join(f"{k} = {v}" for k, v in step.binding.items())
+        line = f"  {step.number:>3}  {step.transition}" + (f"  ({values})" if values else "")
+        lines.append(_cut(line))
+    lines += rest
     if loop is not None and loop < len(shown):
         lines.append(f"  The steps from step {loop + 1} on are repeated for ever.")
-    return lines if len(lines) > 1 else []
+    return [head, *lines] if lines else []
 
 
-def _step(step: Step) -> str:
-    return _line(step.number, step.transition, step.binding)
-
-
-def _line(number: int, transition: str, binding: Mapping[str, str]) -> str:
-    values = ", ".join(f"{k} = {v}" for k, v in binding.items())
-    return _cut(f"  {number:>3}  {transition}" + (f"  ({values})" if values else ""))
-
-
-def _recorded(said: Said, file: Path) -> list[str]:
-    """The steps of a run as the file has them, without playing it."""
-    found = []
-    for number, step in enumerate(Recorded.open(file, said.net, is_shown=True).steps(), 1):
-        played = element(said.net, BindingElement.make(step.transition, step.bound))
-        found.append(_line(number, step.transition.name, played["binding"]))
-    return found
-
-
-def _cut(line: str) -> str:
-    return line if len(line) <= _WIDTH else f"{line[: _WIDTH - 3]}..."
+def _cut(line: str, indented: int = 0) -> str:
+    width = _WIDTH - indented
+    return line if len(line) <= width else f"{line[: width - 3]}..."
 
 
 # --- the verdict ---------------------------------------------------------------------------------

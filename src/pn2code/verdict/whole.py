@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 from pn2code.base.deadline import NEVER, Deadline, TimeIsOverError
-from pn2code.cell.config import CellConfig
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.division import divided
 from pn2code.net.flat import FlatNet
@@ -80,7 +79,6 @@ class Said:
         medium: those of the shared files.
         errors: how many errors are said besides.
         deadline: when it is over no run is played any more.
-        config: of the cell; None: the net is none.
     """
 
     net: FlatNet
@@ -91,7 +89,6 @@ class Said:
     medium: medium.Answers
     errors: int = 0
     deadline: Deadline = NEVER
-    config: CellConfig | None = None
 
     @property
     def kinds(self) -> list[str]:
@@ -225,7 +222,6 @@ def conclude(
         looked.medium,
         len(d.errors),
         limits.deadline,
-        opened.config,
     )
 
 
