@@ -12,6 +12,8 @@
  * channels: yes; at most 1 message in each of 8 channels
  * messages: yes; each of the 14 values that come into channels can be written into its file and read back
  * memory: yes; no list or string needs memory while the supervisor runs
+ * reach: yes; each of the 2 poses that arms are told can be reached; 8 more that are on their way as something else are never moved to,
+ * which was looked up in another exploration
  * ownership: yes; all 255 arcs keep to places of their owner and channels in their direction
  * Assumed:
  * a measurement gives the result of `measure` in the net
@@ -19,7 +21,8 @@
  * nobody owes an answer for longer than `reply_timeout_s`, 120 s (tools, waits and delays take at most 3 s; how long moves and
  * measurements take is not known)
  * each possible value of a sensor occurs from time to time
- * arms reach each pose that they are told, and nothing is in their way (limits, singularities and collisions show in a run)
+ * arms get to where they are told to go, and nothing is in their way (limits and singularities on the way, increments and collisions
+ * show in a run)
  *
  * Memory: all of it is static. The arena, for lists, strings and the moves of a firing, has 3,904 bytes,
  * proven to be enough for the initial marking, the moves of one firing, and a token that arrives.

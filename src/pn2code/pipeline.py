@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pn2code
 from pn2code.cell.config import CellConfig
@@ -34,6 +35,9 @@ from pn2code.robot_scripts import translate as lower_robot
 from pn2code.semantics.evaluation.constants import compute
 from pn2code.verify.controller.proofs import prove
 from pn2code.verify.exploring.place_capacity import PlaceCapacity, with_rooms
+
+if TYPE_CHECKING:
+    from pn2code.arms import Arms
 
 Examine = Callable[[FlatNet, CellConfig | None, Diagnostics], None]
 
@@ -102,7 +106,7 @@ def generate(
     robots = lower_robot.lower_robots(partition, config, d) if config else ()
     if ir is None or robots is None or d.has_errors:
         return None
-    proofs = prove(partition, config, d, checked=checked)
+    proofs = prove(partition, config, d, checked=checked, arms=_arms(config, d))
     if proofs is None or d.has_errors:
         return None
 
@@ -136,6 +140,14 @@ def generate(
         rooms=proofs.rooms,
         arena=arena.bytes,
     )
+
+
+def _arms(config: CellConfig | None, d: Diagnostics) -> Arms | None:
+    if config is None:
+        return None
+    from pn2code.arms import Arms  # loads NumPy, which nets without a cell do not need
+
+    return Arms.of(config, d)
 
 
 def _refuse_unsupported(d: Diagnostics, net: FlatNet | None) -> None:

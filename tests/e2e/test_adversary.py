@@ -37,6 +37,6 @@ def test_a_false_yes_would_be_found(tmp_path: Path) -> None:
     checks = dict.fromkeys(("non-blocking", "channels", "finite-response"), {"answer": "yes"})
     said = Said(0, checks, (), ("yes",), {})
     runs = [wander.run(built, seed) for seed in range(4)]
-    found = "\n".join(contradictions(cell, said, runs, built.generated.partition.net))
+    found = "\n".join(contradictions(cell, said, runs, built))
     assert "non-blocking is yes" in found
     assert "is yes, but not after" in found

@@ -328,6 +328,20 @@ def test_output_that_is_a_file_or_below_one(root: Path, tmp_path: Path) -> None:
     assert tree(tmp_path) == {"file": (file.stat().st_mtime_ns, b"mine")}
 
 
+@pytest.mark.parametrize("verb", ["generate", "run"])
+def test_the_output_is_looked_at_before_the_net(tmp_path: Path, verb: str) -> None:
+    """Whoever cannot write need not explore first: what is wrong with the net is not even known then."""
+    net, file = tmp_path / "wrong.cpn", tmp_path / "file"
+    net.write_text("no net")
+    file.write_text("mine")
+    done = pn2code(verb, net, "--out", file / "below")
+    assert_not_written(done, f"cannot write `{file / 'below'}`", "nothing was changed")
+    assert file.read_text() == "mine"
+    done = pn2code(verb, net, "--out", tmp_path / "new" / "folder")
+    assert "wrong.cpn" in done.stderr
+    assert not (tmp_path / "new").exists()
+
+
 def test_full_disk_leaves_nothing_new_and_everything_old(
     root: Path, tmp_path: Path, earlier: Path
 ) -> None:

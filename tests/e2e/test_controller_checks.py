@@ -362,7 +362,8 @@ def test_cells_that_fail_one_check(
 ) -> None:
     plan = Plan(firings=1 if name == "long" else 10, folder=tmp_path, stem="x")
     found = checks(tmp_path / name, net, plan)
-    others = {n: "yes" for n in control_types.TITLES if n not in (*answers, control_types.CAPACITY)}
+    left_out = (*answers, control_types.CAPACITY, control_types.REACH)
+    others = {n: "yes" for n in control_types.TITLES if n not in left_out}
     assert {c.name: c.answer for c in found.values()} == {**others, **answers}
     (wrong,) = [c for c in found.values() if c.fails]
     assert wrong.says == says
@@ -632,3 +633,25 @@ def test_channels_need_no_graph(explorers: Explorers, tmp_path: Path) -> None:
         }
         rests = {c.name: c.rests_on for c in looked.checks}
         assert rests[control_types.CHANNELS] == ("markings" if answer == "yes" else None)
+
+
+def test_generate_and_verify_name_the_same_exception(tmp_path: Path) -> None:
+    """Both name the expression that raises it; a bound that nobody can know then is no error of its own."""
+    net = small_cell.NET.replace("guard [n <= 3]", "guard [n <= 3, 10 div (2 - n) < 20]")
+    cell = small_cell.write(tmp_path / "cell", net)
+    runner = CliRunner()
+    verified = runner.invoke(app, ["verify", str(cell), "--no-medium"])
+    generated = runner.invoke(app, ["generate", str(cell), "-o", str(tmp_path / "out")])
+    assert verified.exit_code == generated.exit_code == 1
+    for output in (verified.output, generated.output):
+        text = " ".join(output.split())
+        assert "by `10 div (2 - n)`" in text
+        assert (
+            "the supervisor stops in `Top.Supervisor.Next`, 9 steps after the start: `Div`" in text
+        )
+    assert (
+        "the guard of `Top.Supervisor.Next` raised the exception `Div` in a reachable"
+        in verified.output
+    )
+    assert "page `Sup`, transition `Next`" in generated.output
+    assert "capacity-unproved" not in generated.output

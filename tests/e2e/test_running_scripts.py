@@ -437,10 +437,10 @@ def test_a_robot_that_moves_is_assumed_to_reach_its_poses(tmp_path: Path) -> Non
     text = net(ONE, {"A": counting("act ()", 3)}, ACT + N)
     moving = checks(write(tmp_path / "moves", text, of_robot(toml(["A"], HOME))))
     assert moving["non-blocking"]["answer"] == "yes"
-    saying = [n for n, c in moving.items() if any("reach each pose" in x for x in c["assumes"])]
+    saying = [n for n, c in moving.items() if any("told to go" in x for x in c["assumes"])]
     assert saying == ["non-blocking"]
     acting = checks(write(tmp_path / "acts", text, toml(["A"], TOOL)))
-    assert not any("reach each pose" in x for c in acting.values() for x in c["assumes"])
+    assert not any("told to go" in x for c in acting.values() for x in c["assumes"])
 
 
 def test_a_tool_of_hardly_any_time_may_take_none(tmp_path: Path) -> None:
@@ -461,3 +461,87 @@ def test_a_script_that_waits_for_no_time_does_not_stop_the_cell(tmp_path: Path) 
     assert (end["why"], end["final"]) == ("finished", ["Top.Supervisor.Finished"])
     end = ran(write(tmp_path / "other", pausing("", "0"), toml(["A"])))[-1]
     assert "endless loop: more than 100000 transitions" in end["reason"]
+
+
+EARLY_GUARD = """net cell
+  standard
+  val P_HIGH = 100;
+  var k: INT;
+  page Top
+    place toA : INT
+    place fromA : INT
+    place ab : INT
+    place fromB : INT
+    subst Supervisor = Sup (toA -> toA, fromA -> fromA, fromB -> fromB)
+    subst A = PA (ask -> toA, say -> fromA, next -> ab)
+    subst B = PB (ask -> ab, say -> fromB)
+  page Sup
+    place toA port out : INT
+    place fromA port in : INT
+    place fromB port in : INT
+    place Start = 1
+    place S1
+    place S2
+    place Finished
+    trans Begin
+      in Start : ()
+      out toA : 1
+      out S1 : ()
+    trans Leave priority P_HIGH
+      in S1 : ()
+      in fromA : k
+      out S2 : ()
+    trans Early guard [10 div k > 0]
+      in S1 : ()
+      in fromB : k
+      out Finished : ()
+    trans HearB
+      in S2 : ()
+      in fromB : k
+      out Finished : ()
+  page PA
+    place ask port in : INT
+    place say port out : INT
+    place next port out : INT
+    place Waiting = 1
+    place Told
+    trans Accept
+      in Waiting : ()
+      in ask : k
+      out Told : ()
+      out say : 1
+    trans Next
+      in Told : ()
+      out next : 1
+      out Waiting : ()
+  page PB
+    place ask port in : INT
+    place say port out : INT
+    place Waiting = 1
+    place Told
+    trans Accept
+      in Waiting : ()
+      in ask : k
+      out Told : ()
+    trans Answer
+      in Told : ()
+      out say : 0
+      out Waiting : ()
+"""
+
+
+@pytest.mark.parametrize(("last", "answer"), [("fromA", "yes"), ("fromB", "no")])
+def test_guards_look_at_messages_that_have_been_seen(
+    tmp_path: Path, last: str, answer: str
+) -> None:
+    """`Early` would divide by zero. B writes after A, so its message is seen first only where its file comes last
+    in a round of looks, after A's was found empty."""
+    first = "fromB" if last == "fromA" else "fromA"
+    text = '[net]\nfile = "cell.cpn"\n[supervisor]\ninstance = "Supervisor"\nfinal = ["Finished"]\n'
+    for c in ("toA", "ab", first, last):
+        text += f'[[channel]]\nplace = "{c}"\nfile = "{c}.robcad"\nkind = "flag"\n'
+    text += '[devices.A]\ninstance = "A"\n[devices.B]\ninstance = "B"\n'
+    looked = examined(write(tmp_path, EARLY_GUARD, text))
+    check = looked.checks["non-blocking"]
+    assert check.answer == answer, check.says
+    assert ("`Div` is raised" in check.says) is (answer == "no")

@@ -18,8 +18,10 @@ ALLOWED: dict[str, set[str]] = {
     "tdl": {"diagnostics", "robot"},
     "net": {"diagnostics", "ml", "pnml", "reading"},
     "cell": {"diagnostics", "ml", "net"},
+    "arms": {"cell", "diagnostics", "robot"},
     "semantics": {"diagnostics", "ml", "net"},
     "channels": {"cell"},
+    "primitive_calls": {"cell", "ml", "robot", "semantics"},
     "drawing": {"diagnostics", "net", "reading", "semantics"},
     "lowering": {"cell", "diagnostics", "ir", "ml", "net"},
     "monitors": {"diagnostics", "ml", "net", "reading", "semantics"},
@@ -34,24 +36,24 @@ ALLOWED: dict[str, set[str]] = {
     "contest": {"diagnostics", "properties", "symbolic", "toolchain", "unfold"},
     "simulate": {"cell", "diagnostics", "emission", "lowering", "monitors", "net", "semantics", "toolchain", "trace"},
     "verify": {"cell", "channels", "diagnostics", "drawing", "emission", "ir", "lowering", "ml", "net",
-        "properties", "reading", "robot_scripts", "semantics", "simulate", "structure", "tdl", "toolchain", "trace",
-        "unfold"},
+        "primitive_calls", "properties", "reading", "robot", "robot_scripts", "semantics", "simulate", "structure",
+        "tdl", "toolchain", "trace", "unfold"},
     "channel_model": {"cell", "diagnostics", "lowering", "ml", "net", "semantics", "verify"},
     "engine_comparison": {"diagnostics", "ml", "net", "reading", "semantics", "trace", "verify"},
     "division": {"cell", "diagnostics", "net", "robot"},
-    "pipeline": {"cell", "diagnostics", "division", "emission", "lowering", "net", "robot_scripts",
+    "pipeline": {"arms", "cell", "diagnostics", "division", "emission", "lowering", "net", "robot_scripts",
         "semantics", "verify"},
-    "conform": {"cell", "channels", "diagnostics", "emission", "ml", "net", "pipeline", "robot", "semantics",
-        "simulate", "tdl", "toolchain", "trace", "verify"},
+    "conform": {"cell", "channels", "diagnostics", "emission", "ml", "net", "pipeline", "primitive_calls", "robot",
+        "semantics", "simulate", "tdl", "toolchain", "trace", "verify"},
     "__init__": {"api"},
     "__main__": {"start"},
     "api": {"diagnostics", "drawing", "emission", "net", "pipeline", "reading", "semantics", "simulate", "verdict",
         "verify"},
-    "report": {"cell", "robot", "run"},
+    "report": {"cell", "channels", "robot", "run"},
     "run": {"cell", "channels", "diagnostics", "emission", "net", "pipeline", "report", "robot", "tdl", "toolchain",
         "trace"},
-    "verdict": {"cell", "channel_model", "channels", "diagnostics", "division", "ml", "net", "pipeline", "properties",
-        "robot", "robot_scripts", "run", "semantics", "tdl", "trace", "verify"},
+    "verdict": {"arms", "cell", "channel_model", "channels", "diagnostics", "division", "ml", "net", "pipeline",
+        "properties", "robot", "robot_scripts", "run", "semantics", "tdl", "trace", "verify"},
     "cli": {"cell", "channels", "conform", "contest", "convert", "diagnostics", "division", "drawing", "emission", "ml",
         "net", "pipeline", "reading", "report", "robot", "robot_scripts", "run", "semantics", "simulate", "structure",
         "tdl", "trace", "unfold", "verdict", "verify"},
@@ -59,8 +61,12 @@ ALLOWED: dict[str, set[str]] = {
 }  # fmt: skip
 EVERYWHERE = {"base"}
 
-# Of `robot`, the script language may know the commands (plain values) only; of the reports, running only the data.
-ONLY = {("tdl", "robot"): {"pn2code.robot.commands"}}
+# Of `robot`, the script language and the proofs may know the commands (plain values) only.
+ONLY = {
+    ("tdl", "robot"): {"pn2code.robot.commands"},
+    ("verify", "robot"): {"pn2code.robot.commands"},
+    ("primitive_calls", "robot"): {"pn2code.robot.commands"},
+}
 
 
 def modules(root: Path) -> Iterator[tuple[Path, str]]:

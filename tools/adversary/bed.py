@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from random import Random
 
@@ -33,9 +33,11 @@ class Verdict:
 
 
 def write(cell: Cell, folder: Path) -> None:
-    """The two files of a cell."""
+    """The files of a cell."""
     (folder / "cell.cpn").write_bytes(cpn(cell.net))
     (folder / "cell.toml").write_text(cell.toml, encoding="utf-8")
+    for name, text in cell.inputs:
+        (folder / name).write_text(text, encoding="utf-8")
 
 
 def judge(seed: int, folder: Path, runs: int) -> Verdict:
@@ -47,6 +49,8 @@ def judge(seed: int, folder: Path, runs: int) -> Verdict:
     built = wander.prepare(folder, d)
     if built is None:
         return Verdict(cell, (), Counter(["refused"]))
+    if cell.is_long:
+        built, runs = replace(built, most_events=wander.MANY_EVENTS), max(2, runs // 4)
     said = ask(folder, cell)
     if isinstance(said, str):
         return Verdict(cell, (), Counter(["not verified"]))
@@ -59,6 +63,6 @@ def judge(seed: int, folder: Path, runs: int) -> Verdict:
         who = r.choice([o.name for o in built.generated.partition.owners])
         made += wander.run_again(built, 1000 + 2 * k, wander.Crash(who, r.randint(1, 12)))
     counts.update(f"run {r.end}" for r in made)
-    wrong = tuple(contradictions(cell, said, made, built.generated.partition.net))
+    wrong = tuple(contradictions(cell, said, made, built))
     counts["wrong"] += bool(wrong)
     return Verdict(cell, wrong, counts)

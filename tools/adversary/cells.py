@@ -58,7 +58,7 @@ class Claim:
 class Cell:
     """A cell as two files, and what may be claimed of it; `has_sensors`: somebody else decides something.
 
-    `capacities`: bounds that its cell.toml declares.
+    `capacities`: bounds that its cell.toml declares; `inputs`: its input files, name and text.
     """
 
     net: str
@@ -66,6 +66,9 @@ class Cell:
     claims: tuple[Claim, ...]
     has_sensors: bool
     capacities: tuple[Claim, ...] = ()
+    inputs: tuple[tuple[str, str], ...] = ()
+    is_long: bool = False
+    """it may repeat its work hundreds of times"""
 
 
 class _Maker:
@@ -81,6 +84,7 @@ class _Maker:
         self.supervisor = Supervisor(r, devices, is_timed=self.is_timed)
         self.sensors = sorted({s for made in devices for s in made.sensors})
         self.looked_at = list(self.supervisor.looked_at)
+        self.inputs = list(self._inputs(len(devices)))
         self.pages = {made.page.name: made.page for made in devices}
         sockets = []
         for k, made in enumerate(devices, 1):
@@ -110,6 +114,8 @@ class _Maker:
             tuple(claims),
             bool(self.sensors),
             tuple(capacities),
+            tuple((file, text) for _, file, text in self.inputs),
+            self.supervisor.is_long,
         )
 
     def _net(self) -> str:
@@ -127,6 +133,7 @@ class _Maker:
             f'[supervisor]\ninstance = "Supervisor"\nfinal = [{final}]\norder = "documented"',
             f"reply_timeout_s = {r.choice([1.0, 30.0])}" if r.random() < 0.15 else "",
             *self.toml,
+            *(f'[[input]]\nplace = "{place}"\nfile = "{file}"' for place, file, _ in self.inputs),
             f'[primitives]\nact = {{ command = "tool", action = "act", duration_s = {seconds} }}',
         ]
         for sensor in self.sensors:
@@ -137,6 +144,12 @@ class _Maker:
             parts.append("[capacity]")
             parts += [f'"{c.places[0]}" = {c.most}' for c in capacities]
         return "\n".join(p for p in parts if p) + "\n"
+
+    def _inputs(self, devices: int) -> Iterator[tuple[str, str, str]]:
+        """Places whose tokens come from files, mostly others than the net has: place, file, text."""
+        if self.r.random() < 0.3:
+            for place in self.r.sample(["Tick", *(f"Left{k}" for k in range(1, devices + 1))], 1):
+                yield place, f"{place.lower()}.in", f"{self.r.choice([-1, 0, 1, 2, 3])}\n"
 
     def _capacities(self) -> Iterator[Claim]:
         for place in self.r.sample(self.looked_at, 2) if self.r.random() < 0.2 else ():

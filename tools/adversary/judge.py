@@ -10,15 +10,17 @@ from pathlib import Path
 from typing import Any
 
 from tools.adversary.cells import Cell, Claim
-from tools.adversary.wander import Run
+from tools.adversary.wander import Built, Run
 from typer.testing import CliRunner
 
 from pn2code.cli.main import app
+from pn2code.diagnostics import Diagnostics
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.game.marking import BindingElement
+from pn2code.semantics.game.marking import BindingElement, PlaceMarking, place_of
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.colour_json import from_json
+from pn2code.verdict.input_files import tokens
 
 
 @dataclass(frozen=True)
@@ -58,16 +60,30 @@ def ask(folder: Path, cell: Cell, seconds: float = 60.0) -> Said | str:
         return f"exit code {done.exit_code}: {done.stdout[-300:]}{done.stderr[-700:]}"
     return Said(
         done.exit_code,
-        {c["check"]: c for c in found["controller"]},
-        tuple(found["medium"]),
+        {c["check"]: c for c in found.get("controller", ())},
+        tuple(found.get("medium", ())),
         tuple(p["answer"] for p in found["properties"]),
         found,
     )
 
 
-def markings(net: FlatNet, run: Run) -> list[dict[str, int]] | str:
+def begun(built: Built) -> Mapping[str, PlaceMarking]:
+    """What the places of input files begin with, by name."""
+    partition, config = built.generated.partition, built.generated.config
+    assert config is not None
+    d = Diagnostics()
+    found = tokens(partition.net, config, d)
+    assert not d.errors, [e.message for e in d.errors]
+    return {
+        t.place.name: place_of(t.place.colset, [from_json(t.place.colset, t.data)]) for t in found
+    }
+
+
+def markings(
+    net: FlatNet, run: Run, initial: Mapping[str, PlaceMarking]
+) -> list[dict[str, int]] | str:
     """The numbers of tokens after each occurrence; a text when one was not possible."""
-    game = Game(net)
+    game = Game(net, initial=initial)
     found = [_tokens(game)]
     names = {t.name: t for t in net.transitions}
     for line in run.record.events:
@@ -97,11 +113,12 @@ def _tokens(game: Game) -> dict[str, int]:
     return {p.name: len(m) for p, m in zip(game.net.places, game.marking.places, strict=True)}
 
 
-def contradictions(cell: Cell, said: Said, runs: Sequence[Run], net: FlatNet) -> Iterator[str]:
+def contradictions(cell: Cell, said: Said, runs: Sequence[Run], built: Built) -> Iterator[str]:
     """Each thing that was said and is not so."""
+    net, initial = built.generated.partition.net, begun(built)
     told: set[str] = set()
     for i, run in enumerate(runs):
-        for text in _of_run(cell, said, run, net):
+        for text in _of_run(cell, said, run, markings(net, run, initial)):
             if text not in told:
                 yield f"run {i} ({run.end} {run.why}): {text}"
             told.add(text)
@@ -114,8 +131,7 @@ def _answer(said: Said, check: str) -> str:
     return str(said.controller[check]["answer"]) if check in said.controller else ""
 
 
-def _of_run(cell: Cell, said: Said, run: Run, net: FlatNet) -> Iterator[str]:
-    found = markings(net, run)
+def _of_run(cell: Cell, said: Said, run: Run, found: list[dict[str, int]] | str) -> Iterator[str]:
     if isinstance(found, str):
         yield f"the run is none of the net: {found}"
         return

@@ -142,10 +142,13 @@ class Supervisor:
         page.place("Finished")
         needed = [f"in Have{k} : ()" for k in range(1, devices + 1)]
         page.transition("End", [*needed, "out Finished : ()"], self._head())
+        self.is_long = False
         if r.random() < 0.5:
             k, other = r.randint(1, devices), r.randint(1, devices)
+            self.is_long = r.random() < 0.08
+            most = r.choice([40, 120, 300]) if self.is_long else r.randint(1, 2)
             arcs = [f"in Have{k} : ()", "in Tick : n", "out Tick : n + 1", f"out Idle{other} : ()"]
-            page.transition("More", arcs, self._head(f"n < {r.randint(1, 2)}"))
+            page.transition("More", arcs, self._head(f"n < {most}"))
         if devices > 1 and r.random() < 0.5:
             a, b = r.sample(range(1, devices + 1), 2)
             page.place("Once", initial="1")

@@ -33,6 +33,8 @@ from pn2code.trace.growing import GrowingTrace
 
 MOST_EVENTS = 400
 """Occurrences after which a run is given up."""
+MANY_EVENTS = 12_000
+"""The same of a cell that may repeat its work hundreds of times."""
 SUPERVISOR = "supervisor"
 
 
@@ -45,6 +47,7 @@ class Built:
     program: Path
     cell: scene.RobotCell
     folder: Path
+    most_events: int = MOST_EVENTS
 
 
 @dataclass(frozen=True)
@@ -91,6 +94,7 @@ class _Wanderer(Engine):
     random: Random
     held: dict[str, float]
     most_firings: int
+    most_events: int
     crash: Crash | None
     has_crashed: bool
 
@@ -137,7 +141,7 @@ class _Wanderer(Engine):
         return self.held.get(who, 0.0) > self.now
 
     def _hold(self, who: str, moved: bool) -> None:
-        if len(self.record.events) > MOST_EVENTS:
+        if len(self.record.events) > self.most_events:
             raise _Endless
         if moved and self.random.random() < 0.5:
             self.held[who] = self.now + self.random.choice([0.1, 0.6, 1.0, 2.5])
@@ -194,6 +198,7 @@ def run(built: Built, seed: int, shared: Path | None = None, crash: Crash | None
             monitor=Monitor(built.cell, backend),
         )
         engine.random, engine.held, engine.most_firings = Random(seed), {}, 0
+        engine.most_events = built.most_events
         engine.crash, engine.has_crashed = crash, False
         sensors = load_sensors(config, partition.net, (built.folder,), seed, d)
         assert sensors is not None
@@ -205,7 +210,9 @@ def run(built: Built, seed: int, shared: Path | None = None, crash: Crash | None
             engine.run()
         except _Endless:
             supervisor.stop("enough")
-            return Run("endless", f"more than {MOST_EVENTS} events", record, engine.most_firings)
+            return Run(
+                "endless", f"more than {built.most_events} events", record, engine.most_firings
+            )
         # The supervisor may have come to its end before it looked at the others again.
         is_broken = engine.has_crashed and record.verdict != "finished"
         end = "crashed" if is_broken else _end(record)

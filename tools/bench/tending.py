@@ -33,7 +33,7 @@ net tending
   fun moveJoint (p : POSE) = ();
   fun grip () = ();
   fun work () = ();
-  fun at n = {x = 0.5 + 0.1 * Real.fromInt n, y = 0.5, z = 0.8, rx = 180.0, ry = 0.0, rz = 90.0}
+  fun at n = {x = 4500.0 + 100.0 * Real.fromInt n, y = 500.0, z = 1200.0, rx = 180.0, ry = 0.0, rz = 90.0}
   var j: JOB;
   var k, held, verdict: SAID;
   var n: INT;

@@ -15,7 +15,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from types import FrameType
 
 _AGAIN_S = 0.1
@@ -72,6 +72,13 @@ class Deadline:
     def left(self) -> float | None:
         """Seconds, less than 0 when it has been over for some time; None: there is no end."""
         return None if self.seconds is None else self.ends - self.clock()
+
+    def share(self, part: float) -> Deadline:
+        """A deadline after a part of what is left, for the first of several things."""
+        left = self.left
+        if left is None:
+            return self
+        return replace(self, ends=self.clock() + part * max(left, 0.0))
 
     def is_over(self) -> bool:
         """Whether the time is over."""

@@ -116,6 +116,10 @@ class Run:
     wishes: ExploreOptions = ExploreOptions(quick=True)
 
 
+WHOLE_PART = 0.6
+"""Of the time, what the cell with its medium may take."""
+
+
 def medium(
     partition: Partition,
     storage: Mapping[str, str],
@@ -150,7 +154,8 @@ def medium(
     if cell_states is not None:
         fitting = replace(run.wishes, quick=cell_states <= QUICK_STATES)
         ends = [n for n in (limits.max_states, most) if n is not None]
-        own_limits = replace(limits, max_states=min(ends, default=None))
+        part = limits.deadline.share(WHOLE_PART)  # the exchanges are small
+        own_limits = replace(limits, max_states=min(ends, default=None), deadline=part)
         yield whole(
             partition, storage, replace(run, limits=own_limits, wishes=fitting), rules, left_out
         )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, NoReturn
 
 import typer
 
@@ -21,7 +21,7 @@ from pn2code.cli.options import (
     stop,
 )
 from pn2code.diagnostics import Diagnostics
-from pn2code.emission.write import OutputFolderError, write
+from pn2code.emission.write import OutputFolderError, expect_writable, write
 
 EPILOG = """Examples:
 
@@ -56,6 +56,8 @@ def generate(
     if not check:
         check_folder_writable(output or Path("generated"))
     d = Diagnostics()
+    if output is not None and not check:
+        _expect_writable(output)
     result = pipeline.generate(net, d, values=parse_values(settings), checked=not unchecked)
     if result is None:
         stop(d, form)
@@ -64,8 +66,7 @@ def generate(
     try:
         written = write(folder, result.files, check=check)
     except OutputFolderError as problem:
-        typer.echo(f"pn2code: {problem}", err=True)
-        raise typer.Exit(Exit.USAGE) from None
+        _stop(problem)
     changed = len(written.changed) + len(written.removed)
     total = len(result.files)
     word = "would change" if check else "changed"
@@ -74,3 +75,15 @@ def generate(
         for path in (*written.changed, *written.removed):
             typer.echo(f"  {path}")
         raise typer.Exit(Exit.MODEL)
+
+
+def _expect_writable(folder: Path) -> None:
+    try:
+        expect_writable(folder)
+    except OutputFolderError as problem:
+        _stop(problem)
+
+
+def _stop(problem: OutputFolderError) -> NoReturn:
+    typer.echo(f"pn2code: {problem}", err=True)
+    raise typer.Exit(Exit.USAGE) from None

@@ -14,13 +14,14 @@ from itertools import islice
 from pathlib import Path
 
 from pn2code.base.deadline import TimeIsOverError
+from pn2code.cell.partition import Partition
 from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.token_game import GameError
 from pn2code.trace.script import TraceRefusedError
 from pn2code.verdict import channel_model
 from pn2code.verdict.whole import Said
-from pn2code.verify.answers import basis, outcome, why_disabled
+from pn2code.verify.answers import basis, ending, outcome
 from pn2code.verify.answers.outcome import error_text
 from pn2code.verify.answers.path import play, steps, text
 from pn2code.verify.answers.properties import kind as kind_of
@@ -37,7 +38,9 @@ SHOWN_STEPS = 40
 """Of a longer run only the first steps are printed with `--full`."""
 LAST_STEPS = 8
 """Of the run that is told on one screen the last ones: what they lead to is what matters."""
-MOST_STEPS = 3_000
+LEAST_STEPS = 2
+"""So many are told, however much there is to say of what comes after them."""
+MOST_STEPS = ending.MOST_STEPS
 """A longer run is not played again to show its last steps."""
 MOST_ITEMS = 8
 """Failures and open questions that have lines of their own on one screen."""
@@ -93,7 +96,10 @@ def _told(said: Said, trace: Trace, goal: str) -> str:
         shown = steps(said.net, said.storage, trace.file, most=SHOWN_STEPS)
     except (TraceRefusedError, GameError, OSError) as problem:
         return f"{head}\n  (it cannot be shown: {problem})"
-    return f"{head}\n{text(shown, trace.steps)}" if trace.steps else head
+    way = [text(shown, trace.steps)] if trace.steps else []
+    return "\n".join(
+        [head, *way, *ending.after(said.net, said.storage, trace.file, _partition(said))]
+    )
 
 
 def _figures(found: Exploration) -> str:
@@ -349,7 +355,7 @@ def _last(said: Said, file: Path, goal: str, most: int, loop: int | None = None)
             shown = [step for step, _ in islice(played, MOST_STEPS)]
             if loop is None and len(shown) < MOST_STEPS:
                 with suppress(GameError):  # an inscription raises an exception there
-                    why = why_disabled.reasons(game)
+                    why = ending.sentences(game, _partition(said))
     except TimeIsOverError:
         return [f"The run {goal} is in {file}; there was no time to show it."]
     except (TraceRefusedError, GameError, OSError) as problem:
@@ -357,8 +363,8 @@ def _last(said: Said, file: Path, goal: str, most: int, loop: int | None = None)
     if len(shown) == MOST_STEPS:
         return [f"The run {goal} is in {file}; it is too long to be shown."]
     head = f"The run {goal}, {len(shown)} step{'s' * (len(shown) != 1)}, {file}:"
-    why = why[: max(most - 1, 0)]
-    rest = ["  After that nothing can occur:", *(f"    {_cut(x, 4)}" for x in why)] if why else []
+    why = [line for x in why for line in _wrapped(x)][: max(most - 1 - LEAST_STEPS, 0)]
+    rest = [ending.HEAD, *why] if why else []
     most -= len(rest)
     lines = _earlier(len(shown) - most)
     for step in shown[-most:] if most else ():
@@ -369,6 +375,25 @@ def _last(said: Said, file: Path, goal: str, most: int, loop: int | None = None)
     if loop is not None and loop < len(shown):
         lines.append(f"  The steps from step {loop + 1} on are repeated for ever.")
     return [head, *lines] if lines else []
+
+
+def _partition(said: Said) -> Partition | None:
+    running = said.control.running if said.control is not None else None
+    return None if running is None else running.partition
+
+
+def _wrapped(sentence: str) -> list[str]:
+    """With an indentation; of a long one two lines."""
+    return textwrap.wrap(
+        sentence,
+        _WIDTH,
+        initial_indent="    ",
+        subsequent_indent="      ",
+        max_lines=2,
+        placeholder=" ...",
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
 
 
 def _cut(line: str, indented: int = 0) -> str:

@@ -15,8 +15,8 @@ from typing import Any
 
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Partition
-from pn2code.conform.primitives import Calls, Listener
 from pn2code.net.flat import BindAll, BindRandom, FlatTransition
+from pn2code.primitive_calls import Calls, Listener
 from pn2code.robot.commands import ToolAction
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.trace.parties import RUN

@@ -20,9 +20,9 @@ from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import ChannelKind, Partition
 from pn2code.conform.clock import Clock
 from pn2code.conform.messages import scalars
-from pn2code.conform.primitives import Calls, Listener, Unknown
 from pn2code.conform.scheme import MOST_STATES, Scheme
 from pn2code.net.flat import BindAll, BindRandom, FlatTransition
+from pn2code.primitive_calls import Calls, Listener, Unknown
 from pn2code.robot import commands
 from pn2code.semantics.game.marking import Marking, binding_to_json, element_text
 from pn2code.semantics.game.token_game import Game, GameError

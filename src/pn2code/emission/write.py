@@ -27,6 +27,28 @@ class OutputFolderError(Exception):
     """The folder cannot be written, or holds something that is not ours; the message says what to do."""
 
 
+def expect_writable(folder: Path) -> None:
+    """Finds out that a folder cannot be written before the work is done that would fill it; leaves nothing behind.
+
+    Raises:
+        OutputFolderError: not writable, or not a folder.
+    """
+    if folder.exists() and not folder.is_dir():
+        raise OutputFolderError(f"`{folder}` is not a folder; give another one with -o")
+    created = [p for p in (folder, *folder.parents) if not p.exists()]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError as problem:
+        raise OutputFolderError(
+            f"cannot write `{folder}`: {os_reason(problem)}; nothing was changed"
+        ) from problem
+    finally:
+        with suppress(OSError):  # not made
+            for made in created:
+                made.rmdir()
+
+
 def write(folder: Path, files: Iterable[OutputFile], *, check: bool = False) -> Written:
     """Writes the files into `folder`.
 

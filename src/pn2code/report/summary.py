@@ -13,6 +13,7 @@ from rich.text import Text
 
 from pn2code.cell.config import ReportConfig
 from pn2code.report.activities import activities, busy_seconds
+from pn2code.robot.kinematics import condition_text
 from pn2code.run.record import RunRecord, merged_rows, summary_counts
 
 KINDS = ("joint", "home", "linear", "tool", "measure", "wait")
@@ -156,9 +157,10 @@ def page(summary: dict[str, Any]) -> RenderableType:
         )
     for robot, entry in summary["conditioning"].items():
         at = [v for k, v in entry.items() if k.startswith("at_") for v in v]
-        each = "; at each: " + " ".join(f"{v:.1f}" for v in at[:12]) if at else ""
+        each = "; at each: " + " ".join(condition_text(v, 1) for v in at[:12]) if at else ""
         facts.add_row(
-            f"conditioning, {robot}", f"worst {entry['worst']:.1f} at {entry['t']:.2f} s{each}"
+            f"conditioning, {robot}",
+            f"worst {condition_text(entry['worst'], 1)} at {entry['t']:.2f} s{each}",
         )
     for name, value in summary["accuracy"].items():
         facts.add_row(name, f"{value:.2e} mm")

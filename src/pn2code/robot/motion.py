@@ -21,7 +21,7 @@ from ruckig import InputParameter, Result, Ruckig
 from ruckig import Trajectory as RuckigTrajectory
 
 from pn2code.robot.commands import Pose
-from pn2code.robot.kinematics import BRANCHES, Branch, Kinematics
+from pn2code.robot.kinematics import BRANCHES, Branch, Kinematics, condition_text
 from pn2code.robot.model import AXES
 from pn2code.robot.transforms import (
     Array,
@@ -377,7 +377,7 @@ def _check_line(kinematics: Kinematics, lin: LinearTrajectory, limits: MotionLim
     leap = step[first, axis] > 2.0 * exact[first, axis] + 0.5
     singular = leap or condition.condition > SINGULAR_CONDITION
     what = (
-        f"the line passes a singularity (condition number {condition.condition:.0f}, elbow "
+        f"the line passes a singularity (condition number {condition_text(condition.condition)}, elbow "
         f"{math.degrees(condition.elbow):.1f} deg from straight, wrist "
         f"{math.degrees(condition.wrist):.1f} deg): "
         if singular

@@ -29,14 +29,16 @@ from pn2code.channels import GRACE_S, SharedDirectory, specs_of
 from pn2code.diagnostics import Diagnostics, Note, Origin, SourceText
 from pn2code.diagnostics.codes import register
 from pn2code.emission.output import OutputFile
-from pn2code.emission.write import OutputFolderError, write
+from pn2code.emission.write import OutputFolderError, expect_writable, write
 from pn2code.net.flat import FlatNet
+from pn2code.report.messages import messages_tsv
 from pn2code.report.rows import rows_tsv
 from pn2code.report.summary import summarise
 from pn2code.robot import scene
 from pn2code.robot.backend import Backend, BackendName
 from pn2code.robot.choose_backend import open_backend
 from pn2code.robot.executor import RobotExecutor
+from pn2code.robot.kinematics import condition_text
 from pn2code.robot.monitor import Monitor
 from pn2code.run.device import DeviceExecutor
 from pn2code.run.engine import Engine, Observer
@@ -209,6 +211,7 @@ def run_cell(
             hint="correct the path after --input",
         )
         return None
+    expect_writable(options.out)
     prepared = prepare(path, options, d, tokens)
     if prepared is None:
         return None
@@ -431,7 +434,7 @@ def _warn(record: RunRecord, config: CellConfig) -> None:
                 RunWarning(
                     record.sample_t[above[0]],
                     robot.name,
-                    f"comes close to a singularity: condition number {values[worst]:.0f} at "
+                    f"comes close to a singularity: condition number {condition_text(values[worst])} at "
                     f"{record.sample_t[worst]:.2f} s, elbow {elbow:.1f} deg from straight "
                     f"(warning above {limit:g})",
                 )
@@ -450,6 +453,7 @@ def _write_results(
     texts = {
         f"{name}.trace.jsonl": trace_text(record.header, record.events),
         "rows.tsv": rows_tsv(record.messages, prepared.config.report.rows),
+        "messages.tsv": messages_tsv(prepared.generated.partition, record.traffic),
         "summary.json": json.dumps(summary, indent=1, ensure_ascii=False) + "\n",
     }
     partial = {file: out / f".{file}.tmp" for file in texts}

@@ -59,6 +59,7 @@ from pn2code.tdl.interpret import (
     Interpreter,
     Marked,
     MessageConsumed,
+    MessageWritten,
     Scalar,
     Sense,
 )
@@ -432,7 +433,7 @@ class Engine:
         self._follow(robot, motion.result)
 
     def _heard(self, event: Event) -> None:
-        """Events of an interpreter: occurrences of net transitions, messages consumed."""
+        """Events of an interpreter: occurrences of net transitions, messages consumed and written."""
         match event:
             case Marked(transition=name, binding=binding):
                 self._occurrence(
@@ -444,7 +445,12 @@ class Engine:
                     }
                 )
             case MessageConsumed(file=channel, values=values):
-                self.record.messages.append(MessageRecord(self.now, channel, values))
+                message = MessageRecord(self.now, channel, values)
+                self.record.messages.append(message)
+                self.record.traffic.append(("taken", message))
+            case MessageWritten(file=channel, values=values):
+                written = MessageRecord(self.now, channel, values)
+                self.record.traffic.append(("written", written))
             case _:
                 pass
 

@@ -95,6 +95,8 @@ class RunRecord:
     events: list[dict[str, Any]] = field(default_factory=list)
     actions: list[ActionRecord] = field(default_factory=list)
     messages: list[MessageRecord] = field(default_factory=list)
+    traffic: list[tuple[str, MessageRecord]] = field(default_factory=list)
+    """what was "taken" and "written" by robots and devices, in order"""
     activities: list[ActivityRecord] = field(default_factory=list)
     warnings: list[RunWarning] = field(default_factory=list)
     sample_t: list[float] = field(default_factory=list)

@@ -6,8 +6,8 @@ look_ahead(partition, config, programs, d)
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import replace
 
+from pn2code.arms import Arms
 from pn2code.cell.codes import CELL_MISSING
 from pn2code.cell.config import CellConfig
 from pn2code.cell.load import load as load_cell
@@ -16,10 +16,9 @@ from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.robot import codes, scene
 from pn2code.robot.backend import BackendUnavailableError
 from pn2code.robot.choose_backend import open_backend
-from pn2code.robot.commands import Pose
+from pn2code.robot.commands import MoveJoint, MoveLinear
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor
-from pn2code.robot.motion import MotionFault
 from pn2code.robot.scene import RobotCell
 from pn2code.robot_scripts.ir import Chain, Line, Node, Region, Repeat, RobotIR
 from pn2code.run.sensors import load as load_sensors
@@ -50,7 +49,6 @@ def look_ahead(
             )
     tokens(partition.net, config, d)
     load_sensors(config, partition.net, (config.folder,), None, d)
-    poses = {ir.name: list(_constant_poses(ir)) for ir in programs}
     for layout in config.layouts or {"": ""}:
         chosen = config if layout == config.layout else load_cell(config.path, d, layout=layout)
         assert chosen is not None, "the layouts have been read before"
@@ -59,8 +57,10 @@ def look_ahead(
             return
         where = f" in layout `{layout}`" if layout else ""
         _home(cell, chosen, where, d)
-        for robot in cell.robots:
-            _reach(cell, robot.name, poses.get(robot.name, []), where, d)
+    arms = Arms.of(config, d, partial=False)
+    if arms is not None:
+        for ir in programs:
+            _reach(arms, ir, d)
 
 
 def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> None:
@@ -92,27 +92,19 @@ def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> No
         )
 
 
-def _reach(
-    cell: RobotCell,
-    name: str,
-    poses: Iterable[tuple[Origin, Pose]],
-    where: str,
-    d: Diagnostics,
-) -> None:
-    robot = replace(cell.robot(name), branch=None)
-    for origin, pose in poses:
-        try:
-            RobotExecutor(robot, cell.motion).reach(pose)
-        except MotionFault as fault:
+def _reach(arms: Arms, ir: RobotIR, d: Diagnostics) -> None:
+    for origin, command in _constant_poses(ir):
+        problem = arms.obstacle(ir.name, command)
+        if problem:
             d.error(
                 codes.ROBOT_REACH,
-                f"a constant pose cannot be reached{where}: {fault.message}",
+                f"a constant pose cannot be reached: {problem}",
                 origin,
-                hint=f"change the pose, or `base` of robot `{name}`",
+                hint=f"change the pose, or `base` of robot `{ir.name}`",
             )
 
 
-def _constant_poses(ir: RobotIR) -> Iterator[tuple[Origin, Pose]]:
+def _constant_poses(ir: RobotIR) -> Iterator[tuple[Origin, MoveJoint | MoveLinear]]:
     """The poses of a program that are known before it runs: those of moves to constants in the world's frame."""
     declared = (c.declaration for c in ir.constants)
     constants = _Constants({c.name: c.value for c in declared if isinstance(c, t.Const)})
@@ -125,7 +117,9 @@ def _constant_poses(ir: RobotIR) -> Iterator[tuple[Origin, Pose]]:
         except ScriptError:
             continue  # it depends on what the program is told, or cannot be computed: the run says so
         if isinstance(value, ScriptPose):
-            yield origin, to_si(value)
+            is_line = move.motion is t.Motion.LINEAR
+            pose = to_si(value)
+            yield origin, MoveLinear(pose) if is_line else MoveJoint(pose)
 
 
 def _moves(nodes: Iterable[Node], origin: Origin) -> Iterator[tuple[Origin, t.Move]]:

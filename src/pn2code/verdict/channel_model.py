@@ -14,6 +14,7 @@ from pn2code.verdict.opened import OpenNet
 from pn2code.verify.answers import basis
 from pn2code.verify.answers.properties import Verdict
 from pn2code.verify.answers.reasons import clause
+from pn2code.verify.codes import TIME_OVER
 from pn2code.verify.controller.control_types import BLOCKING, Control
 from pn2code.verify.controller.premises import Premises
 from pn2code.verify.exploring.explore import ExploreOptions
@@ -48,16 +49,21 @@ def look(
         return ()
     is_small = found.complete or found.why in ("decided", "approximation")
     is_open = not is_small and limits.deadline.is_over()
-    answers = medium(
-        partition,
-        opened.storage,
-        limits,
-        d,
-        cell_states=None if is_open else found.nodes,
-        # All of it will not be seen where the cell was not, but what is wrong in a part is wrong.
-        most=None if is_small else max(found.nodes, LEAST_STATES),
-        wishes=ExploreOptions(progress=wishes.progress, interrupted=wishes.interrupted),
+    own = Diagnostics()
+    answers = tuple(
+        medium(
+            partition,
+            opened.storage,
+            limits,
+            own,
+            cell_states=None if is_open else found.nodes,
+            # All of it will not be seen where the cell was not, but what is wrong in a part is wrong.
+            most=None if is_small else max(found.nodes, LEAST_STATES),
+            wishes=ExploreOptions(progress=wishes.progress, interrupted=wishes.interrupted),
+        )
     )
+    # Each answer says itself that the time was over.
+    d.items += [i for i in own.items if i.code != TIME_OVER]
     premise = Premises.of(partition, opened.config).replies.premise
     return tuple(_ending(a, control, premise) if a.check == WHOLE else a for a in answers)
 

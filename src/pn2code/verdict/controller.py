@@ -5,14 +5,16 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+from pn2code.arms import Arms
 from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.properties import meaning as m
 from pn2code.verdict.opened import OpenNet
 from pn2code.verify.answers.properties import Verdict
-from pn2code.verify.codes import TRACE_UNWRITABLE
+from pn2code.verify.codes import TIME_OVER, TRACE_UNWRITABLE
 from pn2code.verify.controller import control
 from pn2code.verify.controller.control_types import Control, Plan
+from pn2code.verify.controller.poses import Poses
 from pn2code.verify.controller.premises import Premises
 from pn2code.verify.controller.proofs import declared
 from pn2code.verify.exploring.explore import ExploreOptions
@@ -51,13 +53,19 @@ def look(
     if partition is None:
         return None
     # An approximate exploration came to its end; the checks make an exact one of their own.
+    arms = Arms.of(config, d)
+    bounds = (wishes.sizes.bounds if wishes.sizes is not None else None) or {}
     is_partial = not found.complete and found.why not in ("decided", "approximation")
-    if is_partial and (found.why in ("interrupted", "error") or limits.deadline.is_over()):
-        return control.not_looked(found.why, partition, declared(partition, config, d), found)
-    if is_partial and not opened.flat.timed:
+    if is_partial and (found.why == "interrupted" or limits.deadline.is_over()):
+        poses = None if arms is None else Poses(partition, config.primitives, arms, opened.storage)
+        capacities = declared(partition, config, d)
+        return control.not_looked(found.why, partition, capacities, found, poses, bounds)
+    cut = ""
+    if is_partial and found.why != "error" and not opened.flat.timed:
         # All of it will not be seen either, but what is wrong in a part is wrong.
         most = max(found.nodes, LEAST_STATES)
-        limits = replace(limits, max_states=min(most, limits.max_states or most))
+        if limits.max_states is None or most < limits.max_states:
+            limits, cut = replace(limits, max_states=most), found.why
     capacities = declared(partition, config, d)
     if capacities is None:
         return None
@@ -71,8 +79,15 @@ def look(
         evidence=wishes.evidence,
         wishes=replace(wishes, quick=found.nodes <= QUICK_STATES, covering=False),
         premises=Premises.of(partition, config, {g.place: g.says for g in opened.given}),
+        cut=cut,
+        bounds=bounds,
+        primitives=config.primitives,
+        arms=arms,
     )
-    looked = control.examine(partition, plan, replace(limits, traces=0), d, found)
+    own = Diagnostics()
+    looked = control.examine(partition, plan, replace(limits, traces=0), own, found)
+    # Each answer says itself that the time was over.
+    d.items += [i for i in own.items if i.code != TIME_OVER]
     if looked is not None:
         _check_written(looked, folder, d)
     return looked

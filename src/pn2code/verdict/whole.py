@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from pn2code.base.deadline import NEVER, Deadline, TimeIsOverError
-from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.division import divided
 from pn2code.net.flat import FlatNet
 from pn2code.robot_scripts.translate import lower_robots
@@ -19,6 +19,7 @@ from pn2code.verdict import controller, properties
 from pn2code.verdict.asked import Asked, gather
 from pn2code.verdict.opened import OpenNet
 from pn2code.verify.answers import outcome
+from pn2code.verify.answers.culprit import culprit
 from pn2code.verify.answers.outcome import Counts
 from pn2code.verify.answers.properties import Answer, Verdict, kind
 from pn2code.verify.answers.reasons import raised
@@ -35,6 +36,12 @@ MOST_COLOURS = 200
 """Of a multi-set bound, unless all is wanted: a place with a colour for each marking has millions."""
 
 _KINDS = {"yes": "good", "no": "bad"}
+
+
+NET_PART = 0.4
+"""Of the time for a cell, what the closed net may take of it; it is the cell as it runs that counts."""
+CELL_PART = 0.7
+"""Of the rest, what the cell as it runs may take; then come the shared files."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,14 +182,18 @@ def look(
         sizes = Sizes.start(opened.flat, opened.storage)
         wishes = replace(wishes, sizes=sizes)
         own_wishes = replace(own_wishes, sizes=sizes) if own_wishes is not None else None
-    found = explore(opened.flat, opened.storage, limits, d, own_wishes or wishes)
+    is_cell = opened.config is not None and bool(checks.controller or checks.medium or asked)
+    part = replace(limits, deadline=limits.deadline.share(NET_PART)) if is_cell else limits
+    found = explore(opened.flat, opened.storage, part, d, own_wishes or wishes)
     if found is None:
         return None
     control: Control | None = None
     if checks.controller or asked:
         if opened.config is not None:
             wishes.stage("exploring the cell as its programs run ...")
-        control = controller.look(opened, found, limits, wishes, folder, d, asked.plain)
+        has_more = checks.medium and is_cell
+        part = replace(limits, deadline=limits.deadline.share(CELL_PART)) if has_more else limits
+        control = controller.look(opened, found, part, wishes, folder, d, asked.plain)
     more = properties.of_bindings(asked, opened, found, limits, wishes, d, control)
     seen: medium.Answers = ()
     if checks.medium:
@@ -264,7 +275,14 @@ def _tell_error(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
     index = error.get("transition")
     t = None if index is None else opened.flat.transitions[index]
     where = f"transition `{t.name}`" if t is not None else error["where"]
-    notes = [error["where"]] if error["where"] else []
+    says, origin = f"{where} raises {raised(error['message'])}", t.origin if t is not None else None
+    notes: list[str | Note] = [error["where"]] if error["where"] and t is None else []
+    exact = None
+    if t is not None and trace is not None:
+        exact = culprit(opened.flat, opened.storage, trace.file, t.index, error.get("binding"))
+    if exact is not None:
+        says, origin = exact.message, exact.origin
+        notes += exact.notes()
     if error.get("binding"):
         values = ", ".join(f"{name} = {value}" for name, value in error["binding"].items())
         notes.append(f"the occurrence with {values}")
@@ -274,8 +292,8 @@ def _tell_error(opened: OpenNet, found: Exploration, d: Diagnostics) -> None:
         notes.append(f"{trace.steps} steps lead to that marking: {trace.file}")
     d.error(
         STATE_ERROR,
-        f"{where} raises {raised(error['message'])} in a reachable marking",
-        t.origin if t is not None else Origin(opened.flat.file),
+        f"{says} in a reachable marking",
+        origin or Origin(opened.flat.file),
         notes=notes,
         hint="`pn2code simulate` can reach it, too; guard the inscription, or handle the exception",
     )

@@ -60,6 +60,20 @@ def test_a_deadline() -> None:
     assert Deadline.after(None, clock).left is None
 
 
+def test_a_part_of_the_time() -> None:
+    """Each part is one of what is left then."""
+    clock = Clock()
+    deadline = Deadline.after(10.0, clock)
+    first = deadline.share(0.4)
+    assert first.left == pytest.approx(4.0)
+    clock.now += 4.0
+    assert first.is_over() and not deadline.is_over()
+    assert deadline.share(0.5).left == pytest.approx(3.0)
+    clock.now += 7.0
+    assert deadline.share(0.5).is_over()
+    assert NEVER.share(0.5) is NEVER
+
+
 def test_the_time_of_a_command_begins_with_it(monkeypatch: pytest.MonkeyPatch) -> None:
     """Loading the modules counts, and nothing is forgotten when a verb makes its deadline late."""
     monkeypatch.setattr(deadline_module, "_started", time.monotonic() - 50.0)

@@ -59,12 +59,13 @@ class GameError(Exception):
 
     def report(self, d: Diagnostics) -> None:
         """As a diagnostic."""
-        notes = (
-            [Note(f"raised by `{_one_line(self.span.text)}`", self.span.origin)]
-            if self.span
-            else []
-        )
-        d.error(RUNTIME_ERROR, self.message, self.origin, notes=notes)
+        d.error(RUNTIME_ERROR, self.message, self.origin, notes=self.notes())
+
+    def notes(self) -> list[Note]:
+        """The text that raises it, if that is known, with its place."""
+        if self.span is None:
+            return []
+        return [Note(f"raised by `{_one_line(self.span.text)}`", self.span.origin)]
 
 
 class running:  # noqa: N801 - a context manager reads as a word

@@ -30,7 +30,7 @@ SAYS: Final = {
     RUN: "a run was found that shows the answer",
     NET: "the net itself was examined, not its state space",
 }
-_OF_MARKINGS = frozenset({"channels", "capacity", "messages", "memory"})
+_OF_MARKINGS = frozenset({"channels", "capacity", "messages", "memory", "reach"})
 """Checks of a supervisor that look at one marking after the other."""
 
 
@@ -55,9 +55,9 @@ def of_check(name: str, answer: str, why: str | None, *, has_run: bool) -> str |
     """What the answer to a check of a supervisor rests on; `name` and `why` as in `control.Check`."""
     if answer == "unknown":
         return None
-    if name == "ownership":
+    if name == "ownership" or why == "structure":
         return NET
-    if name in ("channels", "capacity", "messages", "memory"):
+    if name in _OF_MARKINGS:
         return MARKINGS if answer == "yes" else RUN if has_run else MARKING
     # That an end can no longer be reached is seen in the graph; the run only shows how to get there.
     is_shown = answer == "no" and has_run and not (name == "non-blocking" and why != "deadlock")

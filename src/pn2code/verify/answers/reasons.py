@@ -22,6 +22,7 @@ _CLAUSES = {
     "branches that it never takes, or may take no time, as a move to where the arm already is",
     "moments": "the cell may exchange so many messages, or carry out so many commands, without time passing that a run "
     "in lock-step stops",
+    "poses": "it is not known whether the cell comes to a move that an arm cannot make",
     "chance": "it depends on random numbers or files, and other values than those drawn may lead to another answer",
     "compiler": "there is no C compiler",
 }

@@ -8,7 +8,7 @@ A transition none of whose input places holds a token is not worth a line. It is
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 
 from pn2code.net.flat import ArcKind, FlatArc, FlatTransition
@@ -22,8 +22,12 @@ _MOST_TEXT = 60
 """Characters of a guard."""
 
 
-def reasons(game: Game) -> list[str]:
+def reasons(game: Game, among: Iterable[FlatTransition] | None = None) -> list[str]:
     """A sentence for each of the transitions that lack least; empty where something can occur.
+
+    Args:
+        game: in the marking.
+        among: the transitions that are looked at; None: all.
 
     Raises:
         GameError: an inscription raises an exception.
@@ -31,7 +35,7 @@ def reasons(game: Game) -> list[str]:
     if game.advance():
         return []
     found: list[tuple[int, str]] = []
-    for t in game.net.transitions:
+    for t in game.net.transitions if among is None else among:
         inputs = list(_inputs(t))
         empty = {a.place for a in inputs if not _holds(game.marking, a.place)}
         if inputs and len(empty) == len({a.place for a in inputs}):

@@ -15,10 +15,14 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 from functools import reduce
 from pathlib import Path
+from types import MappingProxyType
+from typing import Any
 
+from pn2code.base.deadline import NEVER
 from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import ArcKind
@@ -52,6 +56,9 @@ from pn2code.verify.controller.control_types import (
     Control,
     Plan,
 )
+from pn2code.verify.controller.equals import NoPatternError
+from pn2code.verify.controller.poses import Bad, Poses
+from pn2code.verify.controller.reach_check import reach, suspects, tell
 from pn2code.verify.controller.running import NotModelledError, Running, Silence
 from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.explore import explore
@@ -63,6 +70,10 @@ DOUBT = (
     "a condition of a script that waits for a message raises an exception in a state of the cell, and whether the "
     "script comes to it is not known"
 )
+
+NO_BOUNDS: Mapping[int, int] = MappingProxyType({})
+CELL_PART = 0.8
+"""Of the time, what the exploration may take that most answers come from."""
 
 # --- questions -----------------------------------------------------------------------------------
 
@@ -143,11 +154,13 @@ def examine(
     Raises:
         GameError: a declaration or an initial marking raises an exception.
     """
+    poses = plan.poses(partition)
     try:
         running = Running.of(partition, plan.properties.predicates)
     except NotModelledError as problem:
         why = f"the cell as it runs cannot be modelled: {problem}"
-        return replace(not_looked(why, partition, plan.capacities, closed), why=why)
+        nothing = not_looked(why, partition, plan.capacities, closed, poses, plan.bounds)
+        return replace(nothing, why=why)
     limits = replace(
         limits,
         approximation=None,
@@ -160,22 +173,54 @@ def examine(
             sizes=Sizes.start(running.net, plan.storage),
             generated=Generated(),
             traces=Path(name),
-            whole=tuple(c.place for c in partition.channels),
+            whole=(*(c.place for c in partition.channels), *(poses.places if poses else ())),
             graph=None,
             questions=of_cell(running, plan),
             predicates=plan.properties.predicates,
             evidence=plan.evidence or Path(name),
             stem="cell",
         )
-        found = explore(running.net, plan.storage, limits, d, wishes)
+        # Where the whole is too large, there is time left to see how it comes to what is wrong.
+        part = replace(limits, deadline=limits.deadline.share(CELL_PART))
+        found = explore(running.net, plan.storage, part, d, wishes)
         if found is None:
             return None
+        if plan.cut and found.why == "states":
+            found = replace(
+                found, why=plan.cut, answers=tuple(_cut(a, plan.cut) for a in found.answers)
+            )
         count = len(plan.properties.properties)
-        wishes = replace(wishes, questions=of_orders(running, plan.firings), stem="orders")
         wishes = replace(wishes, evidence=Path(name))
+
+        def again(moves: Sequence[Bad], *, first: bool = True) -> Exploration | None:
+            other = Running.of(partition, (), moves)
+            lines = other.lines(first=True)
+            own = replace(
+                wishes,
+                sizes=Sizes.start(other.net, plan.storage),
+                generated=Generated(),
+                questions="".join(f"{x}\n" for x in lines)
+                if first
+                else of_orders(other, plan.firings),
+                predicates=(),
+                stem="reach" if first else "orders",
+                quick=True,
+            )
+            return explore(other.net, plan.storage, limits, d, own)
+
+        told = tell(poses, found, limits.deadline)
         orders: Exploration | None = found
+        ruled_out = False
         if found.complete or found.why == "decided":
-            orders = explore(running.net, plan.storage, limits, d, wishes)
+            moves = suspects(told, found)
+            if moves:
+                # All orders are more than the cell does: what is not met there is met nowhere.
+                with suppress(NoPatternError):
+                    orders = again(moves, first=False)
+                    ruled_out = orders is not None and orders.seen.markings
+            if not ruled_out:
+                own = replace(wishes, questions=of_orders(running, plan.firings), stem="orders")
+                orders = explore(running.net, plan.storage, limits, d, own)
         if orders is None:
             return None
         keep = Keeper(plan, running)
@@ -190,6 +235,7 @@ def examine(
             *cell_answers(partition, found, said, plan, keep, closed),
             *formats(partition, found, plan, d),
             memory(found),
+            *reach(told, partition, found, again, keep, ruled_out=ruled_out),
             ownership(partition),
         )
         checks = tuple(hesitating(c, said, keep) for c in checks)
@@ -203,6 +249,12 @@ def examine(
         premises = replace(premises, moving=not is_short(said, STILL))
         control = Control(checks, found, running, answers=found.answers[:count], closed=closed)
         return settled(replace(control, late=late, doubt=doubt, premises=premises))
+
+
+def _cut(answer: Mapping[str, Any], why: str) -> Mapping[str, Any]:
+    """The answer, with the reason for which it is not known."""
+    is_so = answer["answer"] == "unknown" and answer.get("why") == "states"
+    return {**answer, "why": why} if is_so else answer
 
 
 # --- the net itself ------------------------------------------------------------------------------
@@ -239,13 +291,15 @@ def not_looked(
     partition: Partition,
     capacities: Mapping[int, int] | None = None,
     closed: Exploration | None = None,
+    poses: Poses | None = None,
+    bounds: Mapping[int, int] = NO_BOUNDS,
 ) -> Control:
     """When there is no space of the cell to look in."""
     nothing = {"answer": "unknown", "why": why}
     checks = [unknown(name, nothing) for name in (FINITE, BOUNDED, CONFLUENT, BLOCKING)]
     declared = capacities or {}
     open_rows = [nothing] * (len(partition.channels) + len(declared))
-    rows = [*known(partition, declared, open_rows, closed)]
+    rows = [*known(partition, declared, open_rows, closed, bounds)]
     keep = Keeper(Plan(), None)
     if partition.channels:
         checks.append(channels_check(partition, rows[: len(partition.channels)], keep))
@@ -254,4 +308,5 @@ def not_looked(
     seen = closed if closed is not None and can_more(partition) else None
     checks += formats(partition, seen, Plan(), Diagnostics(), why)
     checks.append(memory(seen, why))
+    checks += reach(tell(poses, seen, NEVER), partition, seen, None, keep, why)
     return Control((*checks, ownership(partition)), None, why=why)

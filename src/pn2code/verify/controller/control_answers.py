@@ -10,6 +10,8 @@ from typing import Any
 
 from pn2code.base.whole_file import whole_file
 from pn2code.cell.partition import OwnerKind, Partition
+from pn2code.semantics.game.token_game import GameError
+from pn2code.verify.answers.culprit import culprit
 from pn2code.verify.answers.reasons import clause, raised
 from pn2code.verify.controller.control_types import (
     BLOCKING,
@@ -33,6 +35,8 @@ SCRIPTS, ALONE, MOVING, STILL = 2, 3, 4, 5
 """Rows of the answers about `Moments.sets`, after those about the end and about scripts that stop."""
 OTHERS = 6
 """The row after these."""
+STRUCTURE = "structure"
+"""Why a bound is known: invariants of the net prove it, without any state."""
 _WAYS = 60
 """Transitions of a run that are named."""
 
@@ -90,7 +94,7 @@ def cell_answers(
     if ending.answer == "yes" and shown is not None:  # `settled` says what it means
         ending = replace(ending, evidence=keep.all(shown, BLOCKING))
     yield ending
-    bounds = [*known(partition, plan.capacities, bounds, closed)]
+    bounds = [*known(partition, plan.capacities, bounds, closed, plan.bounds)]
     if partition.channels:
         yield channels_check(partition, bounds[:channels], keep)
     if plan.capacities:
@@ -102,12 +106,18 @@ def known(
     capacities: Mapping[int, int],
     rows: Sequence[Mapping[str, Any]],
     closed: Exploration | None,
+    proven: Mapping[int, int],
 ) -> Iterator[Mapping[str, Any]]:
-    """Bounds that are not known of the cell follow from those of a closed net that can do all that the cell can."""
+    """Bounds that are not known of the cell follow from those of a closed net that can do all that the cell can.
+
+    What the structure proves (`proven`) is so of each sequence of firings, whatever priorities and time hold back.
+    """
     most = [*((c.place, 1) for c in partition.channels), *capacities.items()]
     bounds = closed.bounds if closed and closed.seen.markings and can_more(partition) else None
     for row, (place, limit) in zip(rows, most, strict=True):
-        if row["answer"] == "unknown" and bounds is not None and bounds[place].upper <= limit:
+        if row["answer"] == "unknown" and place in proven and proven[place] <= limit:
+            yield {"answer": "yes", "value": proven[place], "trace": None, "why": STRUCTURE}
+        elif row["answer"] == "unknown" and bounds is not None and bounds[place].upper <= limit:
             yield {"answer": "yes", "value": bounds[place].upper, "trace": None}
         else:
             yield row
@@ -177,17 +187,22 @@ def refusal(partition: Partition, found: Exploration, keep: Keeper) -> Check | N
     owner = partition.owners[partition.transition_owner[index]]
     trace = found.error_trace
     evidence = keep.all({"trace": trace and trace.file, "loop": None}, BLOCKING)
+    by = ""
+    if trace is not None:
+        exact = keep.culprit(trace.file, index, found.error.get("binding"))
+        by = f" by `{' '.join(exact.span.text.split())}`" if exact and exact.span else ""
     after = f", {_steps(evidence[0].steps)} after the start" if evidence else ""
     where = f"`{partition.net.transitions[index].name}`{after}"
     if owner.kind is OwnerKind.SUPERVISOR:
-        says = f"the supervisor stops in {where}: {raised(str(found.error.get('message')))} is raised there"
+        says = f"the supervisor stops in {where}: {raised(str(found.error.get('message')))} is raised there{by}"
     else:
         says = (
             f"the script of {owner.phrase} stops in {where}: an exception, or what no robot can carry out (a time "
             "that is negative, a number that is not finite)"
         )
     says += "; this stops the whole cell"
-    return Check(BLOCKING, "no", says, why="stopped", evidence=evidence)
+    t = (partition.net.transitions[index].name,)
+    return Check(BLOCKING, "no", says, why="stopped", evidence=evidence, transitions=t)
 
 
 class Keeper:
@@ -236,6 +251,14 @@ class Keeper:
             except OSError:
                 kept = None
         return Evidence(length, loop, None, tuple(named), kept)
+
+    def culprit(
+        self, trace: Path, transition: int, binding: Mapping[str, str] | None
+    ) -> GameError | None:
+        """What raises an exception after a run that has been read; None: the token game does not know."""
+        assert self.running is not None
+        net = self.running.partition.net
+        return culprit(net, self._plan.storage, trace, transition, binding)
 
     def all(self, row: Mapping[str, Any], name: str) -> tuple[Evidence, ...]:
         """The run of an answer, if there is one."""
@@ -380,7 +403,14 @@ def channels_check(partition: Partition, rows: Sequence[Mapping[str, Any]], keep
     most = max(int(row["value"]) for _, row in pairs)
     count = len(pairs)
     says = f"at most {most} message in {'each of ' if count > 1 else ''}{count} channel{'s' * (count > 1)}"
-    return Check(CHANNELS, "yes", says, most)
+    return _bounded_by(CHANNELS, says, most, rows)
+
+
+def _bounded_by(name: str, says: str, most: int, rows: Sequence[Mapping[str, Any]]) -> Check:
+    """A "yes", which may rest on the structure of the net alone."""
+    if all(row.get("why") == STRUCTURE for row in rows):
+        return Check(name, "yes", f"{says}, by the structure of the net", most, STRUCTURE)
+    return Check(name, "yes", says, most)
 
 
 def capacities_check(
@@ -408,7 +438,7 @@ def capacities_check(
         if count > 1
         else "the declared capacity is enough"
     )
-    return Check(CAPACITY, "yes", says, most)
+    return _bounded_by(CAPACITY, says, most, rows)
 
 
 def _steps(count: int) -> str:

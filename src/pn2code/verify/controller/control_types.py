@@ -8,9 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from pn2code.base.frozen import frozen
+from pn2code.cell.config import Primitive
+from pn2code.cell.partition import Partition
 from pn2code.net.engine_names import EngineNames
 from pn2code.properties import meaning as m
 from pn2code.verify.answers import basis
+from pn2code.verify.controller.poses import Arms, Poses
 from pn2code.verify.controller.premises import Premises
 from pn2code.verify.controller.running import Running
 from pn2code.verify.exploring.explore import ExploreOptions
@@ -24,6 +27,7 @@ CHANNELS = "channels"
 CAPACITY = "capacity"
 MESSAGES = "messages"
 MEMORY = "memory"
+REACH = "reach"
 OWNERSHIP = "ownership"
 
 TITLES = {
@@ -35,6 +39,7 @@ TITLES = {
     CAPACITY: "Declared capacities",
     MESSAGES: "Every message can be sent",
     MEMORY: "Room for lists and strings",
+    REACH: "Poses within reach",
     OWNERSHIP: "Owners use their own places only",
 }
 MEANINGS = {
@@ -46,12 +51,13 @@ MEANINGS = {
     CAPACITY: "no place ever holds more tokens than `[capacity]` declares",
     MESSAGES: "every message can be written into its file, and is read as it was written",
     MEMORY: "the lists and strings of every marking, and what a firing works out, have room in the supervisor",
+    REACH: "no arm is told a pose that it cannot reach, neither in a script nor in a message",
     OWNERSHIP: "each transition uses places of its owner only, and channels in their direction only",
 }
-KEPT = frozenset({FINITE, BOUNDED, CHANNELS, CAPACITY, MESSAGES, MEMORY, OWNERSHIP})
+KEPT = frozenset({FINITE, BOUNDED, CHANNELS, CAPACITY, MESSAGES, MEMORY, REACH, OWNERSHIP})
 """Checks whose "yes" is kept when the programs do less than what was looked at."""
-STOPPING = (FINITE, BOUNDED, CHANNELS, CAPACITY, MESSAGES, MEMORY)
-"""Checks where a "no" means that the supervisor stops."""
+STOPPING = (FINITE, BOUNDED, CHANNELS, CAPACITY, MESSAGES, MEMORY, REACH)
+"""Checks where a "no" means that the supervisor stops, or the script of a robot and the cell with it."""
 MAX_FIRINGS = 100_000
 """What `./supervisor` permits in one cycle unless it is told another number."""
 
@@ -88,7 +94,7 @@ class Check:
         answer: "yes", "no" or "unknown".
         says: one line for people.
         value: the number that belongs to it, if there is one.
-        why: of "unknown", as in `reasons`; of a blocked cell "deadlock" or "endless".
+        why: of "unknown", as in `reasons`; of a blocked cell "deadlock" or "endless"; of a bound "structure".
         is_accepted: cell.toml says that it need not be so.
         evidence: the run; of confluence a second one, which goes on in another way.
         transitions: the two whose order matters; those that touch what is another's.
@@ -140,6 +146,11 @@ class Check:
         }
 
 
+def _who(check: Check) -> str:
+    """Who stops where a check of `STOPPING` says "no"."""
+    return "the cell" if check.name == REACH else "the supervisor"
+
+
 def _is_script(check: Check) -> bool:
     """Whether it says that a script stops, or that nobody knows whether one does."""
     reasons = {"no": ("stopped",), "unknown": ("commands", "moments")}.get(check.answer, ())
@@ -161,6 +172,9 @@ class Plan:
         evidence: a folder for the runs that answer these; None: they are not kept.
         wishes: of the exploration. What it is asked, and the files it writes, are ours.
         premises: what answers rest on besides.
+        cut: why no more states of the cell are looked at than its closed net has shown; "": as many as the limits say.
+        bounds: by place, most tokens, where the structure of the net proves it.
+        primitives, arms: the functions that are commands, and what the robots can reach; None: nothing is known of it.
     """
 
     storage: Mapping[str, str] = field(default_factory=dict)
@@ -173,6 +187,16 @@ class Plan:
     evidence: Path | None = None
     wishes: ExploreOptions = ExploreOptions()
     premises: Premises = Premises()
+    cut: str = ""
+    bounds: Mapping[int, int] = field(default_factory=dict)
+    primitives: Mapping[str, Primitive] = field(default_factory=dict)
+    arms: Arms | None = None
+
+    def poses(self, partition: Partition) -> Poses | None:
+        """What the arms of a cell are told; None: nothing is known of arms."""
+        if self.arms is None:
+            return None
+        return Poses(partition, self.primitives, self.arms, self.storage)
 
 
 @frozen
@@ -204,7 +228,7 @@ class Control:
     def stops(self) -> str:
         """Why the supervisor may stop where the model of the cell goes on; "": that is not known."""
         broken = (c for c in self.checks if c.name in STOPPING and c.answer == "no")
-        found = next((f"the supervisor stops (`{c.name}`: {c.says})" for c in broken), self.late)
+        found = next((f"{_who(c)} stops (`{c.name}`: {c.says})" for c in broken), self.late)
         return found or next((c.says for c in self.checks if _is_script(c)), self.doubt)
 
     @property

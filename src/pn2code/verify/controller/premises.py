@@ -29,8 +29,8 @@ _MOVING = (
 )
 
 _REACHED = (
-    "arms reach each pose that they are told, and nothing is in their way (limits, singularities and collisions show "
-    "in a run)"
+    "arms get to where they are told to go, and nothing is in their way (limits and singularities on the way, "
+    "increments and collisions show in a run)"
 )
 _MOTIONS = frozenset({"move_joint", "move_linear", "move_home", "measure"})
 

@@ -25,6 +25,7 @@ from pn2code.verify.answers.reasons import clause
 from pn2code.verify.codes import BEYOND_ROOM, CONTROL_FAILED, CONTROL_OPEN
 from pn2code.verify.controller import arena, control, control_types
 from pn2code.verify.controller.control_types import Check, Control, Plan
+from pn2code.verify.controller.poses import Arms, Poses
 from pn2code.verify.controller.premises import Premises
 from pn2code.verify.exploring import place_capacity as rooms
 from pn2code.verify.exploring.explore import ExploreOptions
@@ -56,7 +57,12 @@ class Proofs:
 
 
 def prove(
-    partition: Partition, config: CellConfig | None, d: Diagnostics, *, checked: bool = True
+    partition: Partition,
+    config: CellConfig | None,
+    d: Diagnostics,
+    *,
+    checked: bool = True,
+    arms: Arms | None = None,
 ) -> Proofs | None:
     """Checks the supervisor of a cell, and finds the bounds of all places; None when an error was reported.
 
@@ -65,6 +71,7 @@ def prove(
         config: the cell; None: a net that is one program, which is only warned about.
         d: gets the errors.
         checked: without, nothing is refused and the state space is not explored.
+        arms: of its robots; None: nothing is known of them.
     """
     net = partition.net
     storage = config.storage if config else {}
@@ -81,12 +88,18 @@ def prove(
         rooms.refuse_large(net, found, d)
         if d.has_errors:
             return None
-        return Proofs(found, tuple(_not_asked(partition)) if config else (), None)
+        poses = None
+        if config is not None and arms is not None:
+            poses = Poses(partition, config.primitives, arms, storage)
+        return Proofs(found, tuple(_not_asked(partition, poses)) if config else (), None)
     plan = Plan(
         storage=storage,
         order_decides=config.supervisor.order_decides,
         capacities=capacities,
         premises=Premises.of(partition, config),
+        bounds={k: b.bound for k, b in structural.items() if b.bound is not None},
+        primitives=config.primitives,
+        arms=arms,
     )
     looked = _look(partition, plan, d)
     if looked is None:
@@ -105,8 +118,11 @@ def prove(
         other = (
             f"the file of `{given[0]}` brings a token that the net does not have" if given else ""
         )
-        run = rooms.growing(net, storage, found)
-        rooms.refuse(net, found, other or clause(why or ""), d, run)
+        if not any(
+            c.why == "stopped" for c in looked.failed
+        ):  # an exception is why nothing is known
+            run = rooms.growing(net, storage, found)
+            rooms.refuse(net, found, other or clause(why or ""), d, run)
     rooms.refuse_large(net, found, d)
     if d.has_errors:
         return None
@@ -154,7 +170,10 @@ def _look(partition: Partition, plan: Plan, d: Diagnostics) -> Control | None:
         error.report(d)
         return None
     if found is None and any(i.code == TOOL_MISSING for i in own.errors):
-        return control.not_looked("compiler", partition, plan.capacities)
+        poses = plan.poses(partition)
+        return control.not_looked(
+            "compiler", partition, plan.capacities, poses=poses, bounds=plan.bounds
+        )
     # A place that grows without end is one without a bound, which is refused with a better hint.
     d.items += [i for i in own.items if i.code != BEYOND_ROOM]
     return found
@@ -224,10 +243,10 @@ _OPEN_HINTS = {
 }
 
 
-def _not_asked(partition: Partition) -> Iterator[str]:
+def _not_asked(partition: Partition, poses: Poses | None) -> Iterator[str]:
     """What nothing is known of, and what is seen without exploring."""
     yield UNCHECKED
-    for check in control.not_looked("", partition).checks:
+    for check in control.not_looked("", partition, poses=poses).checks:
         yield (
             f"  {check.name}: unchecked ({control_types.MEANINGS[check.name]})"
             if check.answer == "unknown"

@@ -4,11 +4,13 @@ net = refusing(partition)       # the net; its primitives and its robots' delays
 
 A robot waits for no time that is negative or without end, and moves to no pose one of whose numbers is not finite. Its
 script stops at such a command, and that stops the cell. In the net a primitive is an ordinary function that may do with
-anything, and a negative delay is one more stamp. So primitives and delays get a case that no rule fits.
+anything, and a negative delay is one more stamp. So primitives and delays get a case that no rule fits. So does a code
+segment that commands a move to where the arm cannot go, where it is known of which values that is so (`poses`).
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import count
 
@@ -16,12 +18,22 @@ from pn2code.cell.partition import Partition
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import BOOL, INT, REAL, TFun, TRecord, Type, tuple_of
 from pn2code.net.flat import FlatNet, FlatTransition
+from pn2code.verify.controller.equals import Equals
+from pn2code.verify.controller.poses import Bad
 
 _DELAYED = frozenset({"Time.token@+", "Time.token@++", "Time.@+", "Time.@++"})
 
 
-def refusing(partition: Partition) -> FlatNet:
-    """The net of a cell, with exceptions where scripts would stop."""
+def refusing(partition: Partition, moves: Sequence[Bad] = ()) -> FlatNet:
+    """The net of a cell, with exceptions where scripts would stop.
+
+    Args:
+        partition: the cell.
+        moves: that its arms cannot make.
+
+    Raises:
+        NoPatternError: what a move depends on cannot be compared.
+    """
     net = partition.net
     uids = count(max([1 << 24, *(s.uid for s in net.program.variables.values())]) + 1)
     true = next(c for c, _ in net.program.datatypes["bool"].constructors if c.name == "true")
@@ -42,6 +54,15 @@ def refusing(partition: Partition) -> FlatNet:
         make.delays(t) if owner else t
         for t, owner in zip(net.transitions, partition.transition_owner, strict=True)
     )
+    if moves:
+        refused: dict[int, list[Bad]] = {}
+        for bad in moves:
+            refused.setdefault(bad.transition, []).append(bad)
+        equals = Equals(net.program, uids)
+        transitions = tuple(
+            make.action(t, refused[t.index], equals) if t.index in refused else t
+            for t in transitions
+        )
     return replace(
         net, program=replace(net.program, declarations=declarations), transitions=transitions
     )
@@ -89,6 +110,17 @@ class _Refusal:
             for a in t.arcs
         )
         return replace(t, arcs=arcs, delay=None if t.delay is None else self._delay(t.delay))
+
+    def action(self, t: FlatTransition, moves: Sequence[Bad], equals: Equals) -> FlatTransition:
+        """A transition of a robot, with a code segment that has no value where it commands one of the moves."""
+        assert t.code is not None
+        at = t.code.action.span
+        told = []
+        for bad in moves:
+            values = [equals.condition(core.Var(s, s.type, at), value) for s, value in bad.values]
+            told.append(equals.all(values))
+        action = self._only_if(equals.none(told), t.code.action)
+        return replace(t, code=replace(t.code, action=action))
 
     def _later(self, e: core.Exp) -> core.Exp:
         match e:

@@ -47,6 +47,7 @@ from pn2code.net.flat import ArcKind, BindEquation, FlatArc, FlatNet, FlatTransi
 from pn2code.net.predicate import Predicate
 from pn2code.trace.parties import VERIFY
 from pn2code.verify.controller.moments import Moments
+from pn2code.verify.controller.poses import Bad
 from pn2code.verify.controller.refusals import refusing
 from pn2code.verify.controller.stops import MOST_MESSAGES, NoProgramError, machine, waits
 from pn2code.verify.controller.unanswered import unanswered
@@ -117,15 +118,18 @@ class Running:
     """the place that is marked where a condition of a script that waits has raised an exception; None: none can"""
 
     @staticmethod
-    def of(partition: Partition, predicates: Sequence[Predicate] = ()) -> Running:
-        """That of a cell; `predicates` are asked of it.
+    def of(
+        partition: Partition, predicates: Sequence[Predicate] = (), moves: Sequence[Bad] = ()
+    ) -> Running:
+        """That of a cell; `predicates` are asked of it, and `moves` are what its arms cannot do.
 
         Raises:
+            NoPatternError: what such a move depends on cannot be compared.
             NotModelledError: not everything that its programs do can be said so.
         """
         _check(partition, predicates)
         try:
-            return _Composer(partition).made()
+            return _Composer(partition, moves).made()
         except NoProgramError as problem:
             raise NotModelledError(str(problem)) from None
         except ValueError as problem:
@@ -273,9 +277,9 @@ def _takes_one(arc: FlatArc) -> bool:
 
 
 class _Composer:
-    def __init__(self, partition: Partition) -> None:
+    def __init__(self, partition: Partition, moves: Sequence[Bad]) -> None:
         self.partition = partition
-        self.b = b = Builder(refusing(partition))
+        self.b = b = Builder(refusing(partition, moves))
         self.step_owner: list[int] = []
         self.clock: list[int] = []
         self.probes: list[int] = []

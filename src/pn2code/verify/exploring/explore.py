@@ -132,7 +132,13 @@ def explore(
         GameError: a declaration or an initial marking raises an exception.
     """
     wishes = wishes or ExploreOptions()
-    with Meanwhile(net, storage) as search:
+    bounds = wishes.sizes.bounds if wishes.sizes is not None else None
+    open_places = None
+    if bounds is not None:
+        open_places = [p.index for p in net.places if p.index not in bounds]
+        if not open_places:
+            wishes = replace(wishes, covering=False)  # no place can grow without bound
+    with Meanwhile(net, storage, open_places) as search:
         found = _explored(net, storage, limits, d, wishes, search if wishes.covering else None)
         is_open = found is not None and not found.seen.markings and found.why in _LIMITS
         if found is None or not wishes.covering or not is_open:
@@ -171,6 +177,7 @@ def _explored(
 
     # Most spaces of large nets are small: it does not pay to have the compiler work for long before that is known.
     is_first = len(net.transitions) > programs.MANY and not wishes.quick
+    first: Mapping[str, Any] | None = None
     compiling = 0.0
     while True:
         began = time.perf_counter()
@@ -192,6 +199,10 @@ def _explored(
             if program is None:
                 if d.has_errors or not interrupted():
                     return None
+                if not wishes.interrupted() and first is not None:
+                    # The compiler was not done in time: what the quick one has seen is what is known.
+                    seen = {**first, "why": "seconds"}
+                    return Exploration.of(net, seen, compiling)
                 if not wishes.interrupted():
                     return _too_late(net, limits, compiling, d)
                 return Exploration.of(net, nothing(net, limits), compiling)
@@ -207,6 +218,7 @@ def _explored(
             return None
         if is_first and _is_too_much(found, own, limits):
             is_first = False
+            first = found if found["why"] == "states" else None
             continue
         if found.get("spill_error") and found["why"] == "memory":
             d.warning(

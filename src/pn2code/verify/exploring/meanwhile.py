@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from contextlib import suppress
 from typing import Self
 
@@ -33,11 +33,15 @@ class Meanwhile:
 
     Args:
         net, storage: as for `Game`.
+        among: the places that may grow; None: all.
     """
 
-    def __init__(self, net: FlatNet, storage: Mapping[str, str]) -> None:
+    def __init__(
+        self, net: FlatNet, storage: Mapping[str, str], among: Collection[int] | None = None
+    ) -> None:
         self._net = net
         self._storage = storage
+        self._among = among
         self._ends = threading.Event()
         self._thread: threading.Thread | None = None
         self.found: Covering | None = None
@@ -73,9 +77,7 @@ class Meanwhile:
         if self._thread is None:
             own = Deadline.after(LAST_SECONDS)
             with suppress(GameError):  # the explorer has said so
-                self.found = Search(self._net, self._storage).look(
-                    lambda: own.is_over() or deadline.is_over()
-                )
+                self.found = self._search().look(lambda: own.is_over() or deadline.is_over())
         else:
             self.stop()
         return self.found
@@ -84,4 +86,7 @@ class Meanwhile:
         with suppress(OSError, AttributeError):  # a system without priorities of threads
             os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICE)
         with suppress(GameError):  # the explorer has said so
-            self.found = Search(self._net, self._storage).look(self._ends.is_set)
+            self.found = self._search().look(self._ends.is_set)
+
+    def _search(self) -> Search:
+        return Search(self._net, self._storage, self._among)

@@ -68,6 +68,7 @@ class Sizes:
         memory: bytes for lists and strings.
         proven: places whose counters are wide enough for all that can come.
         enlarged: how often a place turned out to hold more.
+        bounds: by place (index), most tokens, where the structure proves it; None: it was not looked at.
     """
 
     packing: Packing
@@ -75,6 +76,7 @@ class Sizes:
     memory: int = MEMORY
     proven: frozenset[str] = frozenset()
     enlarged: int = 0
+    bounds: Mapping[int, int] | None = None
 
     @staticmethod
     def start(net: FlatNet, storage: Mapping[str, str], known: Structure | None = None) -> Sizes:
@@ -95,6 +97,7 @@ class Sizes:
             choose(net, counts, proven, sums),
             more,
             proven=frozenset(net.places[i].name for i in proven),
+            bounds={k: b.bound for k, b in bounds.items() if b.bound is not None},
         )
 
     def larger(self, place: str | None) -> Sizes | None:

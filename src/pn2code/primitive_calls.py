@@ -20,10 +20,10 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+import pn2code.robot.commands as commands
 from pn2code.cell.config import Primitive
 from pn2code.cell.reach import Reach
 from pn2code.ml.core.types import UNIT, TFun
-from pn2code.robot import commands
 from pn2code.semantics.evaluation.evaluate import Evaluator
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.data import Native, Value

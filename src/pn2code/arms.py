@@ -1,0 +1,77 @@
+"""Where the arms of a cell can go, in each of its layouts, by closed-form inverse kinematics.
+
+arms = Arms.of(config, d)                   # None: there are no arms, or something is wrong with them
+arms.obstacle("robot", MoveJoint(pose))     # "" or "robot `robot`: the pose is out of reach: 3200 mm from the base..."
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+from pn2code.cell.config import CellConfig
+from pn2code.cell.load import load as load_cell
+from pn2code.diagnostics import Diagnostics
+from pn2code.robot import scene
+from pn2code.robot.commands import MoveJoint, MoveLinear, Pose
+from pn2code.robot.executor import RobotExecutor
+from pn2code.robot.motion import MotionFault
+from pn2code.robot.scene import RobotCell
+
+
+class Arms:
+    """The arms of a cell.
+
+    Args:
+        cells: by the name of the layout ("" where there are none), what stands there.
+
+    Attributes:
+        robots: the names of those with an arm.
+    """
+
+    def __init__(self, cells: Mapping[str, RobotCell]) -> None:
+        self._cells = cells
+        self.robots = frozenset(r.name for cell in cells.values() for r in cell.robots)
+        self._known: dict[tuple[str, bool, Pose], str] = {}
+
+    @staticmethod
+    def of(config: CellConfig, d: Diagnostics, *, partial: bool = True) -> Arms | None:
+        """Those of a cell; `partial`: robots of which nothing is said are left out."""
+        cells: dict[str, RobotCell] = {}
+        for layout in config.layouts or {"": ""}:
+            chosen = config if layout == config.layout else load_cell(config.path, d, layout=layout)
+            if chosen is None:
+                return None
+            at = chosen.locator.origin
+            cell = scene.load(chosen.geometry, chosen.folder, at, d, partial=partial)
+            if cell is None:
+                return None
+            cells[layout] = cell
+        found = Arms(cells)
+        return found if found.robots else None
+
+    def obstacle(self, robot: str, command: MoveJoint | MoveLinear) -> str:
+        """Why the arm cannot come to the pose of a command, in words that name robot, pose and layout; "": it can.
+
+        Moves relative to the tool are not looked at: where they lead depends on where they begin. Of lines only the
+        end is looked at, on any branch.
+        """
+        if isinstance(command, MoveLinear) and command.frame == "tool":
+            return ""
+        is_free = isinstance(command, MoveLinear)
+        key = (robot, is_free, command.target)
+        if key not in self._known:
+            self._known[key] = self._looked(robot, command.target, is_free)
+        return self._known[key]
+
+    def _looked(self, name: str, pose: Pose, is_free: bool) -> str:
+        for layout, cell in self._cells.items():
+            for robot in cell.robots:
+                if robot.name != name:
+                    continue
+                own = replace(robot, branch=None) if is_free else robot
+                try:
+                    RobotExecutor(own, cell.motion).reach(pose)
+                except MotionFault as fault:
+                    return f"{fault.message} (layout `{layout}`)" if layout else fault.message
+        return ""

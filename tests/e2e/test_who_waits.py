@@ -1,0 +1,70 @@
+"""Where a cell is in a deadlock, the answer says what each of its programs waits for."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from helpers.netbuilder import flat
+from helpers.small_cell import NET, write
+from pn2code.cell.divide import divide
+from pn2code.cli.main import app
+from pn2code.cli.nets import open_net
+from pn2code.diagnostics import Diagnostics
+from pn2code.semantics.game.token_game import Game
+from pn2code.verify.answers.ending import sentences
+
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
+
+FORGOTTEN = NET.replace("      out data : at n\n", "", 1).replace(
+    "    place Going = 0\n",
+    "    place Going = 0\n    trans Never guard [n > 10]\n      in Pieces : n\n      out data : at n\n",
+    1,
+)
+"""Nobody sends the pose."""
+SUPERVISOR = "The supervisor waits: `Arrived` needs a message in `done`."
+ROBOT = "`robot1` waits in `Told`: `Move` needs a message in `data`."
+
+
+@pytest.mark.parametrize("options", [(), ("--full",)])
+def test_a_message_that_nobody_sends(tmp_path: Path, options: tuple[str, ...]) -> None:
+    cell = write(tmp_path, FORGOTTEN)
+    done = CliRunner().invoke(app, ["verify", str(cell), "--no-medium", *options])
+    assert done.exit_code == 1, done.output
+    lines = [line.strip() for line in done.output.splitlines()]
+    at = lines.index("After that nothing can occur:")
+    assert lines[at + 1 : at + 3] == [SUPERVISOR, ROBOT]
+    # The steps that lead there are told all the same.
+    assert any(line.endswith("Top.Robot.Accept  (k = 1)") for line in lines[:at])
+
+
+def test_guards_that_do_not_depend_on_the_message_count(tmp_path: Path) -> None:
+    """`Arrived` and `Skipped` wait for the same message: their guards say for which pieces."""
+    for number, name in ((1, "Arrived"), (2, "Skipped")):
+        net = FORGOTTEN.replace("place Pieces : INT = 1`1", f"place Pieces : INT = 1`{number}")
+        opened = open_net(write(tmp_path / name, net), {})
+        partition = divide(opened.flat, opened.config, Diagnostics())
+        assert partition is not None
+        game = Game(opened.flat)
+        for _ in game.run(steps=10):
+            pass
+        assert sentences(game, partition)[0] == SUPERVISOR.replace("Arrived", name)
+
+
+def test_a_program_that_does_not_wait(tmp_path: Path) -> None:
+    """Of a program whose own tokens are in the way the transitions are named that lack least."""
+    net = NET.replace("trans Next guard [n <= 3]", "trans Next guard [n > 3]")
+    opened = open_net(write(tmp_path, net), {})
+    partition = divide(opened.flat, opened.config, Diagnostics())
+    game = Game(opened.flat)
+    assert sentences(game, partition) == [
+        "`robot1` waits in `Waiting`: `Accept` needs a message in `flag`.",
+        "`Next` cannot occur: its guard `n > 3` is false for the tokens that are there.",
+    ]
+
+
+def test_nothing_is_said_where_something_can_occur() -> None:
+    game = Game(flat("net N\n  standard\n  place A = 1\n  trans T\n    in A : ()\n"))
+    assert sentences(game, None) == []
