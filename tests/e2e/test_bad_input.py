@@ -322,7 +322,7 @@ def test_output_that_is_a_file_or_below_one(root: Path, tmp_path: Path) -> None:
     assert_not_written(
         pn2code("generate", cell, "-o", file / "below"),
         f"cannot write `{file / 'below'}`",
-        f"`{file}` is not a folder; give another one with -o",
+        "nothing was changed",
     )
     assert_not_written(pn2code("run", cell, "--backend", "fake", "--out", file), str(file))
     assert tree(tmp_path) == {"file": (file.stat().st_mtime_ns, b"mine")}

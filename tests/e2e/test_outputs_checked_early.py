@@ -19,9 +19,6 @@ from pn2code.cli.main import app
         ("simulate", "--trace", "folder", "it is a folder"),
         ("draw", "-o", "file/net.svg", "file` is not a folder"),
         ("draw", "-o", "file/pages/", "file` is not a folder"),
-        ("generate", "-o", "file", "file` is not a folder"),
-        ("generate", "-o", "file/out", "file` is not a folder"),
-        ("run", "--out", "file/out", "file` is not a folder"),
     ],
 )
 def test_refused_before_the_net_is_read(

@@ -15,7 +15,6 @@ from pn2code.cli.options import (
     FormatOption,
     SetOption,
     UncheckedOption,
-    check_folder_writable,
     parse_values,
     print_but_known,
     stop,
@@ -53,8 +52,6 @@ def generate(
     first. It is not generated if it does not keep to its execution scheme, or if nothing proves how many tokens a place
     can hold.
     """
-    if not check:
-        check_folder_writable(output or Path("generated"))
     d = Diagnostics()
     if output is not None and not check:
         _expect_writable(output)

@@ -13,7 +13,7 @@ from typing import Annotated, Any, NoReturn
 
 import typer
 
-from pn2code.base.writable import file_obstacle, folder_obstacle
+from pn2code.base.writable import file_obstacle
 from pn2code.diagnostics import Diagnostic, Diagnostics, Severity, render
 
 
@@ -68,19 +68,6 @@ def check_writable(path: Path | None, option: str) -> None:
     why = file_obstacle(path)
     if why:
         raise typer.BadParameter(f"cannot write `{path}`: {why}", param_hint=option)
-
-
-def check_folder_writable(folder: Path) -> None:
-    """The same for the folder of `-o`, which is made where it is missing.
-
-    Raises:
-        typer.Exit: it, or the folder that it would be made in, is a file or must not be written; that has been said.
-    """
-    why = folder_obstacle(folder)
-    if why:
-        what = "" if why == f"`{folder}` is not a folder" else f"cannot write `{folder}`: "
-        typer.echo(f"pn2code: {what}{why}; give another one with -o", err=True)
-        raise typer.Exit(Exit.USAGE)
 
 
 def parse_values(settings: list[str]) -> dict[str, str]:

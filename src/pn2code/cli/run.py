@@ -16,7 +16,6 @@ from pn2code.cli.options import (
     FormatOption,
     SetOption,
     UncheckedOption,
-    check_folder_writable,
     finite,
     parse_values,
     print_but_known,
@@ -95,7 +94,6 @@ def run(
 
     All programs run in lock-step, as fast as possible, so that two runs give the same trace.
     """
-    check_folder_writable(out)
     # PyBullet, SciPy and the like take half a second to load: only this verb needs them.
     from rich.console import Console
 
