@@ -54,12 +54,12 @@ CASES: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "negative count": (
         GOOD.replace("5", "-5", 1),
         ":1:1: ",
-        ("-5 is out of the colour set `COUNT`", "from 0 to 500"),
+        ("-5 is outside `#1` of colour set `COUNT`", "from 0 to 500"),
     ),
     "large count": (
         GOOD.replace("5", "501", 1),
         ":1:1: ",
-        ("501 is out of the colour set `COUNT`", "from 0 to 500"),
+        ("501 is outside `#1` of colour set `COUNT`", "from 0 to 500"),
     ),
     "huge count": (GOOD.replace("5", "9" * 20, 1), ":1:1: ", ("is too large for an integer",)),
     "half a count": (

@@ -407,7 +407,7 @@ def test_i6_a_robot_refuses_what_it_cannot_validate(
 
 @pytest.mark.parametrize(
     ("text", "words"),
-    [("1 1\n", "found `1` after the 1 value"), ("3\n", "3 is out of the colour set `REPLY`"),
+    [("1 1\n", "found `1` after the 1 value"), ("3\n", "3 is outside colour set `REPLY`, which"),
      ("1\n# 1 0badcafe 2f02fbb9\n", "0badcafe"), ("\0\0\0\0", "zero byte"), (None, "the file is missing")],
     ids=["two values", "no reply", "foreign", "zeros", "missing"],
 )  # fmt: skip

@@ -191,8 +191,8 @@ def test_lists_and_strings_have_room(tmp_path: Path) -> None:
         ("supervisor.status", "is the status file of a program"),
         ("Device.Status", "is the status file of a program"),
         ("device.status", "is the status file of a program"),
-        ("done.other", "would both be called `done`"),
-        ("done", "would both be called `done`"),
+        ("done.other", "differ only in the ending"),
+        ("done", "differ only in the ending"),
     ],
 )
 def test_names_that_do_not_work_are_refused(file: str, words: str, tmp_path: Path) -> None:

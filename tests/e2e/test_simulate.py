@@ -291,7 +291,7 @@ def test_full_disk(tmp_path: Path, engine: str, monitored: bool) -> None:
     done = simulate(net, "--engine", engine, "--trace", "/dev/full", code=2)
     assert "cannot write the trace `/dev/full`: no space left on device" in done.stderr
     done = simulate(net, "--engine", engine, "--trace", tmp_path / "no" / "run", code=2)
-    assert "no such file or directory" in done.stderr
+    assert "there is no folder" in done.stderr
 
 
 @pytest.mark.parametrize("engine", ["compiled", "reference"])

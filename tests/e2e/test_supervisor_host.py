@@ -746,7 +746,7 @@ INPUT_ERRORS = [
     ),
     (
         "-1\n0.5 7\n",
-        "orders.txt:1:1: -1 is out of the colour set `COUNT` of `n`, which goes from 0 to 1000000000",
+        "orders.txt:1:1: -1 is outside `n` of colour set `COUNT`, which goes from 0 to 1000000000",
     ),
     ("13\n0.5 7\n", "not in the colour set"),
     ("3\n0.5 7\n1 2\n", "orders.txt:3:1: found `1 2` after the 2 lines that belong here"),

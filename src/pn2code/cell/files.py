@@ -46,7 +46,8 @@ def check_files(config: CellConfig, d: Diagnostics) -> None:
             )
         for name in dict.fromkeys((PurePath(channel.file).stem, channel.file)):
             other = seen.setdefault(name, channel.file)
-            if other != channel.file:
+            # Where they differ in the ending alone, that has been said in reading them.
+            if other != channel.file and PurePath(other).stem != PurePath(channel.file).stem:
                 d.error(
                     codes.CELL_VALUE,
                     f"the channels of the files `{other}` and `{channel.file}` would both be called `{name}`",

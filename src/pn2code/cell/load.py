@@ -286,9 +286,13 @@ def _once(
     """
     stem = PurePath(file).stem
     key = one_name(stem)
+    hint = "give each a file of its own, whose name differs before the dot in more than case"
     if stem and key in files:
         other, its_place = files[key]
-        if other == file:
+        if place == its_place and other != file:
+            text = f"place `{place}` is listed twice among the {what}, with the files `{other}` and `{file}`"
+            hint = "keep one of the two tables: a place has one file"
+        elif other == file:
             text = f"file `{file}` is used by two {what}, `{its_place}` and `{place}`"
         elif PurePath(other).stem == stem:
             text = (
@@ -304,7 +308,7 @@ def _once(
             codes.CELL_VALUE,
             text,
             r.at(*at, "file"),
-            hint="give each a file of its own, whose name differs before the dot in more than case",
+            hint=hint,
         )
     files.setdefault(key, (file, place))
 

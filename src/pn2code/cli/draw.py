@@ -11,6 +11,7 @@ import typer
 
 from pn2code.base.os_reason import os_reason
 from pn2code.base.whole_file import whole_file
+from pn2code.base.writable import file_obstacle, folder_obstacle
 from pn2code.cell.locate import locate
 from pn2code.cli.options import (
     DEFAULT_SEED,
@@ -102,6 +103,7 @@ def draw(
     """Draw the pages of a net. Elements with errors are red."""
     d = Diagnostics()
     kind = _kind(output, form)
+    _check_output(Path(output), kind, form)
     found = locate(net, d)
     if found is None:
         stop(d, form)
@@ -157,6 +159,17 @@ def _kind(output: str, form: Format) -> str:
             hint = "draw an .svg and convert it: rsvg-convert, inkscape, a browser's print dialogue"
         _refuse(DRAW_OUTPUT, wrong, hint, form)
     return "svg" if suffix == ".svg" else "html"
+
+
+def _check_output(output: Path, kind: str, form: Format) -> None:
+    """Leaves where the drawing could not be written; folders that are missing are made."""
+    if kind == "-":
+        return
+    is_folder = kind == "folder"
+    why = folder_obstacle(output) if is_folder else file_obstacle(output, makes_folders=True)
+    if why:
+        hint = "give another file or folder with -o"
+        _refuse(DRAW_OUTPUT, f"cannot write `{output}`: {why}", hint, form)
 
 
 def _refuse(code: str, message: str, hint: str, form: Format) -> NoReturn:

@@ -13,6 +13,7 @@ from typing import Annotated, Any, NoReturn
 
 import typer
 
+from pn2code.base.writable import file_obstacle
 from pn2code.diagnostics import Diagnostic, Diagnostics, Severity, render
 
 
@@ -64,16 +65,7 @@ def check_writable(path: Path | None, option: str) -> None:
     """
     if path is None:
         return
-    folder = path.parent
-    why = ""
-    if path.is_dir():
-        why = "it is a folder"
-    elif not folder.is_dir():
-        why = f"there is no folder `{folder}`"
-    elif path.exists() and not path.is_file():
-        return  # a device or a pipe
-    elif not os.access(folder, os.W_OK) or (path.exists() and not os.access(path, os.W_OK)):
-        why = "permission denied"
+    why = file_obstacle(path)
     if why:
         raise typer.BadParameter(f"cannot write `{path}`: {why}", param_hint=option)
 

@@ -22,6 +22,7 @@ from pn2code.cli.options import (
     IntBitsOption,
     JsonOption,
     SetOption,
+    check_writable,
     parse_values,
     print_diagnostics,
     stop,
@@ -117,6 +118,8 @@ def simulate(
 
     The same seed gives the same run in both engines. Ctrl-C ends the run and prints the results so far.
     """
+    if str(trace) != "-":
+        check_writable(trace, "--trace")
     opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
     limit = _time(until, opened)
     _check_trace(trace, replay, Path(opened.flat.file))

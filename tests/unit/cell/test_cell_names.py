@@ -17,6 +17,7 @@ from pn2code.diagnostics import Diagnostics, Severity
 from pn2code.net import front
 
 FINAL = 'final = ["Finished"]'
+CHANNEL = '[[channel]]\nplace = "{}"\nfile = "{}"\n'
 INPUT = '[[input]]\nplace = "{}"\nfile = "{}"\n'
 MISTAKES = {
     "final: misspelt": (FINAL, 'final = ["Finishd"]', "cell-unknown-place", "the net has no place `Finishd`",
@@ -62,6 +63,21 @@ MISTAKES = {
     "layout: description": ("[primitives]", "[layouts.a]\ndescription = 3\n[primitives]", "cell-value", "a text", ""),
     "robots: no table": ('[robots.robot1]\ninstance = "Robot"', "robots = 3", "cell-value", "`primitives.robots`", ""),
 }  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ('"flag.robcad"', '"data.txt"', "differ only in the ending"),
+        ("[primitives]", CHANNEL.format("data", "data.txt") + "[primitives]", "listed twice"),
+    ],
+)
+def test_one_mistake_of_two_files_is_one_error(
+    old: str, new: str, words: str, tmp_path: Path
+) -> None:
+    found = [x for x in said(tmp_path, toml=changed(TOML, old, new)) if x.code == "cell-value"]
+    (error,) = [x for x in found if "data.txt" in x.message]
+    assert words in error.message
 
 
 @pytest.mark.parametrize("what", MISTAKES)

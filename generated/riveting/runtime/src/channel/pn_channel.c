@@ -271,13 +271,27 @@ typedef struct pn_word {
     size_t column; /* 1-based */
 } pn_word_t;
 
+enum { NAMED_MAX = 256 };
+
+/* A component with its colour set, for a refusal; a colour set whose name it has is named once. */
+static const char *named(const pn_scalar_t *scalar, char name[NAMED_MAX])
+{
+    if (strcmp(scalar->label, scalar->colset) == 0) {
+        (void)snprintf(name, NAMED_MAX, "colour set `%s`", scalar->colset);
+    } else {
+        (void)snprintf(name, NAMED_MAX, "`%s` of colour set `%s`", scalar->label, scalar->colset);
+    }
+    return name;
+}
+
 /* A number's word as a string; false if it is too long for one. */
 static bool number_text(const pn_scalar_t *scalar, const pn_word_t *word, char *text, pn_message_t *out)
 {
     char shown[160];
+    char name[NAMED_MAX];
     if (word->length >= NUMBER_MAX) {
-        refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is too long for a number (`%s` of colour set `%s`)",
-               pn_quote(word->text, word->length, shown, sizeof shown), scalar->label, scalar->colset);
+        refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is too long for a number (%s)",
+               pn_quote(word->text, word->length, shown, sizeof shown), named(scalar, name));
         return false;
     }
     (void)memcpy(text, word->text, word->length);
@@ -288,15 +302,15 @@ static bool number_text(const pn_scalar_t *scalar, const pn_word_t *word, char *
 static bool integer_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf_t *leaf, pn_message_t *out)
 {
     char shown[160];
+    char name[NAMED_MAX];
     char text[NUMBER_MAX];
     if (!is_number(word->text, word->length, false)) {
         if (is_number(word->text, word->length, true)) {
-            refuse(out, PN_REFUSAL_SCALAR, word->column, "found %s where `%s` of colour set `%s` should be an integer",
-                   pn_quote(word->text, word->length, shown, sizeof shown), scalar->label, scalar->colset);
+            refuse(out, PN_REFUSAL_SCALAR, word->column, "found %s where %s should be an integer",
+                   pn_quote(word->text, word->length, shown, sizeof shown), named(scalar, name));
         } else {
-            refuse(out, PN_REFUSAL_SCALAR, word->column,
-                   "%s is not a number; `%s` of colour set `%s` should be an integer",
-                   pn_quote(word->text, word->length, shown, sizeof shown), scalar->label, scalar->colset);
+            refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is not a number; %s should be an integer",
+                   pn_quote(word->text, word->length, shown, sizeof shown), named(scalar, name));
         }
         return false;
     }
@@ -306,14 +320,13 @@ static bool integer_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_l
     errno = 0;
     const long long value = strtoll(text, NULL, 10);
     if (errno == ERANGE) {
-        refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is too large for an integer (`%s` of colour set `%s`)",
-               pn_quote(word->text, word->length, shown, sizeof shown), scalar->label, scalar->colset);
+        refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is too large for an integer (%s)",
+               pn_quote(word->text, word->length, shown, sizeof shown), named(scalar, name));
         return false;
     }
     if (scalar->bounded && ((value < scalar->low) || (value > scalar->high))) {
-        refuse(out, PN_REFUSAL_SCALAR, word->column,
-               "%lld is out of the colour set `%s` of `%s`, which goes from %" PRId64 " to %" PRId64, value,
-               scalar->colset, scalar->label, scalar->low, scalar->high);
+        refuse(out, PN_REFUSAL_SCALAR, word->column, "%lld is outside %s, which goes from %" PRId64 " to %" PRId64,
+               value, named(scalar, name), scalar->low, scalar->high);
         return false;
     }
     leaf->integer = (int64_t)value;
@@ -323,11 +336,11 @@ static bool integer_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_l
 static bool real_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf_t *leaf, pn_message_t *out)
 {
     char shown[160];
+    char name[NAMED_MAX];
     char text[NUMBER_MAX];
     if (!is_number(word->text, word->length, true)) {
-        refuse(out, PN_REFUSAL_SCALAR, word->column,
-               "%s is not a number; `%s` of colour set `%s` should be a real number",
-               pn_quote(word->text, word->length, shown, sizeof shown), scalar->label, scalar->colset);
+        refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is not a number; %s should be a real number",
+               pn_quote(word->text, word->length, shown, sizeof shown), named(scalar, name));
         return false;
     }
     if (!number_text(scalar, word, text, out)) {
@@ -335,14 +348,13 @@ static bool real_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf
     }
     const double value = strtod(text, NULL);
     if (!isfinite(value)) {
-        refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is too large for a real number (`%s` of colour set `%s`)",
-               pn_quote(word->text, word->length, shown, sizeof shown), scalar->label, scalar->colset);
+        refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is too large for a real number (%s)",
+               pn_quote(word->text, word->length, shown, sizeof shown), named(scalar, name));
         return false;
     }
     if (scalar->bounded && ((value < scalar->real_low) || (value > scalar->real_high))) {
-        refuse(out, PN_REFUSAL_SCALAR, word->column,
-               "%s is out of the colour set `%s` of `%s`, which goes from %g to %g",
-               pn_quote(word->text, word->length, shown, sizeof shown), scalar->colset, scalar->label, scalar->real_low,
+        refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is outside %s, which goes from %g to %g",
+               pn_quote(word->text, word->length, shown, sizeof shown), named(scalar, name), scalar->real_low,
                scalar->real_high);
         return false;
     }
@@ -353,6 +365,7 @@ static bool real_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf
 static bool enum_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf_t *leaf, pn_message_t *out)
 {
     char shown[160];
+    char name[NAMED_MAX];
     for (uint32_t i = 0U; i < scalar->name_count; i++) {
         if ((strlen(scalar->name[i]) == word->length) && (memcmp(scalar->name[i], word->text, word->length) == 0)) {
             leaf->integer = (int64_t)i;
@@ -360,8 +373,8 @@ static bool enum_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf
             return true;
         }
     }
-    refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is not a value of colour set `%s` (`%s`); its first is `%s`",
-           pn_quote(word->text, word->length, shown, sizeof shown), scalar->colset, scalar->label,
+    refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is not a value of %s; its first is `%s`",
+           pn_quote(word->text, word->length, shown, sizeof shown), named(scalar, name),
            (scalar->name_count > 0U) ? scalar->name[0] : "");
     return false;
 }
@@ -377,6 +390,7 @@ static int hex_value(char c)
 static bool string_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf_t *leaf, pn_message_t *out)
 {
     char shown[160];
+    char name[NAMED_MAX];
     bool good = (word->length >= 2U) && (word->text[0] == '"') && (word->text[word->length - 1U] == '"')
                 && (out->text_length + word->length < sizeof out->text);
     size_t at = out->text_length;
@@ -402,8 +416,8 @@ static bool string_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_le
         }
     }
     if (!good) {
-        refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is not a string in double quotes (`%s` of colour set `%s`)",
-               pn_quote(word->text, word->length, shown, sizeof shown), scalar->label, scalar->colset);
+        refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is not a string in double quotes (%s)",
+               pn_quote(word->text, word->length, shown, sizeof shown), named(scalar, name));
         return false;
     }
     leaf->length = (uint32_t)(at - out->text_length);
@@ -491,6 +505,7 @@ static bool next_word(const char *line, size_t length, bool strings, size_t *at,
 bool pn_scalars_parse(const pn_scalar_t *scalar, uint32_t count, const char *line, size_t length, pn_message_t *out)
 {
     char shown[160];
+    char name[NAMED_MAX];
     pn_word_t word = { line, 0U, 1U };
     size_t at = 0U;
     uint32_t i = 0U;
@@ -514,8 +529,8 @@ bool pn_scalars_parse(const pn_scalar_t *scalar, uint32_t count, const char *lin
     }
     if (i < count) {
         refuse(out, PN_REFUSAL_COUNT, length + 1U,
-               "found %" PRIu32 " value%s where %" PRIu32 " are expected; the next would be `%s` of colour set `%s`", i,
-               (i == 1U) ? "" : "s", count, scalar[i].label, scalar[i].colset);
+               "found %" PRIu32 " value%s where %" PRIu32 " are expected; the next would be %s", i,
+               (i == 1U) ? "" : "s", count, named(&scalar[i], name));
         return false;
     }
     return true;
