@@ -57,6 +57,73 @@ def test_a_cell_with_a_fault(tmp_path: Path, here: Path) -> None:
     assert [path.name for path in here.iterdir()] == ["cell.traces"]
 
 
+HALF = NET.replace("out data : at n", "out data : if n = 1 then 1`(at n) else empty")
+"""The robot gets a command, and waits for the pose that belongs to it."""
+ENDS = NET.replace(
+    "out Waiting : ()\n      out done : 1", "out Gone : ()\n      out done : 1"
+).replace("place Over\n", "place Over\n    place Gone\n")
+"""The robot obeys one command."""
+
+
+@pytest.mark.parametrize(
+    ("net", "says", "line"),
+    [
+        (HALF, "Robot `robot1` waits for `data`", "wait until filled(data)"),
+        (
+            NET.replace("guard [n = 2]", "guard [n = 3]"),
+            "Robot `robot1` waits for `flag`",
+            "wait until filled(flag)",
+        ),
+    ],
+)
+def test_what_a_script_waits_for_in_a_deadlock(
+    tmp_path: Path, here: Path, net: str, says: str, line: str
+) -> None:
+    """The line is that of the script which `generate` writes; with --full the reasons are there, too."""
+    cell = write(tmp_path / "cell", net)
+    done = CliRunner().invoke(app, ["generate", str(cell), "-o", "made", "--unchecked"])
+    assert done.exit_code == 0
+    for full in ((), ("--full",)):
+        _, lines, _ = verify(cell, "--no-medium", *full)
+        (found,) = {x.strip() for x in lines if says in x}
+        number = int(found.removeprefix(f"{says} (robot1.tdl:").removesuffix(")."))
+        script = (here / "made" / "robot1.tdl").read_text(encoding="utf-8").split("\n")
+        assert script[number - 1].strip() == line
+        after = lines.index("  After that nothing can occur:")
+        assert found in [x.strip() for x in lines[after + 1 : after + 3]]
+        assert any("` cannot occur: " in x for x in lines[after:])
+
+
+def test_a_script_that_has_ended_in_a_deadlock(tmp_path: Path, here: Path) -> None:
+    cell = write(tmp_path / "cell", ENDS)
+    _, lines, _ = verify(cell, "--no-medium")
+    assert "    Robot `robot1` has come to the end of robot1.tdl." in lines
+
+
+def test_the_last_steps_are_there_whatever_else_is_said(tmp_path: Path, here: Path) -> None:
+    """Many failures leave room for the end of the run, and for why it goes on no more."""
+    cell = write(tmp_path / "cell", HALF)
+    asked = [x for n in range(2, 40) for x in ("--property", f"bound {n} <= Ready <= 99")]
+    _, lines, _ = verify(cell, "--no-medium", *asked)
+    assert len(lines) <= MOST_LINES
+    at = next(i for i, x in enumerate(lines) if x.startswith("The run for `Non-blocking"))
+    assert lines[at].endswith(".trace.jsonl:")
+    shown = [x.split()[0] for x in lines[at:] if x[:5].strip().isdigit()]
+    assert shown[-3:] == ["9", "10", "11"]
+    assert "    Robot `robot1` waits for `data` (robot1.tdl:33)." in lines
+
+
+def test_a_long_run_keeps_its_last_steps(
+    tmp_path: Path, here: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("pn2code.cli.verify_screen.MOST_STEPS", 4)
+    _, lines, _ = verify(write(tmp_path / "cell", HALF), "--no-medium")
+    text = "\n".join(lines)
+    assert "too long" not in text
+    assert "   11  Top.Robot.Accept  (k = 1)" in lines
+    assert "11 steps, cell.traces/cell.controller-non-blocking.trace.jsonl:" in text
+
+
 def test_what_differs_in_the_closed_net_is_said(tmp_path: Path, here: Path) -> None:
     """Sizes are those of the closed net, answers those of the cell; where they are at odds, both are there."""
     folder = tmp_path / "race"

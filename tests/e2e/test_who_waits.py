@@ -7,14 +7,13 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from helpers.netbuilder import flat
 from helpers.small_cell import NET, write
 from pn2code.cell.divide import divide
 from pn2code.cli.main import app
 from pn2code.cli.nets import open_net
 from pn2code.diagnostics import Diagnostics
 from pn2code.semantics.game.token_game import Game
-from pn2code.verify.answers.ending import sentences
+from pn2code.verify.answers.who_waits import supervisor_waits
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
@@ -25,7 +24,7 @@ FORGOTTEN = NET.replace("      out data : at n\n", "", 1).replace(
 )
 """Nobody sends the pose."""
 SUPERVISOR = "The supervisor waits: `Arrived` needs a message in `done`."
-ROBOT = "`robot1` waits in `Told`: `Move` needs a message in `data`."
+ROBOT = "Robot `robot1` waits for `data` (robot1.tdl:33)."
 
 
 @pytest.mark.parametrize("options", [(), ("--full",)])
@@ -50,21 +49,17 @@ def test_guards_that_do_not_depend_on_the_message_count(tmp_path: Path) -> None:
         game = Game(opened.flat)
         for _ in game.run(steps=10):
             pass
-        assert sentences(game, partition)[0] == SUPERVISOR.replace("Arrived", name)
+        assert supervisor_waits(game, partition) == SUPERVISOR.replace("Arrived", name)
 
 
-def test_a_program_that_does_not_wait(tmp_path: Path) -> None:
+def test_a_supervisor_that_does_not_wait(tmp_path: Path) -> None:
     """Of a program whose own tokens are in the way the transitions are named that lack least."""
-    net = NET.replace("trans Next guard [n <= 3]", "trans Next guard [n > 3]")
-    opened = open_net(write(tmp_path, net), {})
-    partition = divide(opened.flat, opened.config, Diagnostics())
-    game = Game(opened.flat)
-    assert sentences(game, partition) == [
-        "`robot1` waits in `Waiting`: `Accept` needs a message in `flag`.",
-        "`Next` cannot occur: its guard `n > 3` is false for the tokens that are there.",
-    ]
-
-
-def test_nothing_is_said_where_something_can_occur() -> None:
-    game = Game(flat("net N\n  standard\n  place A = 1\n  trans T\n    in A : ()\n"))
-    assert sentences(game, None) == []
+    cell = write(tmp_path, NET.replace("trans Next guard [n <= 3]", "trans Next guard [n > 3]"))
+    done = CliRunner().invoke(app, ["verify", str(cell), "--no-medium"])
+    lines = [line.strip() for line in done.output.splitlines()]
+    at = lines.index("After that nothing can occur:")
+    assert lines[at + 1].startswith("Robot `robot1` waits for `flag` (robot1.tdl:")
+    assert (
+        lines[at + 2]
+        == "`Next` cannot occur: its guard `n > 3` is false for the tokens that are there."
+    )

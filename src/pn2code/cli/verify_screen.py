@@ -7,24 +7,28 @@ print(full(said))        # the report of CPN Tools, all answers, all runs step b
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
 from pn2code.base.deadline import TimeIsOverError
-from pn2code.cell.partition import Partition
 from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.game.token_game import GameError
+from pn2code.semantics.game.marking import BindingElement
+from pn2code.semantics.game.report import element
+from pn2code.semantics.game.token_game import Game, GameError
+from pn2code.trace.script import Trace as Recorded
 from pn2code.trace.script import TraceRefusedError
 from pn2code.verdict import channel_model
 from pn2code.verdict.whole import Said
-from pn2code.verify.answers import basis, ending, outcome
+from pn2code.verify.answers import basis, outcome, why_disabled
 from pn2code.verify.answers.outcome import error_text
-from pn2code.verify.answers.path import play, steps, text
+from pn2code.verify.answers.path import Step, play, steps, text
 from pn2code.verify.answers.properties import kind as kind_of
+from pn2code.verify.answers.waiting import Scripts
+from pn2code.verify.answers.who_waits import supervisor_waits
 from pn2code.verify.controller.control_types import TITLES
 from pn2code.verify.exploring.result import Exploration, Trace
 from pn2code.verify.report import control_text
@@ -38,10 +42,12 @@ SHOWN_STEPS = 40
 """Of a longer run only the first steps are printed with `--full`."""
 LAST_STEPS = 8
 """Of the run that is told on one screen the last ones: what they lead to is what matters."""
-LEAST_STEPS = 2
-"""So many are told, however much there is to say of what comes after them."""
-MOST_STEPS = ending.MOST_STEPS
-"""A longer run is not played again to show its last steps."""
+LEAST_STEPS = 3
+"""Of it are always there, whatever else the screen has to say."""
+MOST_STEPS = 3_000
+"""A longer run is not played again: its last steps are shown as they are recorded."""
+LEAST_WAY = 10
+"""Lines that a run gets before further failures do: its head, steps, and why it goes on no more."""
 MOST_ITEMS = 8
 """Failures and open questions that have lines of their own on one screen."""
 MOST_NAMES = 6
@@ -61,6 +67,7 @@ class _Item:
     file: Path | None = None
     lines: tuple[str, ...] = ()
     loop: int | None = None
+    is_deadlock: bool = False
 
 
 # --- everything ----------------------------------------------------------------------------------
@@ -76,10 +83,16 @@ def full(said: Said) -> str:
     ]
     with suppress(TimeIsOverError), said.deadline.enforced():
         if said.control is not None:
-            parts += control_text.told(net, said.storage, said.control, most=SHOWN_STEPS)
-        parts += [
-            told(net, said.storage, a, SHOWN_STEPS) for a in said.answers if a.evidence is not None
-        ]
+            texts = control_text.told(net, said.storage, said.control, most=SHOWN_STEPS)
+            for (check, run, _), text_ in zip(control_text.runs(said.control), texts, strict=True):
+                assert run.file is not None
+                is_deadlock = check.why == "deadlock"
+                end = [] if run.loop is not None else _end(said, run.file, is_deadlock)
+                parts.append("\n".join([text_, *end]))
+        for a in said.answers:
+            if a.evidence is not None:
+                end = [] if a.evidence.loop is not None else _end(said, a.evidence.trace, False)
+                parts.append("\n".join([told(net, said.storage, a, SHOWN_STEPS), *end]))
         for trace in found.traces:
             parts.append(_told(said, trace, f"the dead marking {trace.node}"))
         if found.error_trace is not None:
@@ -97,10 +110,46 @@ def _told(said: Said, trace: Trace, goal: str) -> str:
         shown = steps(said.net, said.storage, trace.file, most=SHOWN_STEPS)
     except (TraceRefusedError, GameError, OSError) as problem:
         return f"{head}\n  (it cannot be shown: {problem})"
-    way = [text(shown, trace.steps)] if trace.steps else []
-    return "\n".join(
-        [head, *way, *ending.after(said.net, said.storage, trace.file, _partition(said))]
-    )
+    end = [] if trace is said.found.error_trace else _end(said, trace.file, False)
+    return "\n".join([head, *([text(shown, trace.steps)] if trace.steps else ()), *end])
+
+
+def _end(said: Said, file: Path, is_deadlock: bool) -> list[str]:
+    """Why nothing can occur after a run; nothing where something can, or the run is too long to be played."""
+    try:
+        game, played = play(said.net, said.storage, file)
+        if sum(1 for _ in islice(played, MOST_STEPS)) == MOST_STEPS:
+            return []
+        return _after(_obstacles(said, game, is_deadlock))
+    except (TraceRefusedError, GameError, OSError):
+        return []  # the run is told above, with what is wrong with it
+
+
+def _after(why: Sequence[str]) -> list[str]:
+    return ["  After that nothing can occur:", *(f"    {x}" for x in why)] if why else []
+
+
+def _obstacles(said: Said, game: Game, is_deadlock: bool) -> list[str]:
+    """What each program waits for, then which transitions are nearest to occurring and what they lack.
+
+    A cell may be in a deadlock where its closed net can go on.
+
+    Raises:
+        GameError: an inscription raises an exception.
+    """
+    running = said.control.running if said.control is not None else None
+    if running is None or said.config is None:
+        return why_disabled.reasons(game)
+    if game.advance() and not is_deadlock:
+        return []
+    partition = running.partition
+    stand = Scripts.of(partition, said.config).standing(game)
+    supervisor = supervisor_waits(game, partition)
+    if supervisor:
+        stand[0] = supervisor
+    owners = partition.transition_owner
+    others = [t for t in game.net.transitions if owners[t.index] not in stand]
+    return [*(stand[k] for k in sorted(stand)), *why_disabled.reasons(game, others)]
 
 
 def _figures(found: Exploration) -> str:
@@ -132,9 +181,12 @@ def screen(said: Said) -> str:
     wrong = sorted((i for i in items if i.kind != "good"), key=lambda i: i.kind != "bad")
     if items:
         lines += ["", *_counts(said), *_premises(said)]
-    if wrong:
-        lines += ["", *_wrong(wrong)]
     end = ["", *textwrap.wrap(_MORE, _WIDTH), *textwrap.wrap(closing(said), _WIDTH)]
+    if wrong:
+        has_run = any(i.file is not None or i.lines for i in wrong) or said.found.error_trace
+        kept = LEAST_WAY + 1 if has_run else 0
+        room = MOST_LINES - len(lines) - len(end) - 1 - kept
+        lines += ["", *_wrong(wrong, room)]
     room = MOST_LINES - len(lines) - len(end) - 1
     way = _way(said, wrong, room)
     if way:
@@ -246,8 +298,10 @@ def _items(said: Said) -> Iterator[_Item]:
     for check in said.control.checks if said.control else ():
         run = next((run for run in check.evidence if run.file is not None), None)
         loop = None if run is None else run.loop
+        file = None if run is None else run.file
+        is_deadlock = check.why == "deadlock"
         yield _Item(
-            TITLES[check.name], check.kind, check.says, None if run is None else run.file, loop=loop
+            TITLES[check.name], check.kind, check.says, file, loop=loop, is_deadlock=is_deadlock
         )
     for m in said.medium:
         kind = {"yes": "good", "no": "bad"}.get(m.answer, "open")
@@ -319,99 +373,111 @@ def _rest(rests: Sequence[str | None]) -> str:
     return f"; the answers rest on {', '.join(counted)}" if counted else ""
 
 
-def _wrong(wrong: Sequence[_Item]) -> Iterator[str]:
-    for item in wrong[:MOST_ITEMS]:
+def _wrong(wrong: Sequence[_Item], room: int) -> list[str]:
+    """Failures, then open questions: as many as there is room for, the first in any case."""
+    lines: list[str] = []
+    for number, item in enumerate(wrong):
         mark = {"bad": "NO", "open": "?"}[item.kind]
         run = f" (run: {item.file})" if item.file is not None else ""
-        yield from textwrap.wrap(
+        wrapped = textwrap.wrap(
             f"{mark:<3}{item.name}: {item.says}{run}",
             _WIDTH,
             subsequent_indent="   ",
             break_long_words=False,
             break_on_hyphens=False,
         )[:3]
-    if len(wrong) > MOST_ITEMS:
-        yield f"   and {len(wrong) - MOST_ITEMS} more"
+        is_last = number == len(wrong) - 1
+        is_full = len(lines) + len(wrapped) + (not is_last) > room
+        if number and (number == MOST_ITEMS or is_full):
+            return [*lines, f"   and {len(wrong) - number} more"]
+        lines += wrapped
+    return lines
 
 
 def _way(said: Said, wrong: Sequence[_Item], room: int) -> list[str]:
     """The last steps of one run: of the exception, of the first failure, or to the first dead marking."""
     found = said.found
-    if room < 3:
-        return []
-    most = min(LAST_STEPS, room - 2)
+    # Where there is no room for the least of a run, the screen is longer.
+    most = max(min(LAST_STEPS, room - 2), LEAST_STEPS)
     if found.error_trace is not None:
         lines = _last(said, found.error_trace.file, "to the exception", most - 1)
         return [*lines, f"  then {error_text(said.net, found)}"]
     for item in wrong:
         if item.file is not None:
-            return _last(said, item.file, f"for `{item.name}`", most, item.loop)
+            what = f"for `{item.name}`"
+            return _last(said, item.file, what, most, item.loop, is_deadlock=item.is_deadlock)
         if item.lines:
             before = len(item.lines) - most
-            cut = _earlier(before)
-            return [f"The run for `{item.name}`:", *cut, *(f"  {x}" for x in item.lines[-most:])]
+            cut = [f"  ... {_count_of(before, 'line')} before; `--full` prints them all"]
+            shown = [f"  {x}" for x in item.lines[-most:]]
+            return [f"The run for `{item.name}`:", *(cut if before > 0 else ()), *shown]
     if found.traces and not wrong and not said.answers and said.control is None:
         trace = found.traces[0]
         return _last(said, trace.file, f"to the dead marking {trace.node}", most)
     return []
 
 
-def _earlier(count: int) -> list[str]:
-    return [f"  ... {count} step{'s' * (count != 1)} before"] if count > 0 else []
+def _count_of(count: int, what: str) -> str:
+    return f"{count} {what}{'s' * (count != 1)}"
 
 
-def _last(said: Said, file: Path, goal: str, most: int, loop: int | None = None) -> list[str]:
+def _last(
+    said: Said,
+    file: Path,
+    goal: str,
+    most: int,
+    loop: int | None = None,
+    *,
+    is_deadlock: bool = False,
+) -> list[str]:
+    """The last steps of a run, at least `LEAST_STEPS`, and why nothing can occur then: about `most` lines."""
     why: list[str] = []
     try:
         with said.deadline.enforced():
             game, played = play(said.net, said.storage, file)
-            shown = [step for step, _ in islice(played, MOST_STEPS)]
-            if loop is None and len(shown) < MOST_STEPS:
+            shown = [_step(step) for step, _ in islice(played, MOST_STEPS)]
+            if len(shown) == MOST_STEPS:
+                shown = _recorded(said, file)
+            elif loop is None:
                 with suppress(GameError):  # an inscription raises an exception there
-                    why = ending.sentences(game, _partition(said))
+                    why = _obstacles(said, game, is_deadlock)
     except TimeIsOverError:
         return [f"The run {goal} is in {file}; there was no time to show it."]
     except (TraceRefusedError, GameError, OSError) as problem:
         return [f"The run {goal} is in {file}; it cannot be shown: {problem}"]
-    if len(shown) == MOST_STEPS:
-        return [f"The run {goal} is in {file}; it is too long to be shown."]
-    head = f"The run {goal}, {len(shown)} step{'s' * (len(shown) != 1)}, {file}:"
-    why = [line for x in why for line in _wrapped(x)][: max(most - 1 - LEAST_STEPS, 0)]
-    rest = [ending.HEAD, *why] if why else []
-    most -= len(rest)
-    lines = _earlier(len(shown) - most)
-    for step in shown[-most:] if most else ():
-        values = ", ".join(f"{k} = {v}" for k, v in step.binding.items())
-        line = f"  {step.number:>3}  {step.transition}" + (f"  ({values})" if values else "")
-        lines.append(_cut(line))
-    lines += rest
+    lines = [f"The run {goal}, {_count_of(len(shown), 'step')}, {file}:"]
+    least = min(LEAST_STEPS, len(shown))
+    after = [_cut(x) for x in _after(why[: max(most - least - 1, 1)])]
+    last = max(most - len(after), least)
+    if len(shown) > last:
+        lines.append(f"  ... {_count_of(len(shown) - last, 'step')} before")
+    lines += shown[-last:] if last else ()
+    lines += after
     if loop is not None and loop < len(shown):
         lines.append(f"  The steps from step {loop + 1} on are repeated for ever.")
-    return [head, *lines] if lines else []
+    return lines if len(lines) > 1 else []
 
 
-def _partition(said: Said) -> Partition | None:
-    running = said.control.running if said.control is not None else None
-    return None if running is None else running.partition
+def _step(step: Step) -> str:
+    return _line(step.number, step.transition, step.binding)
 
 
-def _wrapped(sentence: str) -> list[str]:
-    """With an indentation; of a long one two lines."""
-    return textwrap.wrap(
-        sentence,
-        _WIDTH,
-        initial_indent="    ",
-        subsequent_indent="      ",
-        max_lines=2,
-        placeholder=" ...",
-        break_long_words=False,
-        break_on_hyphens=False,
-    )
+def _line(number: int, transition: str, binding: Mapping[str, str]) -> str:
+    values = ", ".join(f"{k} = {v}" for k, v in binding.items())
+    return _cut(f"  {number:>3}  {transition}" + (f"  ({values})" if values else ""))
 
 
-def _cut(line: str, indented: int = 0) -> str:
-    width = _WIDTH - indented
-    return line if len(line) <= width else f"{line[: width - 3]}..."
+def _recorded(said: Said, file: Path) -> list[str]:
+    """The steps of a run as the file has them, without playing it."""
+    found = []
+    for number, step in enumerate(Recorded.open(file, said.net, is_shown=True).steps(), 1):
+        played = element(said.net, BindingElement.make(step.transition, step.bound))
+        found.append(_line(number, step.transition.name, played["binding"]))
+    return found
+
+
+def _cut(line: str) -> str:
+    return line if len(line) <= _WIDTH else f"{line[: _WIDTH - 3]}..."
 
 
 # --- the verdict ---------------------------------------------------------------------------------

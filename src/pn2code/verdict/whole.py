@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from pn2code.base.deadline import NEVER, Deadline, TimeIsOverError
+from pn2code.cell.config import CellConfig
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.division import divided
 from pn2code.net.flat import FlatNet
@@ -86,6 +87,7 @@ class Said:
         medium: those of the shared files.
         errors: how many errors are said besides.
         deadline: when it is over no run is played any more.
+        config: of the cell; None: the net is none.
     """
 
     net: FlatNet
@@ -96,6 +98,7 @@ class Said:
     medium: medium.Answers
     errors: int = 0
     deadline: Deadline = NEVER
+    config: CellConfig | None = None
 
     @property
     def kinds(self) -> list[str]:
@@ -233,6 +236,7 @@ def conclude(
         looked.medium,
         len(d.errors),
         limits.deadline,
+        opened.config,
     )
 
 

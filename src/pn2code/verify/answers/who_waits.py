@@ -1,8 +1,8 @@
-"""Where nothing can occur in a cell: the message that each program waits for.
+"""Where nothing can occur in a cell: the messages that the supervisor waits for (of scripts see `waiting`).
 
-waiting(game, partition)     # {1: "`robot1` waits in `Told`: `Move` needs a message in `data`."}
+supervisor_waits(game, partition)     # "The supervisor waits: `Arrived` needs a message in `done`."
 
-A program waits with a transition when all that it takes from the program's own places is there, what its guard asks of
+It waits with a transition when all that this takes from the supervisor's own places is there, what its guard asks of
 it holds, and messages are missing. It is the reference token game that answers.
 """
 
@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from pn2code.cell.partition import Owner, Partition
+from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import BOOL
 from pn2code.net.flat import ArcKind, BindEquation, BindStep, BindTerm, FlatTransition
@@ -19,44 +19,37 @@ from pn2code.semantics.game.enabling import Enabling
 from pn2code.semantics.game.token_game import Game, GameError
 
 MOST_NAMES = 4
-"""Transitions and channels of one program that are named."""
+"""Transitions, channels and ways that are named."""
 _TAKING = (ArcKind.INPUT, ArcKind.BOTH)
 
 
-def waiting(game: Game, partition: Partition) -> dict[int, str]:
-    """By owner, a sentence for each program that waits for messages in the marking of a game."""
-    found = ((owner.index, _of_owner(game, partition, owner)) for owner in partition.owners)
-    return {index: line for index, line in found if line}
-
-
-def _of_owner(game: Game, partition: Partition, owner: Owner) -> str:
-    """ "": it does not wait."""
+def supervisor_waits(game: Game, partition: Partition) -> str:
+    """A sentence; "": it does not wait for messages in the marking of the game."""
     channels = {c.place: c.name for c in partition.channels}
     needs: dict[tuple[int, ...], list[FlatTransition]] = {}
-    places: dict[str, None] = {}
     for t, index in zip(game.net.transitions, partition.transition_owner, strict=True):
-        if index != owner.index:
-            continue
         inputs = [a.place for a in t.arcs if a.kind in _TAKING]
         missing = [p for p in inputs if p in channels and not _holds(game, p)]
         own = [p for p in inputs if p not in channels]
-        if missing and all(_holds(game, p) for p in own) and _fits(game, t, missing):
+        is_supervisor = partition.owners[index].kind is OwnerKind.SUPERVISOR
+        if (
+            is_supervisor
+            and missing
+            and all(_holds(game, p) for p in own)
+            and _fits(game, t, missing)
+        ):
             needs.setdefault(tuple(dict.fromkeys(missing)), []).append(t)
-            if len(own) == 1:
-                places[game.net.places[own[0]].short] = None
     if not needs:
         return ""
-    where = f" in `{next(iter(places))}`" if len(places) == 1 and owner.index else ""
     parts = []
-    for missing_places, transitions in list(needs.items())[:MOST_NAMES]:
+    for places, transitions in list(needs.items())[:MOST_NAMES]:
         names = _listed([f"`{t.short}`" for t in transitions])
-        files = [f"`{channels[p]}`" for p in missing_places]
+        files = [f"`{channels[p]}`" for p in places]
         verb = "needs" if len(transitions) == 1 else "need"
         what = "a message" if len(files) == 1 else "messages"
         parts.append(f"{names} {verb} {what} in {_listed(files)}")
     more = f", and {len(needs) - MOST_NAMES} more ways" if len(needs) > MOST_NAMES else ""
-    who = "the supervisor" if not owner.index else f"`{owner.name}`"
-    return f"{who[:1].upper()}{who[1:]} waits{where}: {'; '.join(parts)}{more}."
+    return f"The supervisor waits: {'; '.join(parts)}{more}."
 
 
 def _listed(names: list[str]) -> str:

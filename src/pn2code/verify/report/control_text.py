@@ -8,7 +8,7 @@ from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.token_game import GameError
 from pn2code.trace.script import TraceRefusedError
-from pn2code.verify.answers import basis, ending, properties
+from pn2code.verify.answers import basis, properties
 from pn2code.verify.answers.path import steps
 from pn2code.verify.controller.cell_answers import reason
 from pn2code.verify.controller.control_types import (
@@ -111,9 +111,7 @@ def told(net: FlatNet, storage: Mapping[str, str], control: Control, *, most: in
             yield f"{head}\n  (it cannot be shown: {problem})"
             continue
         evidence = properties.Evidence(run.file, run.steps, run.loop)
-        partition = control.running.partition if control.running is not None else None
-        last = ending.after(net, storage, run.file, partition) if run.loop is None else []
-        yield "\n".join([head, *properties_text.lines(shown, evidence), *last])
+        yield "\n".join([head, *properties_text.lines(shown, evidence)])
 
 
 def _rests(check: Check) -> Iterator[str]:
