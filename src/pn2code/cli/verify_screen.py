@@ -120,7 +120,7 @@ def _end(said: Said, file: Path, is_deadlock: bool) -> list[str]:
         game, played = play(said.net, said.storage, file)
         if sum(1 for _ in islice(played, MOST_STEPS)) == MOST_STEPS:
             return []
-        return _after(_obstacles(said, game, is_deadlock))
+        return _after(_obstacles(said, game, is_deadlock, everything=True))
     except (TraceRefusedError, GameError, OSError):
         return []  # the run is told above, with what is wrong with it
 
@@ -129,8 +129,10 @@ def _after(why: Sequence[str]) -> list[str]:
     return ["  After that nothing can occur:", *(f"    {x}" for x in why)] if why else []
 
 
-def _obstacles(said: Said, game: Game, is_deadlock: bool) -> list[str]:
+def _obstacles(said: Said, game: Game, is_deadlock: bool, *, everything: bool = False) -> list[str]:
     """What each program waits for, then which transitions are nearest to occurring and what they lack.
+
+    These are the transitions of programs that do not wait, unless `everything` is wanted.
 
     A cell may be in a deadlock where its closed net can go on.
 
@@ -148,7 +150,7 @@ def _obstacles(said: Said, game: Game, is_deadlock: bool) -> list[str]:
     if supervisor:
         stand[0] = supervisor
     owners = partition.transition_owner
-    others = [t for t in game.net.transitions if owners[t.index] not in stand]
+    others = [t for t in game.net.transitions if everything or owners[t.index] not in stand]
     return [*(stand[k] for k in sorted(stand)), *why_disabled.reasons(game, others)]
 
 
