@@ -235,6 +235,14 @@ SPACE_FUSION = register(
     "the only place instance of a fusion set is the socket of a substitution transition. The simulator is not "
     "affected, and neither is pn2code.",
 )
+ENGINE_ID = register(
+    "engine-id",
+    "CPN Tools cannot work with an identifier of the file",
+    "CPN Tools makes names of its own of the identifiers of places, transitions and pages. With a character that is no "
+    "letter, digit, underscore or prime it cannot compile the net that it has accepted (of a page: enter its "
+    "state-space tool); nor can it enter this tool where the identifier of a place begins with `P`. Its editor writes "
+    "`ID` and a number. pn2code takes any identifier.",
+)
 RESERVED_WORD = register(
     "reserved-word",
     "a reserved word of CPN Tools is declared",

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from pn2code.diagnostics import Diagnostics, Note
-from pn2code.net import lonely_fusions
+from pn2code.net import engine_ids, lonely_fusions
 from pn2code.net.codes import NAME_NOT_UNIQUE, PORT_UNASSIGNED, SOCKET_ARCS, SOCKET_UNASSIGNED
 from pn2code.net.engine_names import sent_name
 from pn2code.net.linked import Page
@@ -37,6 +37,7 @@ def warn(document: Document, pages: Iterable[Page], d: Diagnostics) -> None:
                 _sockets(page, t, linked, document, d)
     _ports(document, linked, d)
     lonely_fusions.warn(linked, d)
+    engine_ids.warn(document, d)
 
 
 def _names(
