@@ -139,6 +139,16 @@ def test_a_move_that_comes_from_a_computation(tmp_path: Path) -> None:
     assert ran(cell)[0] == "failed"
 
 
+def test_a_move_that_nothing_decides(tmp_path: Path) -> None:
+    """The script names the pose itself, so that no token has to do with it."""
+    net = slots(50.0, ("action moveJoint p", "action moveJoint (at 90)"))
+    cell = write(tmp_path, net, TOML + ARM)
+    reach = verified(cell)[1]["reach"]
+    assert reach["answer"] == "no"
+    assert "(5700.00, 0.00, 1200.00 mm" in reach["says"]
+    assert ran(cell)[0] == "failed"
+
+
 def test_at_a_limit(tmp_path: Path) -> None:
     """What is told in the part that was seen is certain, the rest is not known."""
     cell = write(tmp_path / "far", slots(900.0, begin=2900.0), TOML + ARM)

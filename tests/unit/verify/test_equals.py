@@ -57,8 +57,10 @@ def test_all_pairs(game: Game, kind: str) -> None:
     for a, b in product(values, repeat=2):
         condition = equals.condition(core.Var(variable, item, span), a)
         assert game.evaluator.value(condition, {variable: b}) is (a == b), (a, b)
-        for wanted, made in ((a == b, equals.all), (a != b, equals.none)):
-            assert game.evaluator.value(made([condition, condition]), {variable: b}) is wanted
+        both = [condition, condition]
+        assert game.evaluator.value(equals.all(both, span), {variable: b}) is (a == b)
+        assert game.evaluator.value(equals.none(both), {variable: b}) is (a != b)
+    assert game.evaluator.value(equals.all([], span), {}) is True
 
 
 def test_functions_have_no_pattern(game: Game) -> None:

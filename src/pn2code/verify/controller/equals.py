@@ -63,13 +63,12 @@ class Equals:
         other = core.Rule(core.PWild(e.type, e.span), not_so, e.span)
         return core.Case(e, (core.Rule(pattern, is_so, e.span), other), BOOL, e.span)
 
-    def all(self, conditions: list[core.Exp]) -> core.Exp:
-        """That all of them hold; there is at least one."""
-        *first, last = conditions
-        for condition in reversed(first):
-            span = condition.span
-            last = core.If(condition, last, core.Con(self._false, BOOL, span), BOOL, span)
-        return last
+    def all(self, conditions: list[core.Exp], span: Span) -> core.Exp:
+        """That all of them hold; where there are none it is so."""
+        holds: core.Exp = core.Con(self._true, BOOL, span)
+        for condition in reversed(conditions):
+            holds = core.If(condition, holds, core.Con(self._false, BOOL, span), BOOL, span)
+        return holds
 
     def none(self, conditions: list[core.Exp]) -> core.Exp:
         """That none of them holds; there is at least one."""

@@ -118,7 +118,7 @@ class _Refusal:
         told = []
         for bad in moves:
             values = [equals.condition(core.Var(s, s.type, at), value) for s, value in bad.values]
-            told.append(equals.all(values))
+            told.append(equals.all(values, at))
         action = self._only_if(equals.none(told), t.code.action)
         return replace(t, code=replace(t.code, action=action))
 
