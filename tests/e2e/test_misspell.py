@@ -11,7 +11,7 @@ from tools.misspell.beside import beside, verdict
 from tools.misspell.judge import Judge
 from tools.misspell.mutants import as_it_is, mistakes
 
-from helpers.small_cell import TOML, write
+from helpers.small_cell import NET, TOML, write
 from pn2code.cell.load import load
 from pn2code.diagnostics import Diagnostics
 from pn2code.robot import scene
@@ -43,10 +43,16 @@ expect = true
 """
 
 
+FAR = "x = 100.0 * Real.fromInt n, y = 0.5, z = 0.0, rx = 0.0, ry = 0.0, rz = 90.0"
+NEAR = "x = 1200.0 + 50.0 * Real.fromInt n, y = 0.0, z = 1200.0, rx = 0.0, ry = 90.0, rz = 0.0"
+
+
 @pytest.fixture(scope="module")
 def judge(tmp_path_factory: pytest.TempPathFactory) -> Judge:
     folder = tmp_path_factory.mktemp("cell")
-    return Judge(write(folder / "cell", toml=TOML + ROBOT), folder / "room")
+    # Its arm can reach what it is told.
+    assert FAR in NET
+    return Judge(write(folder / "cell", NET.replace(FAR, NEAR), TOML + ROBOT), folder / "room")
 
 
 def test_every_second_mistake_in_a_small_cell_is_noticed(judge: Judge) -> None:

@@ -25,7 +25,7 @@ FINAL = ["Cell.Supervisor.Failed"]
 
 
 class Arms:
-    """Remembers where the arms stood last (rad)."""
+    """Remembers where the arms stand at the end (rad); in real time the last sample may come before it."""
 
     def __init__(self) -> None:
         self.joints: dict[str, Array] = {}
@@ -34,10 +34,10 @@ class Arms:
 
     def advanced(self, engine: Engine) -> None: ...
 
-    def ended(self, engine: Engine) -> None: ...
+    def ended(self, engine: Engine) -> None:
+        self.joints = {r.name: np.array(r.arm.q) for r in engine.robots if r.arm is not None}
 
-    def sampled(self, engine: Engine, t: float, joints: Mapping[str, Array]) -> None:
-        self.joints = {name: np.array(q) for name, q in joints.items()}
+    def sampled(self, engine: Engine, t: float, joints: Mapping[str, Array]) -> None: ...
 
 
 @pytest.fixture(scope="module")

@@ -276,22 +276,27 @@ enum { NAMED_MAX = 256 };
 /* A component with its colour set, for a refusal; a colour set whose name it has is named once. */
 static const char *named(const pn_scalar_t *scalar, char name[NAMED_MAX])
 {
-    if (strcmp(scalar->label, scalar->colset) == 0) {
-        (void)snprintf(name, NAMED_MAX, "colour set `%s`", scalar->colset);
-    } else {
-        (void)snprintf(name, NAMED_MAX, "`%s` of colour set `%s`", scalar->label, scalar->colset);
-    }
+    const bool is_one = strcmp(scalar->label, scalar->colset) == 0;
+    (void)snprintf(name, NAMED_MAX, "%s%s%scolour set `%s`", is_one ? "" : "`", is_one ? "" : scalar->label,
+                   is_one ? "" : "` of ", scalar->colset);
     return name;
+}
+
+/* Refuses a word: it, what is wrong, the component, and the rest of the sentence. */
+static void refuse_word(pn_message_t *out, const pn_scalar_t *scalar, const pn_word_t *word, const char *wrong,
+                        const char *rest)
+{
+    char shown[160];
+    char name[NAMED_MAX];
+    refuse(out, PN_REFUSAL_SCALAR, word->column, "%s %s%s%s", pn_quote(word->text, word->length, shown, sizeof shown),
+           wrong, named(scalar, name), rest);
 }
 
 /* A number's word as a string; false if it is too long for one. */
 static bool number_text(const pn_scalar_t *scalar, const pn_word_t *word, char *text, pn_message_t *out)
 {
-    char shown[160];
-    char name[NAMED_MAX];
     if (word->length >= NUMBER_MAX) {
-        refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is too long for a number (%s)",
-               pn_quote(word->text, word->length, shown, sizeof shown), named(scalar, name));
+        refuse_word(out, scalar, word, "is too long for a number (", ")");
         return false;
     }
     (void)memcpy(text, word->text, word->length);
@@ -301,16 +306,15 @@ static bool number_text(const pn_scalar_t *scalar, const pn_word_t *word, char *
 
 static bool integer_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf_t *leaf, pn_message_t *out)
 {
-    char shown[160];
     char name[NAMED_MAX];
     char text[NUMBER_MAX];
     if (!is_number(word->text, word->length, false)) {
         if (is_number(word->text, word->length, true)) {
+            char shown[160];
             refuse(out, PN_REFUSAL_SCALAR, word->column, "found %s where %s should be an integer",
                    pn_quote(word->text, word->length, shown, sizeof shown), named(scalar, name));
         } else {
-            refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is not a number; %s should be an integer",
-                   pn_quote(word->text, word->length, shown, sizeof shown), named(scalar, name));
+            refuse_word(out, scalar, word, "is not a number; ", " should be an integer");
         }
         return false;
     }
@@ -320,8 +324,7 @@ static bool integer_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_l
     errno = 0;
     const long long value = strtoll(text, NULL, 10);
     if (errno == ERANGE) {
-        refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is too large for an integer (%s)",
-               pn_quote(word->text, word->length, shown, sizeof shown), named(scalar, name));
+        refuse_word(out, scalar, word, "is too large for an integer (", ")");
         return false;
     }
     if (scalar->bounded && ((value < scalar->low) || (value > scalar->high))) {
@@ -339,8 +342,7 @@ static bool real_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf
     char name[NAMED_MAX];
     char text[NUMBER_MAX];
     if (!is_number(word->text, word->length, true)) {
-        refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is not a number; %s should be a real number",
-               pn_quote(word->text, word->length, shown, sizeof shown), named(scalar, name));
+        refuse_word(out, scalar, word, "is not a number; ", " should be a real number");
         return false;
     }
     if (!number_text(scalar, word, text, out)) {
@@ -348,8 +350,7 @@ static bool real_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf
     }
     const double value = strtod(text, NULL);
     if (!isfinite(value)) {
-        refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is too large for a real number (%s)",
-               pn_quote(word->text, word->length, shown, sizeof shown), named(scalar, name));
+        refuse_word(out, scalar, word, "is too large for a real number (", ")");
         return false;
     }
     if (scalar->bounded && ((value < scalar->real_low) || (value > scalar->real_high))) {
@@ -389,8 +390,6 @@ static int hex_value(char c)
 /* Decodes a quoted string into the message's text. */
 static bool string_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf_t *leaf, pn_message_t *out)
 {
-    char shown[160];
-    char name[NAMED_MAX];
     bool good = (word->length >= 2U) && (word->text[0] == '"') && (word->text[word->length - 1U] == '"')
                 && (out->text_length + word->length < sizeof out->text);
     size_t at = out->text_length;
@@ -416,8 +415,7 @@ static bool string_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_le
         }
     }
     if (!good) {
-        refuse(out, PN_REFUSAL_SCALAR, word->column, "%s is not a string in double quotes (%s)",
-               pn_quote(word->text, word->length, shown, sizeof shown), named(scalar, name));
+        refuse_word(out, scalar, word, "is not a string in double quotes (", ")");
         return false;
     }
     leaf->length = (uint32_t)(at - out->text_length);

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from pn2code.base.os_reason import os_reason
+from pn2code.base.writable import file_obstacle
 from pn2code.cli.interrupts import Interrupts
 from pn2code.cli.nets import open_net
 from pn2code.cli.options import (
@@ -22,7 +23,6 @@ from pn2code.cli.options import (
     IntBitsOption,
     JsonOption,
     SetOption,
-    check_writable,
     parse_values,
     print_diagnostics,
     stop,
@@ -118,8 +118,8 @@ def simulate(
 
     The same seed gives the same run in both engines. Ctrl-C ends the run and prints the results so far.
     """
-    if str(trace) != "-":
-        check_writable(trace, "--trace")
+    if trace is not None and str(trace) != "-":
+        _check_writable(trace, form)
     opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
     limit = _time(until, opened)
     _check_trace(trace, replay, Path(opened.flat.file))
@@ -182,6 +182,15 @@ def _time(until: str | None, opened: OpenNet) -> int | float | None:
         return value
     digits = until.strip().replace("~", "-")
     return int(digits) if digits.lstrip("+-").isdigit() else math.floor(value)
+
+
+def _check_writable(trace: Path, form: Format) -> None:
+    why = file_obstacle(trace)
+    if why:
+        d = Diagnostics()
+        d.error(TRACE_UNWRITABLE, f"cannot write the trace `{trace}`: {why}", Origin(str(trace)))
+        print_diagnostics(d.sorted(), form)
+        raise typer.Exit(Exit.USAGE)
 
 
 def _made(request: Request, engine: Engine | None, d: Diagnostics, form: Format) -> Outcome:

@@ -167,11 +167,12 @@ def examine(
         graph=True,
         reductions=(Reduction.TIME,) if partition.net.timed else (),
     )
+    made = Generated()
     with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
         wishes = replace(
             plan.wishes,
             sizes=Sizes.start(running.net, plan.storage),
-            generated=Generated(),
+            generated=made,
             traces=Path(name),
             whole=(*(c.place for c in partition.channels), *(poses.places if poses else ())),
             graph=None,
@@ -197,7 +198,7 @@ def examine(
             lines = other.lines(first=True)
             own = replace(
                 wishes,
-                sizes=Sizes.start(other.net, plan.storage),
+                sizes=made.sizes or wishes.sizes,  # its places are those of the cell
                 generated=Generated(),
                 questions="".join(f"{x}\n" for x in lines)
                 if first
