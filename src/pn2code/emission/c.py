@@ -20,7 +20,7 @@ from pn2code.emission.output import Block, OutputFile
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import called, ir_nodes
 from pn2code.ir.nodes import NetIR, Rep
-from pn2code.lowering.nets.packing import key_bits, packed_bits
+from pn2code.lowering.nets.packing import packed_bits
 
 _MARK = "\x01"
 
@@ -53,7 +53,18 @@ class _Emitter(Transitions):
     def _word_mask(self) -> str:
         """What takes away what follows from the rest of the first word of the packed part."""
         has_more = any(p.packed and p.packed.shares and p.packed.bit < 64 for p in self._net.places)
-        return f" & 0x{(1 << key_bits(self._net.places)) - 1:x}U" if has_more else ""
+        return f" & 0x{self._key:x}U" if has_more else ""
+
+    def _places_with_functions(self) -> frozenset[int]:
+        """Those that are reached by functions of their own, unlike those of transitions that only count."""
+        if not any(t.counts is not None for t in self._net.transitions):
+            return frozenset(p.index for p in self._net.places)
+        bodies: list[object] = [f.body for f in self._net.functions]
+        bodies += [p.body for p in self._net.predicates]
+        for t in self._net.transitions:
+            bodies += [t.enumerate, t.fire, t.thresholds] if t.counts is None else []
+        found = (getattr(node, "place", None) for body in bodies for node in ir_nodes(body))
+        return frozenset(place for place in found if place is not None)
 
     def _function(self, f: ir.Function) -> dict[str, object]:
         s, x, scope = self._printer(f.body)
@@ -155,6 +166,7 @@ class _Emitter(Transitions):
         early = f"s_early_{member}"
         return {
             "mark": self._block(p.name, "place", p.origin),
+            "index": p.index,
             "name": p.name,
             "member": member,
             "bag": bag,
@@ -310,6 +322,9 @@ class _Emitter(Transitions):
             ),
             "proofs": list(proofs(net.places)),
             "orders": list(self._orders.functions.values()),
+            "with_functions": self._places_with_functions(),
+            "is_counting": any(t.counts is not None for t in net.transitions),
+            "is_all_counting": all(t.counts is not None for t in net.transitions),
             "packed_words": (packed_bits(net.places) + 63) // 64,
             "packed_size": (packed_bits(net.places) + 31) // 32 * 4,
             "transitions": transitions,

@@ -58,6 +58,7 @@ class Frame:
             and all(p.packed for p in net.places)
             and 0 < key_bits(net.places) <= KEY_BITS
         )
+        self._key = (1 << key_bits(net.places)) - 1
         self._sums_found: dict[int, dict[tuple[int, ir.Ir], Sum]] = {}
         self._referring = tuple(p.index for p in net.places if self._refers(p.table))
         self._kept = tuple(map(self._kept_in, net.places))

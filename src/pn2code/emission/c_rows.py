@@ -105,8 +105,47 @@ def place(p: ir.Place, bag_name: str, initial: str, shares: str) -> list[str]:
     return braces("", members, ",", "    ")
 
 
+def counts(
+    name: str, t: ir.Transition, places: Sequence[ir.Place], bags: Sequence[str]
+) -> list[str]:
+    """The table of a transition that only counts; none if there is nothing that it does.
+
+    Args:
+        name: of the constant.
+        t: the transition.
+        places: of the net.
+        bags: the constants of the places, with `&`.
+    """
+    rows = []
+    for c in t.counts or ():
+        kept = places[c.place].packed
+        assert kept is not None, c
+        values = (kept.bit, kept.width, c.needs, c.takes, c.puts)
+        rows.append(
+            f"    PN_COUNT({bags[c.place].lstrip('&')}, {', '.join(f'{v}U' for v in values)}),"
+        )
+    return [f"static const pn_count_t {name}[] = {{", *rows, "};"] if rows else []
+
+
+def counting(name: str, t: ir.Transition, key: int | None) -> str:
+    """The members for its functions, in the table of transitions.
+
+    Args:
+        name: of the constant made by `counts`.
+        t: the transition.
+        key: the bits of the key, where markings have a short one.
+    """
+    rows = f"{name if t.counts else 'NULL'}, {len(t.counts or ())}U"
+    return f"PN_COUNTING({rows})" if key is None else f"PN_COUNTING_WORDS({rows}, 0x{key:x}U)"
+
+
 def transition(
-    t: ir.Transition, code: str, further: Sequence[str], *, is_others: bool = False
+    t: ir.Transition,
+    code: str,
+    further: Sequence[str],
+    *,
+    is_others: bool = False,
+    functions: str = "",
 ) -> list[str]:
     """What hosts know of an instance of a transition.
 
@@ -115,14 +154,16 @@ def transition(
         code: the stem of the names of its functions.
         further: members that not all have.
         is_others: it is played by another program than the supervisor.
+        functions: the members for its functions, if it has none of its own.
     """
+    own = f"{'PN_OTHERS' if is_others else 'PN_CODE'}({code})"
     members = [
         f"/* {t.index} */ .name = {c_string(t.name)}",
         f".id = {c_string(t.id)}",
         f".origin = {c_string(t.origin.describe())}",
         f".owner = {t.owner}",
         f".priority = {t.priority}",
-        f"{'PN_OTHERS' if is_others else 'PN_CODE'}({code})",
+        functions or own,
         *further,
     ]
     return braces("", members, ",", "    ")

@@ -72,10 +72,16 @@ class Transitions(Frame):
         """What the tables of hosts say of one instance."""
         own = self._own_places(shared)
         stem, flags = self._stem(shared), ("looks", "looks_outside", "assigns", "search_assigns")
+        counting = ""
+        if t.counts is not None:
+            counting = c_rows.counting(
+                f"s_counts_of_{stem}", t, self._key if self._has_words else None
+            )
         affected = self._effects.affected(t.index)
         further = [f".places = &{self._names.instance(path_of(t), own.struct)}"] if own else []
-        further += [f".successors = {stem}_successors"] if self._net.has_successors else []
-        further += [f".words = {stem}_words"] if self._has_words else []
+        if not counting:
+            further += [f".successors = {stem}_successors"] if self._net.has_successors else []
+            further += [f".words = {stem}_words"] if self._has_words else []
         if len(affected) < len(self._net.transitions):
             further += c_rows.indices("affected", affected)
         further += c_rows.indices("touched", self._effects.touched(t.index))
@@ -84,7 +90,9 @@ class Transitions(Frame):
         return {
             "index": t.index,
             "code": code,
-            "lines": c_rows.transition(t, stem, further, is_others=self._is_others(t)),
+            "lines": c_rows.transition(
+                t, stem, further, is_others=self._is_others(t), functions=counting
+            ),
         }
 
     def _is_others(self, t: ir.Transition) -> bool:
@@ -106,7 +114,25 @@ class Transitions(Frame):
         instances = [f"    {c_comment(x.name)}" for x in shared.instances]
         return [c_comment(f"transition: {element}, at all of these:"), *instances]
 
+    def _counting(self, shared: Shared) -> dict[str, object]:
+        """What is printed of a transition that only counts: it looks at nothing and assigns nothing."""
+        t, name = shared.model, self._stem(shared)
+        return {
+            "marks": [self._block(t.name, "transition", t.origin)],
+            "index": t.index,
+            "stem": name,
+            "title": self._title(shared),
+            "guard": c_comment(f"guard [{t.guard_text}]") if t.guard_text else "",
+            "is_counting": True,
+            "counts": c_rows.counts(f"s_counts_of_{name}", t, self._net.places, self._bags),
+            "is_plain": False,
+            "thresholds": [],
+            **dict.fromkeys(("looks", "looks_outside", "assigns", "search_assigns"), False),
+        }
+
     def _transition(self, shared: Shared) -> dict[str, object]:
+        if shared.model.counts is not None:
+            return self._counting(shared)
         t = shared.model
         name, own = self._stem(shared), self._own_places(shared)
         members = Members()
@@ -165,6 +191,7 @@ class Transitions(Frame):
             "searches_marking": mentions("m", "\n".join(search.lines)),
             "fire": fire.lines,
             "fire_reach": own.reach(fire.lines, is_const=False) if own else [],
+            "is_counting": False,
             "is_direct": is_direct,
             "sums": [
                 self._sum_function(s, t, name, variables)

@@ -87,6 +87,11 @@ class _Dump:
         yield from self._block(t.enumerate, 2)
         yield "  fire"
         yield from self._block(t.fire, 2)
+        if t.counts is not None:
+            yield "  counts"
+            for c in t.counts:
+                name = self._place_name(c.place)
+                yield f"    {name} needs {c.needs} takes {c.takes} puts {c.puts}"
         if t.thresholds:
             yield "  thresholds"
             yield from self._block(t.thresholds, 2)

@@ -727,6 +727,17 @@ class Variable:
 
 
 @frozen
+class Count:
+    """What an occurrence of a transition that only counts does to a place: it takes and puts so many `()`, if as many
+    are there as it needs."""
+
+    place: int
+    needs: int
+    takes: int
+    puts: int
+
+
+@frozen
 class Transition:
     """A transition as two programs; and one more if delays of its input arcs have to be computed: `Threshold`s for all
     bindings that are possible whatever the stamps are."""
@@ -744,6 +755,8 @@ class Transition:
     thresholds: tuple[Stmt, ...] = ()
     places: tuple[tuple[int, str], ...] = ()
     """those of its arcs, with their names on its page"""
+    counts: tuple[Count, ...] | None = None
+    """all that it does, where hosts have a table of that instead of its programs; see `lowering.nets.counting`"""
 
 
 @frozen

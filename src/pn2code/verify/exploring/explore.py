@@ -209,6 +209,7 @@ def _explored(
                     return _too_late(net, limits, compiling, d)
                 return Exploration.of(net, nothing(net, limits), compiling)
             own = limits
+            is_first = is_first and made.is_quick
             if is_first:
                 most = limits.max_states or programs.FIRST_STATES
                 own = replace(limits, max_states=min(most, programs.FIRST_STATES))

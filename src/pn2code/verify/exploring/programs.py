@@ -132,11 +132,13 @@ class Generated:
         sizes: what the places of that program hold; None: nothing has been generated yet.
         files: its C.
         host: what it is compiled with for a large space.
+        is_quick: whether it was compiled quickly instead.
     """
 
     sizes: Sizes | None = None
     files: tuple[OutputFile, ...] = ()
     host: Host = HOST
+    is_quick: bool = False
 
 
 def generated(
@@ -169,8 +171,8 @@ def _lowered(
 
 
 def _host(net: ir.NetIR) -> Host:
-    """What a net is compiled with for a large space."""
-    if len(net.transitions) <= MANY:
+    """What a net is compiled with for a large space: by those of its transitions that have code, not only tables."""
+    if sum(t.counts is None for t in net.transitions) <= MANY:
         return HOST
     counters = sum(1 for p in net.places if p.packed is not None)
     return PACKED if 2 * counters > len(net.places) else LARGE
@@ -197,7 +199,8 @@ def program(
         d: gets the errors.
         predicates: what can be asked of its markings.
         interrupted: asked while compilers run.
-        quick: rather compile quickly than run quickly, unless it has been compiled already.
+        quick: rather compile quickly than run quickly, unless it has been compiled already, or a large net consists
+            of tables, which are compiled at once.
         made: what was generated for the same net and predicates; gets what is generated here.
     """
     made = Generated() if made is None else made
@@ -208,6 +211,10 @@ def program(
             return
         made.files = emit_c.emit(lowered, pn2code.__version__)
         made.host, made.sizes = _host(lowered), sizes
-    host = QUICK if quick and not programs.is_kept(made.host, made.files) else made.host
+    is_kept = programs.is_kept(made.host, made.files)
+    made.is_quick = (
+        quick and not is_kept and not (made.host == HOST and len(net.transitions) > MANY)
+    )
+    host = QUICK if made.is_quick else made.host
     with programs.program(host, made.files, d, interrupted=interrupted) as found:
         yield found
