@@ -2,7 +2,8 @@
 
 The net is a ring of stations with a queue each: lists, records, code segments, a guard, and no two transitions alike,
 so that none of them share a C function. Told of each size: how long the generated C is, what generating and compiling
-it takes, and how fast the explorer is; in turn with `-O2` and with what `c_flags` has for large nets. Processor time.
+it takes, and how fast the explorer is; in turn with `-O2`, with what `c_flags` has for large nets, and with what
+explorers of large nets have. Processor time.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import resource
 import subprocess
 import tempfile
 import time
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
@@ -27,7 +29,7 @@ from pn2code.verify.exploring.programs import Sizes
 SIZES = (100, 200, 300, 600)
 STATES = 1_000_000
 """So many are explored, of each size; the ring has more."""
-WAYS = (("-O2",), ("-O2", *c_flags.QUICKER))
+WAYS = (("-O2",), ("-O2", *c_flags.QUICKER), programs.LARGE.net)
 
 
 def ring(transitions: int) -> str:
@@ -120,14 +122,12 @@ def _explore(files: tuple[OutputFile, ...], repeat: int) -> list[float]:
     """Processor time of the explorers, in turn."""
     hosts = [replace(programs.HOST, net=("-DPN_MANY", *flags)) for flags in WAYS]
     d = Diagnostics()
-    with (
-        toolchain.program(hosts[0], files, d) as one,
-        toolchain.program(hosts[1], files, d) as other,
-    ):
-        if one is None or other is None:
+    with ExitStack() as stack:
+        built = [stack.enter_context(toolchain.program(host, files, d)) for host in hosts]
+        if any(program is None for program in built):
             raise SystemExit("bench: " + "; ".join(map(str, d)))
         options = ("--threads", "1", "--max-states", str(STATES))
-        runs = [[_work([str(p), *options]) for p in (one, other)] for _ in range(repeat)]
+        runs = [[_work([str(p), *options]) for p in built] for _ in range(repeat)]
     return [min(column) for column in zip(*runs, strict=True)]
 
 

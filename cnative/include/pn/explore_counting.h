@@ -41,12 +41,17 @@ bool pn_counting_words(pn_words_t *words, uint32_t self);
 /* Members of a row of the table of transitions; of a row of what it counts. */
 #define PN_COUNTING(rows, n)                                                                    \
     .enumerate = pn_counting_enumerate, .fire = pn_counting_fire, .binding = &pn_counting_type, \
-    .successors = pn_counting_successors, .places = &(const pn_counting_t){ .count = (n), .row = (rows) }
+    .successors = pn_counting_successors, .places = &(const pn_counting_t)                      \
+    {                                                                                           \
+        .count = (n), .row = (rows)                                                             \
+    }
 /* The same where markings have a short key. */
-#define PN_COUNTING_WORDS(rows, n, bits)                                                        \
-    .enumerate = pn_counting_enumerate, .fire = pn_counting_fire, .binding = &pn_counting_type, \
-    .successors = pn_counting_successors, .words = pn_counting_words,                           \
-    .places = &(const pn_counting_t){ .count = (n), .row = (rows), .key = (bits) }
+#define PN_COUNTING_WORDS(rows, n, bits)                                                               \
+    .enumerate = pn_counting_enumerate, .fire = pn_counting_fire, .binding = &pn_counting_type,        \
+    .successors = pn_counting_successors, .words = pn_counting_words, .places = &(const pn_counting_t) \
+    {                                                                                                  \
+        .count = (n), .row = (rows), .key = (bits)                                                     \
+    }
 #define PN_COUNT(place, at, bits, needed, taken, added) \
     { .bag = &(place), .bit = (at), .width = (bits), .needs = (needed), .takes = (taken), .puts = (added) }
 

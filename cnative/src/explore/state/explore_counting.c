@@ -6,9 +6,11 @@
 #include "pn/explore_counting.h"
 #include "pn/pn_packed.h"
 
-const pn_type_t pn_counting_type = {
-    .kind = PN_KIND_RECORD, .name = "()", .size = sizeof(pn_counting_binding_t), .count = 0U, .field = NULL
-};
+const pn_type_t pn_counting_type = { .kind = PN_KIND_RECORD,
+                                     .name = "()",
+                                     .size = sizeof(pn_counting_binding_t),
+                                     .count = 0U,
+                                     .field = NULL };
 
 static const pn_counting_t *counting_of(uint32_t self)
 {

@@ -17,7 +17,6 @@ from pn2code.base.frozen import frozen
 from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission import c as emit_c
-from pn2code.emission import c_flags
 from pn2code.emission.output import OutputFile
 from pn2code.ir import nodes as ir
 from pn2code.lowering.nets import net as lower_net
@@ -36,8 +35,8 @@ HOST = Host("explore", flags=("-pthread",), own=("-march=native",), libraries=("
 and the runtime that computes its values, are compiled as everywhere else."""
 QUICK = replace(HOST, net=("-O0",))
 """For small spaces: compiled in a fifth of the time. Only the net is slower, up to three times; the explorer is not."""
-LARGE = replace(HOST, net=("-DPN_MANY", *c_flags.QUICKER))
-"""For nets of many transitions: less than half of the compiler's time, and the explorer is as fast."""
+LARGE = replace(HOST, net=("-DPN_MANY", "-Og"))
+"""For nets of many transitions: a quarter of the compiler's time, and the explorer is as fast (docs/benchmarks.md)."""
 PACKED = replace(HOST, net=("-DPN_MANY", "-O2", "-finline"))
 """For those whose places are counters, which are what the compiler optimizes best. It decides itself (PN_MANY) what is
 worth having in several copies."""
