@@ -165,6 +165,7 @@ class Engine:
     now: float = 0.0
     activity: str = ""
     _next_model_time: float | None = None
+    _answer_due: float = math.inf
     _steps: Iterator[int] = field(default_factory=lambda: itertools.count(1))
     _finished: bool = False
     _activity_start: float = 0.0
@@ -281,6 +282,7 @@ class Engine:
         if result.stopped is not None:
             raise CellStoppedError(f"the supervisor stopped: {result.stopped}")
         self._next_model_time = result.next_time
+        self._answer_due = result.due
         self._finished = result.finished
         return result.fired > 0
 
@@ -337,6 +339,10 @@ class Engine:
                 self._begin_command(robot, command, line)
             case Finished():
                 robot.finished = True
+                try:
+                    robot.files.finished()  # the supervisor does not wait for its answers any more
+                except FileError as problem:
+                    raise CellStoppedError(f"{robot.script}: {robot.name}: {problem}") from None
             case Fault(message=message, line=line):
                 raise CellStoppedError(f"{robot.script}:{line}: {robot.name}: {message}")
 
@@ -382,6 +388,9 @@ class Engine:
             times.append(self._next_model_time)
         if not times:
             raise CellStoppedError(self._stuck())
+        if not self._finished:
+            # The supervisor stops for a late answer as soon as it is late, not when something else happens.
+            times.append(math.nextafter(self._answer_due, math.inf))
         return max(self.now, min(times))
 
     def _stuck(self) -> str:

@@ -9,6 +9,7 @@ messages go through the files as in real time. Leaving the `with` block never le
 
 from __future__ import annotations
 
+import math
 import os
 import selectors
 import signal
@@ -49,12 +50,14 @@ class StepResult:
         next_time: seconds at which something may become enabled by time alone, None if never.
         finished: a final place holds a token; the process ends.
         stopped: why the supervisor stopped (or died), None while it runs.
+        due: seconds after which a robot that owes an answer is late (I8), infinity if none owes one.
     """
 
     fired: int
     next_time: float | None
     finished: bool
     stopped: str | None
+    due: float = math.inf
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,9 +200,10 @@ class SupervisorProcess:
         words = line.split(" ")
         if words[0] == "stopped":
             return StepResult(0, None, False, line.removeprefix("stopped "))
-        if words[0] == "idle" and len(words) == 4:
+        if words[0] == "idle" and len(words) == 5:
             next_time = None if words[2] == "-" else float(words[2])
-            return StepResult(int(words[1]), next_time, words[3] == "finished", None)
+            is_finished = words[3] == "finished"
+            return StepResult(int(words[1]), next_time, is_finished, None, float(words[4]))
         if line:
             return StepResult(
                 0, None, False, f"the supervisor gave an answer that cannot be understood: {line!r}"

@@ -84,7 +84,7 @@ static void print_help(const char *program)
         "  --max-firings N    most firings in one cycle (100000); without a cell, and in a dry run: in all (1000000)\n"
         "  --poll MS          look at the files every MS milliseconds instead of being woken by inotify\n"
         "  --lockstep         take time and cycles from standard input: `step SECONDS` is answered by\n"
-        "                     `idle FIRED NEXT running|finished` or `stopped REASON`; `stop REASON` stops\n"
+        "                     `idle FIRED NEXT running|finished DUE` or `stopped REASON`; `stop REASON` stops\n"
         "  -q, --quiet        print nothing but errors\n"
         "  -v, --verbose      print each firing and each message received\n"
         "  --version          print name, version and digest\n"

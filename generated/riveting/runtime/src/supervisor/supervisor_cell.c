@@ -30,7 +30,7 @@ typedef struct channel_state {
 
 typedef struct peer_state {
     bool owes;            /* a flag was written to it, and nothing has come back since */
-    double owes_since;    /* s, on the cell's clock: wall time, or lock-step's */
+    double due;           /* s, on the cell's clock (wall time, or lock-step's): if it owes, late after that */
     const char *owes_for; /* the flag's file */
     bool idle_end;        /* it has finished although it owes, seen once: its last message may still be on its way */
 } peer_state_t;
@@ -204,7 +204,7 @@ static bool publish_token(sup_t *sup, uint32_t index)
     s_cell.sent++;
     if ((channel->kind == PN_CHANNEL_FLAG) && !peer->owes) {
         peer->owes = true;
-        peer->owes_since = sup->t;
+        peer->due = (sup->options.reply_timeout_s > 0.0) ? (sup->t + sup->options.reply_timeout_s) : (double)INFINITY;
         peer->owes_for = channel->file;
     }
     return true;
@@ -279,11 +279,10 @@ static bool look_at_peer(sup_t *sup, uint32_t index, pn_party_t *party)
     case PN_PARTY_RUNNING:
     default: break;
     }
-    const double limit = sup->options.reply_timeout_s;
-    if (good && peer->owes && (limit > 0.0) && (sup->t - peer->owes_since > limit)) {
-        good =
-            sup_stop(sup, SUP_EXIT_PEER, "%s has not answered %s for %g s%s", name, peer->owes_for, limit,
-                     (party->state == PN_PARTY_ABSENT) ? "; it has not announced itself at all: is it running?" : "");
+    if (good && peer->owes && (sup->t > peer->due)) {
+        good = sup_stop(
+            sup, SUP_EXIT_PEER, "%s has not answered %s for %g s%s", name, peer->owes_for, sup->options.reply_timeout_s,
+            (party->state == PN_PARTY_ABSENT) ? "; it has not announced itself at all: is it running?" : "");
     }
     return good;
 }
@@ -389,12 +388,18 @@ static bool command_line(char *line, size_t capacity)
 static bool step_command(sup_t *sup, double t, bool *finished)
 {
     uint64_t fired = 0U;
-    char text[128];
+    char text[160];
     char when[PN_REAL_TEXT_SIZE];
     double next = 0.0;
+    double due = (double)INFINITY;
     (void)memcpy(when, "-", sizeof "-");
     if (!look_at_peers(sup) || !cycle(sup, t, &fired)) {
         return false;
+    }
+    for (uint32_t i = 0U; i < sup->cell->peer_count; i++) {
+        if (s_cell.peer[i].owes && (s_cell.peer[i].due < due)) {
+            due = s_cell.peer[i].due;
+        }
     }
     if (sup_next_time(sup, &next)) {
         pn_text_t number;
@@ -402,7 +407,8 @@ static bool step_command(sup_t *sup, double t, bool *finished)
         pn_text_real(&number, next);
     }
     *finished = sup_is_final(sup);
-    (void)snprintf(text, sizeof text, "idle %" PRIu64 " %s %s", fired, when, *finished ? "finished" : "running");
+    (void)snprintf(text, sizeof text, "idle %" PRIu64 " %s %s %.17g", fired, when, *finished ? "finished" : "running",
+                   due);
     answer(text);
     return true;
 }
