@@ -45,7 +45,8 @@ CELL_FINAL = register(
     "a final place cannot show that the supervisor has finished",
     "`final` of [supervisor] lists places of the supervisor: the cell has finished when one of them holds a token. "
     "The supervisor sees neither the places of a robot nor the contents of a channel, so a place of a robot or a "
-    "channel cannot be final. If no transition of the supervisor puts a token into the place, there is a warning: the "
+    "channel cannot be final. Nor can a place with a timed colour set: its token may lie in the future. If no "
+    "transition of the supervisor puts a token into the place, there is a warning: the "
     "cell never ends there.",
 )
 PRIMITIVE_ENTRY = register(

@@ -231,6 +231,15 @@ def _final(
                 hint="let a transition of the supervisor put a token into a place of its own when the cell has "
                 "finished, and name that place",
             )
+        elif place.colset.timed:
+            d.error(
+                codes.CELL_FINAL,
+                f"final: place `{place.name}` has the timed colour set `{place.colset.name}`, so that it is not clear "
+                "whether the cell has finished when the token is put or when it becomes available",
+                at,
+                notes=[Note("the place is here", place.origins[0])],
+                hint="let a transition take the timed token and put one without a time stamp into the final place",
+            )
         elif 0 not in writers[place.index] and place.initial is None:
             # The cell is as it is drawn; what is proved about its end will say so as well.
             d.warning(

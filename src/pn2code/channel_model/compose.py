@@ -22,10 +22,36 @@ from collections.abc import Callable, Iterator
 from pn2code.cell.partition import ChannelKind, Partition
 from pn2code.channel_model.faults import Fault
 from pn2code.channel_model.life_cycle import LifeCycle
-from pn2code.channel_model.places import Crashes, Files, MediumNet
+from pn2code.channel_model.places import Crashes, Files, MediumNet, modelled
 from pn2code.channel_model.rules import Emptying, Rules
 from pn2code.ml.core.terms import Exp
 from pn2code.net.builder import Arc
+from pn2code.net.flat import ArcKind
+
+
+def repeated_unseen(partition: Partition) -> frozenset[int]:
+    """The transitions of scripts that touch no message and that may follow themselves without one that does."""
+    messages = {c.place for c in modelled(partition)}
+    takers: dict[int, set[int]] = {}
+    puts: dict[int, set[int]] = {}
+    for t in partition.net.transitions:
+        if partition.transition_owner[t.index] and not any(a.place in messages for a in t.arcs):
+            puts[t.index] = {a.place for a in t.arcs if a.kind in (ArcKind.OUTPUT, ArcKind.BOTH)}
+            for a in t.arcs:
+                if a.kind in (ArcKind.INPUT, ArcKind.BOTH):
+                    takers.setdefault(a.place, set()).add(t.index)
+    found = set()
+    for first in puts:
+        seen: set[int] = set()
+        todo = [first]
+        while todo:
+            after = {x for place in puts[todo.pop()] for x in takers.get(place, ())} - seen
+            seen |= after
+            todo += after
+        if first in seen:
+            found.add(first)
+    return frozenset(found)
+
 
 Extra = Callable[["Composer"], None]
 """Adds transitions when the composition is done."""
@@ -67,6 +93,8 @@ class Composer(LifeCycle):
         reads = {f.made: f.read for f in self.files}
         for o in range(len(self.sides)):
             self.says_of.append(self.memory(o, "says"))
+        repeated = repeated_unseen(self.partition)
+        pauses: dict[int, int] = {}
         for t in self.partition.net.transitions:
             o = self.partition.transition_owner[t.index]
             side = self.sides[o]
@@ -74,6 +102,12 @@ class Composer(LifeCycle):
             arcs = [self.has(side.calm)]
             if o and touches:  # a script empties and writes after each transition
                 arcs = [self.off(side.calm), self.on(self.says_of[o])]
+            elif t.index in repeated:
+                # What a side repeats for ever in its memory must not keep the others from doing anything.
+                if o not in pauses:
+                    pauses[o] = self.memory(o, "pause")
+                    self.step(f"{side.name}.goes on", "", self.off(pauses[o]), self.on(side.calm))
+                arcs = [self.off(side.calm), self.on(pauses[o])]
             self.b.add_arcs(t.index, arcs, reads)
         for f in self.files:
             name = self.partition.owners[f.channel.reader].name

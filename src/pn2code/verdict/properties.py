@@ -149,7 +149,17 @@ def _bindings_of_cell(
                     split.restore(Path(row["trace"]))
         about = split.properties
     looked = replace(control, found=seen)
-    return tuple(of_cell(about, said, looked, partition, closed, all_orders=is_choosing))
+    return tuple(
+        of_cell(
+            about,
+            said,
+            looked,
+            partition,
+            closed,
+            storage=opened.storage,
+            all_orders=is_choosing,
+        )
+    )
 
 
 def divided(opened: OpenNet, d: Diagnostics) -> Partition | None:
@@ -210,7 +220,9 @@ def answered(
     if nondeterminism.draws(opened.flat):
         plain, more = tuple(map(drawn, plain)), tuple(map(drawn, more))
     if control is not None and (partition := divided(opened, d)) is not None:
-        plain = tuple(of_cell(asked.plain, control.answers, control, partition, plain))
+        plain = tuple(
+            of_cell(asked.plain, control.answers, control, partition, plain, storage=opened.storage)
+        )
     by_name = {answer.about.name: answer for answer in (*plain, *more)}
     given = tuple(by_name[p.name] for p in asked.properties.properties)
     named = _named(given, folder, stem)

@@ -121,6 +121,15 @@ def test_a_final_place_that_the_supervisor_never_marks(tmp_path: Path) -> None:
     assert "no transition of the supervisor puts a token" in found.message
 
 
+def test_a_final_place_is_not_timed(tmp_path: Path) -> None:
+    """Its token may lie in the future: has the cell finished?"""
+    net = changed(NET, "    place Finished : INT\n", "    place Finished : TINT\n")
+    net = changed(net, "  standard\n", "  standard\n  colset TINT = int timed;\n")
+    found = [i for i in said(tmp_path, net, TOML) if i.code == "cell-final"]
+    assert [i.severity for i in found] == [Severity.ERROR]
+    assert "timed colour set `TINT`" in found[0].message
+
+
 def test_the_kind_of_a_channel_follows_from_its_scalars(tmp_path: Path) -> None:
     """Data are written before the flags, so several scalars are data where nothing is said."""
     toml = changed(TOML, 'file = "data.robcad"\nkind = "data"', 'file = "data.robcad"')

@@ -21,6 +21,7 @@ from pn2code.verify.answers.properties import Answer, Evidence, answers
 from pn2code.verify.answers.reasons import clause
 from pn2code.verify.controller.control_answers import can_more, has_own_priorities
 from pn2code.verify.controller.control_types import Control
+from pn2code.verify.controller.overtaking import is_in_order
 from pn2code.verify.exploring import nondeterminism
 
 _PRIORITIES = (
@@ -38,6 +39,52 @@ _CHOICES = (
 _NEXT = "it is about the very next step, but between two occurrences the programs take steps of their own"
 _INITIAL = "when the net returns to its initial marking, the programs are not at their start again"
 _WAITS = "the net knows neither how long moves take nor how late the supervisor is"
+
+
+_ORDERS = (
+    "it says that something can happen, and a script that waits for several messages may take them in fewer orders "
+    "than are looked at"
+)
+
+_OVERTAKEN = (
+    "in the run that was found a script takes a message although it would have seen another one before it, and whether "
+    "there is a run in which it does not is not known"
+)
+
+
+def is_about_all(asked: m.Asked) -> bool:
+    """Whether "yes" holds as well for programs that do less: it says of all paths what is so of them, and no more.
+
+    Not so where fairness is assumed: a transition that seems to be possible, and is not, makes paths unfair.
+    """
+    match asked:
+        case m.Bound() | m.Response():
+            return True
+        case m.Invariant():
+            return asked.wanted
+        case m.Linear():
+            return not asked.fair
+        case m.Branching(formula):
+            return _is_universal(formula, True)
+
+
+def _is_universal(f: m.Formula, positive: bool) -> bool:
+    if isinstance(f, m.Atom):
+        return f.kind in ("true", "pred", "initial")
+    match f.operator:
+        case "not":
+            return _is_universal(f.parts[0], not positive)
+        case "implies":
+            a, b = f.parts
+            return _is_universal(a, not positive) and _is_universal(b, positive)
+        case "iff":
+            return all(_is_universal(x, sign) for x in f.parts for sign in (True, False))
+        case operator if operator.startswith("E"):
+            return not positive and all(_is_universal(x, positive) for x in f.parts)
+        case operator if operator.startswith("A"):
+            return positive and all(_is_universal(x, positive) for x in f.parts)
+        case _:
+            return all(_is_universal(x, positive) for x in f.parts)
 
 
 def is_kept(p: m.Property) -> bool:
@@ -66,6 +113,7 @@ def of_cell(
     partition: Partition,
     closed: Sequence[Answer],
     *,
+    storage: Mapping[str, str] | None = None,
     all_orders: bool = False,
 ) -> Iterator[Answer]:
     """The answers; runs are those of the net, without steps of programs.
@@ -76,6 +124,7 @@ def of_cell(
         control: what the cell was looked at in.
         partition: the cell.
         closed: the answers of the closed net.
+        storage: as for `Game`.
         all_orders: whether the supervisor was left its choice, so that it may do less.
     """
     found = control.found
@@ -95,6 +144,9 @@ def of_cell(
         )  # of parts of transitions, what is assumed is a part of the formula
         is_fair = isinstance(asked, m.Linear) and bool(asked.fair)
         certain = _certain(answer, control, drawn, all_orders, is_fair)
+        if certain.evidence is not None and not _can_be_done(answer, control, storage or {}):
+            certain = Answer(answer.about, "inconclusive", _OVERTAKEN)
+        certain = _projected(certain, control)
         found_one = _one(of_net, certain, partition)
         assumes = control.premises.of_property(asked, found_one.answer, kept=found_one.kept)
         yield replace(found_one, assumes=assumes)
@@ -119,15 +171,32 @@ def _certain(
     is_possible = isinstance(asked, m.Invariant) and not asked.wanted
     if not open_ and answer.answer == "yes" and not (is_kept(answer.about) or is_possible):
         open_ = control.stops
+    if not open_ and answer.answer == "yes" and running is not None and running.meek:
+        open_ = "" if is_about_all(asked) or answer.evidence is not None else _ORDERS
     if not open_ and drawn and answer.evidence is None:
         open_ = clause("chance")
     if open_:
         return Answer(answer.about, "inconclusive", open_)
-    if answer.evidence is None or running is None:
-        return replace(answer, node=None)
+    return replace(answer, node=None)
+
+
+def _can_be_done(answer: Answer, control: Control, storage: Mapping[str, str]) -> bool:
+    """Whether scripts can take their messages as in the run, as far as that can be found out."""
+    e, running = answer.evidence, control.running
+    if e is None or running is None or not running.meek:
+        return True
+    if nondeterminism.draws(running.partition.net):
+        return True  # it cannot be played with other numbers
+    return is_in_order(running, storage, e.trace) is not False
+
+
+def _projected(answer: Answer, control: Control) -> Answer:
+    """With the run of the cell's net, without the steps of programs."""
     e = answer.evidence
-    steps, loop = running.project(e.trace, e.loop)
-    return replace(answer, node=None, evidence=Evidence(e.trace, steps, loop))
+    if e is None or control.running is None:
+        return answer
+    steps, loop = control.running.project(e.trace, e.loop)
+    return replace(answer, evidence=Evidence(e.trace, steps, loop))
 
 
 def _asks_initial(asked: m.Asked) -> bool:

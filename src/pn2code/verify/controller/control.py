@@ -26,6 +26,7 @@ from pn2code.base.deadline import NEVER
 from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import ArcKind
+from pn2code.properties import meaning as m
 from pn2code.properties.questions import Questions
 from pn2code.verify.controller.control_answers import (
     STILL,
@@ -82,7 +83,7 @@ def of_cell(running: Running, plan: Plan) -> str:
     """The lines for the explorer about the cell: first properties, then what `cell_answers` understands."""
     asked = Questions()
     for p in plan.properties.properties:
-        asked.ask(p.asked)
+        asked.ask(_with_programs(p.asked, running))
     end = "-"
     if running.partition.final_places:
         end = str(asked.line(f"ef {asked.line(f'within {running.over} 1 -')}"))
@@ -96,6 +97,20 @@ def of_cell(running: Running, plan: Plan) -> str:
         *([] if running.unsure is None else [f"? bound {running.unsure} 0 0"]),
     ]
     return "".join(f"{line}\n" for line in running.lines(first=True)) + asked.text()
+
+
+def _with_programs(asked: m.Asked, running: Running) -> m.Asked:
+    """Who assumes that a transition is treated fairly assumes as well that the programs run.
+
+    A transition is enabled in the cell only when its program has come to it: if no step of the program ever had to be
+    taken, nothing of a path on which the program stands still would be unfair. Steps of the clock, and those that stop
+    the cell, are left out: whoever assumes less proves less.
+    """
+    if not isinstance(asked, m.Linear) or not asked.fair:
+        return asked
+    return replace(
+        asked, fair=(*asked.fair, *(m.Fairness(False, i) for i in running.steps_that_come()))
+    )
 
 
 def _kept_silence(asked: Questions, silence: Silence, idle: int) -> int:

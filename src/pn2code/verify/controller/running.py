@@ -137,6 +137,17 @@ class Running:
                 f"the net does not show when a script waits: {problem}"
             ) from None
 
+    def steps_that_come(self) -> Iterator[int]:
+        """The steps of programs that are taken sooner or later: not those of the clock, or that stop the cell."""
+        count = len(self.partition.net.transitions)
+        others = {*self.clock, *self.probes}
+        ends = {p for p in (self.stopped, self.unsure) if p is not None}
+        for t in self.net.transitions[count:]:
+            if t.index not in others and not any(
+                a.place in ends and a.kind is ArcKind.OUTPUT for a in t.arcs
+            ):
+                yield t.index
+
     def lines(self, *, first: bool, names: Sequence[str] | None = None) -> list[str]:
         """How the programs choose.
 

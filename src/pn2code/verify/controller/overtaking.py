@@ -1,0 +1,103 @@
+"""Whether scripts could take their messages as they do in a run of the cell.
+
+A script that waits for several messages takes, when it is woken, the first transition in its order that is possible. In
+the cell as it runs (`running`) a later one may occur although an earlier one is possible as well (`Running.meek`): the
+message of the earlier one may have come after the script had looked for it. That is so only if the later one was
+possible at a time when the earlier one was not, since the script last did something.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from pn2code.net.flat import FlatTransition
+from pn2code.semantics.evaluation.files import Files
+from pn2code.semantics.game.marking import BindingElement, Marking
+from pn2code.semantics.game.token_game import Game
+from pn2code.trace.script import Trace
+from pn2code.verify.controller.running import Running
+
+MOST_STEPS = 3_000
+"""Longer runs take the token game too long; of them it is not known."""
+
+
+def is_in_order(running: Running, storage: Mapping[str, str], trace: Path) -> bool | None:
+    """Whether the programs can have done this.
+
+    Args:
+        running: the cell as it runs.
+        storage: as for `Game`.
+        trace: a run of its net, with the steps of programs.
+
+    Returns:
+        None: the run is too long to say.
+
+    Raises:
+        TraceRefusedError, GameError, OSError: it cannot be played.
+    """
+    earlier = _earlier(running)
+    if not earlier:
+        return True
+    opened = Trace.open(trace, running.net, is_shown=True)
+    header = opened.header
+    game = Game(
+        running.net,
+        storage,
+        header.initial or None,
+        seed=header.seed or 1,
+        still=header.still,
+        files=Files(None),
+    )
+    owners = running.partition.transition_owner
+    since: dict[int, list[Marking]] = {owner: [] for owner in set(owners)}
+    for number, step in enumerate(opened.steps(), 1):
+        if number > MOST_STEPS:
+            return None
+        if step.time is not None and step.time > game.marking.time:
+            game.set_time(step.time)
+        t = step.transition.index
+        if t < len(owners):
+            seen = [*since[owners[t]], game.marking]
+            if not _may_come_first(game, step.transition, earlier.get(t, ()), seen):
+                return False
+        game.fire(BindingElement.make(step.transition, step.bound), checked=False)
+        for owner, markings in since.items():
+            if t < len(owners) and owners[t] == owner:
+                markings.clear()
+            else:
+                markings.append(game.marking)
+    return True
+
+
+def _earlier(running: Running) -> dict[int, list[FlatTransition]]:
+    """By transition of a script those that come before it, and that the model lets it overtake."""
+    net, owners = running.partition.net, running.partition.transition_owner
+    meek = [running.net.transitions[i] for i in running.meek]
+    return {
+        t.index: rivals
+        for t in net.transitions
+        if (
+            rivals := [
+                r
+                for r in meek
+                if owners[r.index] == owners[t.index]
+                and (r.priority, r.index) < (t.priority, t.index)
+            ]
+        )
+    }
+
+
+def _may_come_first(
+    game: Game, t: FlatTransition, rivals: Sequence[FlatTransition], seen: Sequence[Marking]
+) -> bool:
+    """Whether a transition can have been taken before each rival that is possible in the last marking as well."""
+    return all(
+        any(_is_possible(game, t, m) and not _is_possible(game, r, m) for m in seen)
+        for r in rivals
+        if _is_possible(game, r, seen[-1])
+    )
+
+
+def _is_possible(game: Game, t: FlatTransition, marking: Marking) -> bool:
+    return next(game.bindings(t, marking), None) is not None

@@ -1,0 +1,219 @@
+"""Programs that go on by themselves, that have ended, and that are late: in what is proved, and in runs."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from typer.testing import CliRunner
+
+from e2e.test_running_cell import ACT, ECHO, ONE, SLOW, TOOL, net, ran, toml, write
+from helpers.netbuilder import cpn
+from pn2code.cli.main import app
+
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
+
+# B blinks, and waits for nothing.
+BLINK = net(
+    ONE
+    + """    place Mute : INT
+    trans Hush
+      in Mute : k
+      out toB : k
+    trans HearB
+      in Mute : k
+      in fromB : k
+""",
+    {
+        "A": ECHO,
+        "B": """    place On = 1
+    place Never : INT
+    trans Blink code action act ()
+      both On : ()
+    trans Listen
+      in Never : n
+      in ask : k
+      out say : k
+""",
+    },
+    ACT + "  var n: INT;\n",
+)
+# B's script ends without an answer, and the supervisor has something to wait for when A has answered.
+ENDED = net(
+    ONE.replace("      in fromA : k\n      out Finished", "      in fromA : k\n      out Timer")
+    .replace("out Timer : ()", "out Timer : ()@+5")
+    .replace("out toA : 1", "out toA : 1\n      out toB : 1")
+    .replace("    place Armed\n", "    place Armed\n    place Timer : TU\n")
+    + """    place Mute : INT
+    trans Leave
+      in Timer : ()
+      out Finished : ()
+    trans HearB
+      in Mute : k
+      in fromB : k
+""",
+    {
+        "A": SLOW,
+        "B": """    place Waiting = 1
+    place Over
+    place Mute : INT
+    trans Accept
+      in Waiting : ()
+      in ask : k
+      out Over : ()
+    trans Answer
+      in Mute : k
+      out say : k
+""",
+    },
+    ACT + "  colset TU = unit timed;\n",
+)
+# The robot is told A, then B, and looks at the file of A first: it never takes B.
+TWO = """
+    net cell
+      standard
+      var k: INT;
+      page Top
+        place fa : INT
+        place fb : INT
+        place done : INT
+        subst Supervisor = Sup (fa -> fa, fb -> fb, done -> done)
+        subst A = Rob (fa -> fa, fb -> fb, done -> done)
+      page Sup
+        place fa port out : INT
+        place fb port out : INT
+        place done port in : INT
+        place Start = 1
+        place Armed
+        place Finished
+        trans Ask
+          in Start : ()
+          out fa : 1
+          out fb : 1
+          out Armed : ()
+        trans Got
+          in Armed : ()
+          in done : k
+          out Finished : ()
+      page Rob
+        place fa port in : INT
+        place fb port in : INT
+        place done port out : INT
+        place Waiting = 1
+        place PA
+        place PB
+        place Over
+        trans TA
+          in Waiting : ()
+          in fa : k
+          out PA : ()
+        trans TB
+          in Waiting : ()
+          in fb : k
+          out PB : ()
+        trans RA
+          in PA : ()
+          out Over : ()
+          out done : 1
+        trans RB
+          in PB : ()
+          out Over : ()
+          out done : 2
+"""
+TWO_CELL = """
+[net]
+file = "cell.cpn"
+[supervisor]
+instance = "Supervisor"
+final = ["Finished"]
+[[channel]]
+place = "fa"
+file = "fa.robcad"
+[[channel]]
+place = "fb"
+file = "fb.robcad"
+kind = "flag"
+[[channel]]
+place = "done"
+file = "done.robcad"
+[devices.A]
+instance = "A"
+"""
+
+
+def said(folder: Path, *holds: str) -> dict[str, Any]:
+    """What `verify --json` says of a cell and of properties."""
+    options = [x for text in holds for x in ("--property", text)]
+    done = CliRunner().invoke(
+        app, ["verify", str(folder), "--json", "--traces", str(folder / "traces"), *options]
+    )
+    assert done.stdout and "bug in pn2code" not in done.stderr, done.stderr
+    return json.loads(done.stdout)  # type: ignore[no-any-return]
+
+
+def test_a_device_that_blinks_keeps_nobody_from_anything(tmp_path: Path) -> None:
+    """Without fairness the others may stand still for ever; with it their programs run."""
+    finished = "ltl F tokens(Finished) = 1"
+    cell = toml(["A", "B"], TOOL)
+    flag = 'file = "toB.robcad"\nkind = "flag"'
+    assert flag in cell
+    cell = cell.replace(flag, flag.replace("flag", "data"))
+    found = said(
+        write(tmp_path, BLINK, cell),
+        finished,
+        *(
+            f"{finished} assuming {fair}"
+            for fair in (
+                "weak all",
+                "strong all",
+                'weak Ask, weak End, weak "Top.A.Accept", weak "Top.A.Answer"',
+            )
+        ),
+    )
+    answers = [(p["answer"], p["why"]) for p in found["properties"]]
+    assert answers == [("no", None), *[("yes", None)] * 3]
+    whole = found["medium"][0]
+    assert (whole["answer"], whole["why"]) == ("yes", None)
+    assert next(c for c in found["controller"] if c["check"] == "non-blocking")["answer"] == "yes"
+
+
+def test_what_a_script_may_come_to_is_not_promised(tmp_path: Path) -> None:
+    """More is looked at than it does: that is enough for what is never so, and not for what can be."""
+    asks = [
+        "reachable tokens(PB) >= 1",
+        "ctl EF tokens(PB) >= 1",
+        "ctl AG (!(tokens(PB) >= 1) || !(tokens(PA) >= 1))",
+        "never tokens(PA) >= 1 && tokens(PB) >= 1",
+        "ltl F tokens(Finished) = 1",
+        "ltl F fires(TB) assuming strong TB",
+        "never tokens(PB) >= 1",
+        "reachable tokens(PA) >= 1",
+    ]
+    (tmp_path / "cell.cpn").write_bytes(cpn(TWO))
+    (tmp_path / "cell.toml").write_text(TWO_CELL, encoding="utf-8")
+    found = said(tmp_path, *asks)
+    answers = [p["answer"] for p in found["properties"]]
+    assert answers[:4] == ["inconclusive", "inconclusive", "yes", "yes"]
+    assert answers[5] != "yes"
+    assert answers[6:] == ["inconclusive", "yes"]
+    assert "fewer orders" in found["properties"][5]["why"]
+    assert "would have seen another one" in found["properties"][6]["why"]
+
+
+@pytest.mark.parametrize("name", ["ended", "late"])
+def test_lockstep_stops_for_what_stops_the_supervisor(name: str, tmp_path: Path) -> None:
+    """A script that has ended and owes an answer, and an answer that is late while nothing else happens (I8)."""
+    if name == "ended":
+        text = ENDED
+        cell, why = toml(["A", "B"], TOOL), "B has finished, but it owes an answer to toB.robcad"
+    else:
+        text = net(ONE, {"A": SLOW}, ACT)
+        cell = toml(["A"], TOOL.replace("2.0", "9.0"))
+        cell = cell.replace("final =", "reply_timeout_s = 4\nfinal =")
+        why = "A has not answered toA.robcad for 4 s"
+    last = ran(write(tmp_path, text, cell))[-1]
+    assert why in str(last.get("reason")), last
+    if name == "late":
+        assert last["t"] == pytest.approx(4.0)
