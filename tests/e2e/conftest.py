@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from helpers.compiled import DELIVERED
-from helpers.explored import Explorers
+from helpers.explored import SANITIZERS, Explorers
 from helpers.generated import Remembered
 from helpers.objects import Objects
 from helpers.session import common, once
@@ -102,3 +102,16 @@ def explorers(tmp_path_factory: pytest.TempPathFactory) -> Explorers:
         pytest.skip("no C compiler")
     compiled = once(tmp_path_factory, "explorer", Explorers.open)
     return Explorers.of(compiled, tmp_path_factory.mktemp("explorers"))
+
+
+@pytest.fixture(scope="session")
+def sanitized(tmp_path_factory: pytest.TempPathFactory) -> Explorers:
+    """The same with the sanitizers for addresses and undefined behaviour."""
+    if build.find_compiler() is None:
+        pytest.skip("no C compiler")
+
+    def make(folder: Path) -> None:
+        Explorers.open(folder, SANITIZERS)
+
+    compiled = once(tmp_path_factory, "explorer-sanitized", make)
+    return Explorers.of(compiled, tmp_path_factory.mktemp("sanitized"), SANITIZERS)
