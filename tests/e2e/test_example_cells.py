@@ -169,6 +169,7 @@ def test_a_cell_that_goes_on_for_ever_is_verified_without_its_time(
 
 
 @pytest.mark.cc
+@pytest.mark.usefixtures("generated_once")
 def test_run(
     example: tuple[Path, Expected], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
