@@ -12,8 +12,9 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 from helpers.compiled import DELIVERED, FAST, SANITIZERS, Workshop
-from helpers.session import once
+from helpers.session import alone, common, once
 from helpers.thorough import THOROUGH
+from pn2code.diagnostics import Diagnostics
 from pn2code.toolchain import build, programs
 from pn2code.verify.controller import proofs
 
@@ -62,12 +63,21 @@ settings.load_profile("any machine")
 
 
 @pytest.fixture(scope="session", autouse=True)
-def quick_programs() -> Iterator[None]:
+def quick_programs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """Explorers and simulators are compiled without optimization, which takes a third of the time.
 
-    Not so for those who use `as_delivered`, nor in `make thorough`.
+    Not so for those who use `as_delivered`, nor in `make thorough`. Their runtime is compiled by one worker; others
+    that want the same wait for it.
     """
+    folder = common(tmp_path_factory)
+    library = programs._Builder._library
+
+    def one_library(builder: programs._Builder, room: Path, d: Diagnostics) -> bool:
+        with alone(folder, builder.library.name):
+            return library(builder, room, d)
+
     with pytest.MonkeyPatch.context() as changed:
+        changed.setattr(programs._Builder, "_library", one_library)
         changed.setattr(proofs, "MOST_SECONDS", 3600.0)  # what is known does not depend on time
         if not THOROUGH:
             flags = tuple("-O0" if flag == "-O2" else flag for flag in DELIVERED)

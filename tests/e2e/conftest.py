@@ -2,18 +2,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
 
-from helpers.explored import Explorers
+from helpers.compiled import DELIVERED
+from helpers.explored import SANITIZERS, Explorers
 from helpers.generated import Remembered
-from helpers.session import once
+from helpers.objects import Objects
+from helpers.session import common, once
 from pn2code import pipeline
 from pn2code.diagnostics import Diagnostics, render
 from pn2code.emission.write import write
-from pn2code.toolchain import build
+from pn2code.pipeline import Generated
+from pn2code.toolchain import build, programs
+
+LARGE = ("timed",)
+"""Examples with so many states, as they run, that to explore them takes longer than to compile the explorer well."""
+
+
+@pytest.fixture(scope="session", autouse=True)
+def objects(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """The runtime of cells is compiled once with each set of flags, also when several workers build them."""
+    folder = common(tmp_path_factory) / "objects"
+    folder.mkdir(exist_ok=True)
+    with pytest.MonkeyPatch.context() as changed:
+        changed.setattr(build, "build", Objects(build.build, folder))
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -25,9 +41,27 @@ def quick_build() -> Iterator[None]:
 
 
 @pytest.fixture(scope="session")
-def remembered() -> Remembered:
-    """What `generated_once` remembers."""
-    return Remembered(pipeline.generate)
+def remembered(tmp_path_factory: pytest.TempPathFactory) -> Remembered:
+    """What `generated_once` remembers, for all workers."""
+    folder = common(tmp_path_factory) / "generated"
+    folder.mkdir(exist_ok=True)
+    return Remembered(pipeline.generate, folder)
+
+
+@pytest.fixture(scope="session")
+def of_example(root: Path, remembered: Remembered) -> Callable[[str], Generated]:
+    """An example cell, generated once a session, of which there is nothing to say."""
+
+    def generated(name: str) -> Generated:
+        d = Diagnostics()
+        with pytest.MonkeyPatch.context() as changed:
+            if name in LARGE:
+                changed.setattr(programs, "FLAGS", DELIVERED)
+            found = remembered(root / "examples" / name, d)
+        assert found is not None and not list(d), render.report(d)
+        return found
+
+    return generated
 
 
 @pytest.fixture(scope="module")
@@ -39,7 +73,9 @@ def generated_once(remembered: Remembered) -> Iterator[None]:
 
 
 @pytest.fixture(scope="session")
-def riveting_program(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def riveting_program(
+    of_example: Callable[[str], Generated], tmp_path_factory: pytest.TempPathFactory
+) -> Path:
     """The folder of the riveting cell, generated and built once a session, also when several workers share it.
 
     It holds `supervisor`, `supervisor.traced`, the scripts and all that `pn2code generate` writes. Only read it.
@@ -51,8 +87,7 @@ def riveting_program(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Pa
         d = Diagnostics()
         with pytest.MonkeyPatch.context() as patch:
             patch.delenv("CFLAGS", raising=False)
-            generated = pipeline.generate(root / "examples" / "riveting", d)
-            assert generated is not None, render.report(d)
+            generated = of_example("riveting")
             write(folder, generated.files)
             for target in ("supervisor", "supervisor.traced"):
                 assert build.build(folder, generated.files, d, target=target), render.report(d)
@@ -67,3 +102,16 @@ def explorers(tmp_path_factory: pytest.TempPathFactory) -> Explorers:
         pytest.skip("no C compiler")
     compiled = once(tmp_path_factory, "explorer", Explorers.open)
     return Explorers.of(compiled, tmp_path_factory.mktemp("explorers"))
+
+
+@pytest.fixture(scope="session")
+def sanitized(tmp_path_factory: pytest.TempPathFactory) -> Explorers:
+    """The same with the sanitizers for addresses and undefined behaviour."""
+    if build.find_compiler() is None:
+        pytest.skip("no C compiler")
+
+    def make(folder: Path) -> None:
+        Explorers.open(folder, SANITIZERS)
+
+    compiled = once(tmp_path_factory, "explorer-sanitized", make)
+    return Explorers.of(compiled, tmp_path_factory.mktemp("sanitized"), SANITIZERS)

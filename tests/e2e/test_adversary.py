@@ -19,6 +19,7 @@ STUCK = 1
 
 
 @pytest.mark.cc
+@pytest.mark.usefixtures("quick_build")
 @pytest.mark.parametrize("seed", SEEDS)
 def test_what_is_proved_holds_in_runs(seed: int, tmp_path: Path) -> None:
     verdict = bed.judge(seed, tmp_path, runs=4)
@@ -27,6 +28,7 @@ def test_what_is_proved_holds_in_runs(seed: int, tmp_path: Path) -> None:
 
 
 @pytest.mark.cc
+@pytest.mark.usefixtures("quick_build")
 def test_a_false_yes_would_be_found(tmp_path: Path) -> None:
     """A cell that gets stuck, of which everything is said to be so."""
     claim = Claim("bound Sup'Idle1 <= 0", ("Top.Supervisor.Idle1",), 0)

@@ -14,9 +14,8 @@ from pathlib import Path
 import pytest
 
 from helpers.processes import pn2code
-from pn2code import pipeline
-from pn2code.diagnostics import Diagnostics
 from pn2code.emission.write import write
+from pn2code.pipeline import Generated
 
 Edit = Callable[[str], str]
 
@@ -211,12 +210,12 @@ def assert_explained(done: subprocess.CompletedProcess[str], cell: Path, case: C
 
 
 @pytest.fixture(scope="module")
-def earlier(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def earlier(
+    of_example: Callable[[str], Generated], tmp_path_factory: pytest.TempPathFactory
+) -> Path:
     """An output folder with a good generation in it."""
     folder = tmp_path_factory.mktemp("earlier")
-    generated = pipeline.generate(root / "examples" / "riveting", Diagnostics())
-    assert generated is not None
-    write(folder, generated.files)
+    write(folder, of_example("riveting").files)
     return folder
 
 

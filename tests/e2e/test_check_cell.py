@@ -167,6 +167,7 @@ def test_a_missing_tool_is_said_before_anything_is_explored(
 
 
 @pytest.mark.cc
+@pytest.mark.usefixtures("quick_build")
 def test_a_cell_whose_checks_fail_is_run_where_that_is_wanted(tmp_path: Path) -> None:
     toml = changed(TOML, 'final = ["Finished"]\n', "") + ROBOT
     cell = write(tmp_path / "cell", toml=toml)

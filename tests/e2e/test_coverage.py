@@ -6,24 +6,23 @@ import os
 import re
 import shutil
 import subprocess
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from pn2code import pipeline
-from pn2code.diagnostics import Diagnostics
 from pn2code.emission.write import write
+from pn2code.pipeline import Generated
 
 pytestmark = pytest.mark.cc
 
 
 @pytest.fixture(scope="module")
-def sorting(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def sorting(
+    of_example: Callable[[str], Generated], tmp_path_factory: pytest.TempPathFactory
+) -> Path:
     folder = tmp_path_factory.mktemp("coverage")
-    d = Diagnostics()
-    made = pipeline.generate(root / "examples" / "sorting", d)
-    assert made is not None, [str(i) for i in d]
-    write(folder, made.files)
+    write(folder, of_example("sorting").files)
     return folder
 
 

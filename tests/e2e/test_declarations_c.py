@@ -21,12 +21,17 @@ EVERY = 19
 """Of the cases, one out of so many, which is prime to the number of types."""
 
 
+@pytest.fixture(scope="module")
+def optimized(tmp_path_factory: pytest.TempPathFactory) -> Workshop:
+    return Workshop.open(tmp_path_factory.mktemp("optimized"), OPTIMIZED)
+
+
 @pytest.mark.parametrize("start", range(amount(1, EVERY)))
-def test_every_type_and_position_now_and_then(tmp_path: Path, start: int) -> None:
+def test_every_type_and_position_now_and_then(optimized: Workshop, start: int) -> None:
     sheet = Sheet(tuple(case(i) for i in range(start, CASES, EVERY)))
     assert len({c.about.partition(":")[0] for c in sheet.cases}) == 33
     assert len({c.about.partition(":")[2] for c in sheet.cases}) == CASES // 33
-    why = wrong(sheet, Workshop.open(tmp_path, OPTIMIZED))
+    why = wrong(sheet, optimized)
     assert not why, why[:3000]
 
 
@@ -51,9 +56,8 @@ net Units
 """
 
 
-def test_units_and_constants(tmp_path: Path) -> None:
+def test_units_and_constants(optimized: Workshop, tmp_path: Path) -> None:
     net = flat(UNITS)
     program, _ = lowered(net)
     assert program is not None
-    workshop = Workshop.open(tmp_path, OPTIMIZED)
-    assert agrees(net, workshop.build(program, tmp_path / "units"), seed=1, steps=9) == 1
+    assert agrees(net, optimized.build(program, tmp_path / "units"), seed=1, steps=9) == 1

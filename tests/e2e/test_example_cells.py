@@ -8,6 +8,7 @@ from __future__ import annotations
 import json
 import random
 import tomllib
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -17,14 +18,12 @@ from tools.forgery.forgeries import forgeries
 from tools.forgery.judge import WRONG, Judge
 from typer.testing import CliRunner
 
-from helpers.compiled import DELIVERED
 from helpers.thorough import amount
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.front import load
 from pn2code.pipeline import Generated, generate
 from pn2code.run.cell import RunOptions, run_cell
-from pn2code.toolchain import programs
 from pn2code.trace.replay import replay
 
 pytest.importorskip("jinja2")
@@ -91,14 +90,8 @@ def example(request: pytest.FixtureRequest, root: Path) -> tuple[Path, Expected]
 
 
 @pytest.fixture(scope="module")
-def generated(example: tuple[Path, Expected]) -> Generated:
-    d = Diagnostics()
-    with pytest.MonkeyPatch.context() as changed:
-        if example[1].is_large:  # exploring takes longer than compiling
-            changed.setattr(programs, "FLAGS", DELIVERED)
-        found = generate(example[0], d)
-    assert found is not None and not list(d), [x.message for x in d]
-    return found
+def generated(example: tuple[Path, Expected], of_example: Callable[[str], Generated]) -> Generated:
+    return of_example(example[0].name)
 
 
 def test_generation_has_nothing_to_say_and_is_deterministic(
@@ -176,6 +169,7 @@ def test_a_cell_that_goes_on_for_ever_is_verified_without_its_time(
 
 
 @pytest.mark.cc
+@pytest.mark.usefixtures("generated_once")
 def test_run(
     example: tuple[Path, Expected], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

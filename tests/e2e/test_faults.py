@@ -32,7 +32,7 @@ from pn2code.tdl.check import CheckedProgram, check
 from pn2code.tdl.interpret import Event
 from pn2code.tdl.parse import parse
 
-pytestmark = pytest.mark.cc
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build", "generated_once")]
 
 ROBOTS = ("robot1", "robot2")
 MOMENTS = (1, 2, 3, 4, 5, 18, 40, 75, 110, 150)

@@ -7,7 +7,7 @@ import shutil
 import subprocess
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -22,8 +22,7 @@ from pn2code.channels import (
     Written,
     specs_of,
 )
-from pn2code.diagnostics import Diagnostics
-from pn2code.pipeline import generate
+from pn2code.pipeline import Generated
 from pn2code.run.supervisor import SupervisorProcess
 
 pytestmark = pytest.mark.cc
@@ -39,10 +38,8 @@ pytest.importorskip("jinja2")
 
 
 @pytest.fixture(scope="module")
-def specs(root: Path) -> tuple[ChannelSpec, ...]:
-    generated = generate(root / "examples/riveting", Diagnostics())
-    assert generated is not None
-    return specs_of(generated.partition)
+def specs(of_example: Callable[[str], Generated]) -> tuple[ChannelSpec, ...]:
+    return specs_of(of_example("riveting").partition)
 
 
 @pytest.fixture(scope="module")

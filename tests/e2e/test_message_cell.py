@@ -15,7 +15,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.pipeline import generate
 from pn2code.run.cell import RunOptions, run_cell
 
-pytestmark = pytest.mark.cc
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
 
 def test_zeros_and_odd_names_from_end_to_end(tmp_path: Path) -> None:

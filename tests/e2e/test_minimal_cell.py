@@ -16,6 +16,7 @@ DECORATION = ("posattr", "fillattr", "lineattr", "textattr", "ellipse", "box", "
 
 
 @pytest.mark.cc
+@pytest.mark.usefixtures("quick_build")
 def test_all_messages_of_a_run(root: Path, tmp_path: Path) -> None:
     d = Diagnostics()
     options = RunOptions(out=tmp_path, backend="fake", looks=False)

@@ -16,7 +16,7 @@ from helpers.processes import pn2code as command
 from helpers.small_cell import TOML
 from helpers.small_cell import write as write_cell
 
-pytestmark = pytest.mark.cc
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
 TIMED = """
     net Later

@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from helpers.compiled import SANITIZERS
 from helpers.explored import Explorers, agrees
 from helpers.netbuilder import flat, write
 from helpers.random_references import referring
@@ -74,11 +73,6 @@ net Count
       in A : 1`()
       out B : 1`()
 """
-
-
-@pytest.fixture(scope="module")
-def sanitized(tmp_path_factory: pytest.TempPathFactory) -> Explorers:
-    return Explorers.open(tmp_path_factory.mktemp("sanitized") / "explorers", SANITIZERS)
 
 
 @pytest.mark.parametrize("name", HELD)

@@ -128,11 +128,6 @@ FINITE = """
 """
 
 
-@pytest.fixture(scope="module")
-def explorers(tmp_path_factory: pytest.TempPathFactory) -> Explorers:
-    return Explorers.open(tmp_path_factory.mktemp("explorers"))
-
-
 def parts(found: Explored) -> tuple[Counter[str], Counter[tuple[str, str, str]]]:
     """Markings without time, and arcs between them without times."""
     nodes = [json.dumps(json.loads(node)[1], sort_keys=True) for node in found.nodes]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from helpers.explored import SANITIZERS, THREADS, Explored, Explorers, agrees
+from helpers.explored import THREADS, Explored, Explorers, agrees
 from helpers.netbuilder import flat
 from helpers.questions import ask
 from helpers.random_graphs import numbered
@@ -63,9 +63,11 @@ def sorted_bounds(found: Explored) -> list[dict[str, object]]:
     ]
 
 
-@pytest.mark.parametrize("flags", [SANITIZERS, THREADS], ids=["addresses", "threads"])
-def test_sanitized(tmp_path: Path, flags: tuple[str, ...]) -> None:
-    explorers = Explorers.open(tmp_path / "explorers", flags)
+@pytest.mark.parametrize("what", ["addresses", "threads"])
+def test_sanitized(sanitized: Explorers, tmp_path: Path, what: str) -> None:
+    explorers = sanitized
+    if what == "threads":
+        explorers = Explorers.open(tmp_path / "explorers", THREADS)
     bags = flat(BAGS)
     one = explorers.explore(bags, "--threads", 1, "--traces", 3, "--trace-to", tmp_path / "t")
     for options in (("--threads", 2), ("--threads", 2, "--order", "dfs"), ("--spill", tmp_path)):

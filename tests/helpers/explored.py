@@ -84,9 +84,9 @@ class Explorers:
     seconds: float = SECONDS
 
     @staticmethod
-    def of(compiled: Path, folder: Path) -> Explorers:
-        """With what `open` compiled elsewhere, and nets in a folder of one's own."""
-        made = Explorers._at(folder, QUICK)
+    def of(compiled: Path, folder: Path, flags: tuple[str, ...] = QUICK) -> Explorers:
+        """With what `open` compiled elsewhere by these flags, and nets in a folder of one's own."""
+        made = Explorers._at(folder, flags)
         return replace(made, host=compiled / "host")
 
     @staticmethod

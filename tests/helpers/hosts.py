@@ -46,7 +46,11 @@ class Hosts:
     @staticmethod
     def open(folder: Path, flags: tuple[str, ...]) -> Hosts:
         """Compile them."""
-        made = Explorers.open(folder, flags)
+        return Hosts.beside(Explorers.open(folder, flags))
+
+    @staticmethod
+    def beside(made: Explorers) -> Hosts:
+        """Compile the others into the folder of an explorer."""
         source = cnative_folder() / "src"
         host = made.host
         common = [f for f in host.glob("pn_*.o") if f.name != "pn_channel_files.o"]

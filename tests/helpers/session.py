@@ -4,10 +4,25 @@ from __future__ import annotations
 
 import fcntl
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+
+
+def common(factory: pytest.TempPathFactory) -> Path:
+    """The folder of the session, which all workers have in common."""
+    base = factory.getbasetemp()
+    return base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+
+
+@contextmanager
+def alone(folder: Path, name: str) -> Iterator[Path]:
+    """The path of that name in a folder of all workers, for one of them at a time."""
+    with (folder / f"{name}.lock").open("w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        yield folder / name
 
 
 def once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:
@@ -18,11 +33,9 @@ def once(factory: pytest.TempPathFactory, name: str, make: Callable[[Path], obje
         name: of the folder.
         make: makes the folder, and what is in it.
     """
-    base = factory.getbasetemp()
-    base = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
-    folder, done = base / name, base / f"{name}.done"
-    with (base / f"{name}.lock").open("w") as lock:
-        fcntl.flock(lock, fcntl.LOCK_EX)
+    base = common(factory)
+    done = base / f"{name}.done"
+    with alone(base, name) as folder:
         if not done.exists():
             make(folder)
             done.touch()

@@ -8,8 +8,10 @@ from typing import Any
 
 import pytest
 
-from helpers.generated import Remembered
+from helpers.generated import Generate, Remembered
+from pn2code.cell.config import CellConfig
 from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.net.flat import FlatNet
 from pn2code.pipeline import generate
 
 
@@ -24,12 +26,17 @@ def calls() -> list[dict[str, Any]]:
 
 
 @pytest.fixture
-def remembered(calls: list[dict[str, Any]]) -> Remembered:
-    def counted(path: Path, d: Diagnostics, **options: Any) -> Any:
+def counted(calls: list[dict[str, Any]]) -> Generate:
+    def generated(path: Path, d: Diagnostics, *, examine: Any = None, **options: Any) -> Any:
         calls.append(options)
-        return generate(path, d, checked=False)
+        return generate(path, d, checked=False, examine=examine)
 
-    return Remembered(counted)
+    return generated
+
+
+@pytest.fixture
+def remembered(counted: Generate, tmp_path: Path) -> Remembered:
+    return Remembered(counted, tmp_path)
 
 
 def test_the_same_cell_is_generated_once(
@@ -65,3 +72,35 @@ def test_what_fails_or_comes_with_errors_is_not_remembered(
         assert remembered(cell, d, layout=None) is None
         assert d.has_errors
     assert len(calls) == 4
+
+
+def test_other_workers_get_the_same(
+    cell: Path, counted: Generate, calls: list[dict[str, Any]], tmp_path: Path
+) -> None:
+    first, second = Diagnostics(), Diagnostics()
+    one = Remembered(counted, tmp_path)(cell, first)
+    assert Remembered(counted, tmp_path)(cell, second) == one
+    assert second.items == first.items
+    assert len(calls) == 1
+
+
+def test_whoever_examines_is_asked_each_time(
+    cell: Path, remembered: Remembered, calls: list[dict[str, Any]]
+) -> None:
+    asked: list[str] = []
+
+    def content(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> None:
+        asked.append(net.name)
+
+    def refuses(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> None:
+        d.error("cell-value", "no", Origin("input"))
+
+    d = Diagnostics()
+    assert remembered(cell, d, examine=refuses) is None
+    assert [i.message for i in d.items] == ["no"]
+    for _ in range(2):
+        assert remembered(cell, Diagnostics(), examine=content) is not None
+    assert (len(asked), len(calls)) == (2, 2)
+    d = Diagnostics()
+    assert remembered(cell, d, examine=refuses) is None
+    assert [i.message for i in d.items] == ["no"]
