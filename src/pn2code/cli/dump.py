@@ -17,6 +17,8 @@ EPILOG = """Examples:
   pn2code dump net.cpn --stage flat
 
   pn2code dump examples/riveting --stage partition
+
+  pn2code dump net.cpn --stage ir --only Pick
 """
 
 
@@ -28,6 +30,7 @@ class Stage(StrEnum):
     DECLARATIONS = "ml"
     FLAT = "flat"
     PARTITION = "partition"
+    IR = "ir"
     ROBOTS = "robots"
 
 
@@ -58,6 +61,8 @@ def stage_text(
     from pn2code.cell.locate import locate
     from pn2code.division import divided
     from pn2code.emission.tdl import emit
+    from pn2code.ir.dump import dump as dump_ir
+    from pn2code.lowering.nets.net import lower
     from pn2code.ml.core.dump import dump_program
     from pn2code.net import front
     from pn2code.net.dump import dump_document, dump_flat, dump_net
@@ -88,6 +93,9 @@ def stage_text(
         return None
     if stage is Stage.PARTITION:
         return dump_partition(partition)
+    if stage is Stage.IR:
+        compiled = lower(partition, config.storage if config else {}, d)
+        return None if compiled is None else dump_ir(compiled, only)
     robots = lower_robots(partition, config, d) if config else ()
     if robots is None:
         return None
