@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import cached_property
 
-from pn2code.emission.c_places import staying_pairs
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import called, ir_nodes
 from pn2code.ir.nodes import Rep
 from pn2code.lowering.expressions.purity import is_impure_builtin
+from pn2code.lowering.passes.moves import staying_pairs
 
 _EXAMINED = (
     ir.ForTokens, ir.TokenValue, ir.UnlessAvailable, ir.UnlessHeld, ir.UnlessEmpty, ir.Take, ir.TakeAll,

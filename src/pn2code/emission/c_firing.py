@@ -11,13 +11,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from pn2code.emission.c_expressions import Expressions, Types
-from pn2code.emission.c_places import is_count, staying_pairs
 from pn2code.emission.c_slots import is_structural
 from pn2code.emission.c_statements import Statements
 from pn2code.emission.names import Scope
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Descriptor, Rep, Stmt
 from pn2code.ir.types import is_restricted
+from pn2code.lowering.passes.moves import is_count, staying_pairs
 
 
 @dataclass(frozen=True, slots=True)

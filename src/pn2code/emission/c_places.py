@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Container, Iterable, Mapping, Sequence
 
 from pn2code.emission.c_expressions import Types
@@ -10,6 +9,7 @@ from pn2code.emission.names import Names, label
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
 from pn2code.ir.nodes import Descriptor, Rep
+from pn2code.lowering.passes.moves import is_count
 
 _SCALAR = frozenset({Rep.BOOL, Rep.INT, Rep.CHAR, Rep.ENUM})
 """Representations whose values C compares in the order of the colour set."""
@@ -75,28 +75,6 @@ class Orders:
                 lines.append("    }")
 
 
-def rooms(net: ir.NetIR) -> tuple[int, ...]:
-    """For each place: the most entries that one occurrence may add before it is asked whether they fit."""
-    most: Counter[int] = Counter()
-    for t in net.transitions:
-        most |= puts(t.fire)
-    return tuple(most[p.index] for p in net.places)
-
-
-def puts(statements: Iterable[ir.Stmt]) -> Counter[int]:
-    """By place, the most `Put`s on any way through the statements."""
-    total: Counter[int] = Counter()
-    for s in statements:
-        match s:
-            case ir.Put(place=place):
-                total[place] += 1
-            case ir.If(then=then, otherwise=otherwise):
-                total += puts(then) | puts(otherwise)
-            case _:
-                pass
-    return total
-
-
 def is_direct(net: ir.NetIR, t: ir.Transition, sums: Container[tuple[int, ir.Ir]] = ()) -> bool:
     """Whether the occurrence is a fixed number of takes and puts of untimed places, known one by one or as `sums`."""
     takes = [n for n in ir_nodes(t.fire) if isinstance(n, ir.Take)]
@@ -128,16 +106,6 @@ def _ways(statements: Iterable[ir.Stmt]) -> Iterable[ir.Put]:
                 pass
 
 
-def is_plain(statements: Iterable[ir.Stmt]) -> bool:
-    """Whether each choice of tokens, one for each input arc, gives a binding: a search of loops and nothing else."""
-    return all(
-        is_plain(s.body)
-        if isinstance(s, ir.ForTokens)
-        else isinstance(s, ir.Bind | ir.Yield | ir.Note)
-        for s in statements
-    )
-
-
 def is_flat(statements: Sequence[ir.Stmt], slots: Container[int]) -> bool:
     """Whether a search gives one binding at most, and does so last: of a slot there is one token to look at."""
     if not statements or any(isinstance(n, ir.Yield) for n in ir_nodes(tuple(statements[:-1]))):
@@ -146,23 +114,3 @@ def is_flat(statements: Sequence[ir.Stmt], slots: Container[int]) -> bool:
     if isinstance(last, ir.ForTokens):
         return last.place in slots and is_flat(last.body, slots)
     return isinstance(last, ir.Yield)
-
-
-def is_count(e: ir.Ir) -> bool:
-    """A constant number of tokens, at least one."""
-    return isinstance(e, ir.Const) and isinstance(e.value, int) and 0 < e.value < 2**31
-
-
-def staying_pairs(statements: tuple[ir.Stmt, ...]) -> list[tuple[ir.Take, ir.Put]]:
-    """Takes and puts of the same tokens, as of arcs in both directions: nothing need be done about them."""
-    puts = [s for s in statements if isinstance(s, ir.Put)]
-    found: list[tuple[ir.Take, ir.Put]] = []
-    for take in statements:
-        if not isinstance(take, ir.Take):
-            continue
-        for put in puts:
-            if (put.place, put.value, put.count) == (take.place, take.value, take.count):
-                found.append((take, put))
-                puts.remove(put)
-                break
-    return found

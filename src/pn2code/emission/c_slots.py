@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Container, Iterator
 
-from pn2code.emission.c_places import is_count, puts
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
 from pn2code.ir.nodes import Rep
+from pn2code.lowering.passes.moves import is_count, puts
 
 SCALARS = frozenset({Rep.BOOL, Rep.INT, Rep.CHAR, Rep.ENUM})
 """Representations whose values C compares with `==`."""

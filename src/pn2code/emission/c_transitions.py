@@ -18,6 +18,7 @@ from pn2code.emission.names import Members
 from pn2code.emission.needs import SIDE
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
+from pn2code.lowering.passes import moves
 
 
 class Transitions(Frame):
@@ -154,7 +155,7 @@ class Transitions(Frame):
             ),
             "guard": c_comment(f"guard [{t.guard_text}]") if t.guard_text else "",
             "origin": t.origin.describe(),
-            "is_plain": c_places.is_plain(t.enumerate),
+            "is_plain": moves.is_plain(t.enumerate),
             "keeps": search.keeps and search.releases,
             "is_flat": search.is_flat,
             "search": search.lines,
