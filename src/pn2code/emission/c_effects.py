@@ -9,7 +9,6 @@ from pn2code.ir import nodes as ir
 from pn2code.ir.calls import called, ir_nodes
 from pn2code.ir.nodes import Rep
 from pn2code.lowering.expressions.purity import is_impure_builtin
-from pn2code.lowering.passes.moves import staying_pairs
 
 _EXAMINED = (
     ir.ForTokens, ir.TokenValue, ir.UnlessAvailable, ir.UnlessHeld, ir.UnlessEmpty, ir.Take, ir.TakeAll,
@@ -61,9 +60,11 @@ class Effects:
         """The places whose tokens are others after the occurrence: what stays where it is does not count."""
         staying = {
             id(s)
-            for take, put in staying_pairs(t.fire)
-            if not net.places[take.place].timed and self.is_pure(take.value)
-            for s in (take, put)
+            for position, other in t.staying
+            if isinstance(take := t.fire[position], ir.Take)
+            and not net.places[take.place].timed
+            and self.is_pure(take.value)
+            for s in (take, t.fire[other])
         }
         moves = [n for n in ir_nodes(t.fire) if isinstance(n, _CHANGED) and id(n) not in staying]
         return frozenset(n.place for n in moves)

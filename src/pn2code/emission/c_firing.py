@@ -17,7 +17,7 @@ from pn2code.emission.names import Scope
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Descriptor, Rep, Stmt
 from pn2code.ir.types import is_restricted
-from pn2code.lowering.passes.moves import is_count, staying_pairs
+from pn2code.lowering.passes.moves import is_count
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,10 +101,11 @@ class DirectFiring(Statements):
         self.otherwise = ""
         self.has_checks = False
 
-    def fire(self, statements: tuple[Stmt, ...], may_fail: bool) -> None:
-        """The whole body after the preamble."""
-        staying = staying_pairs(statements)
-        self._staying = {id(s) for pair in staying for s in pair}
+    def fire(
+        self, statements: tuple[Stmt, ...], staying: tuple[tuple[int, int], ...], may_fail: bool
+    ) -> None:
+        """The whole body after the preamble; `staying`: as of a transition."""
+        self._staying = {id(statements[i]) for pair in staying for i in pair}
         self._takes = [s for s in statements if isinstance(s, ir.Take)]
         self.body(statements)
         self.lines[:0] = [*self._sum_lines(), *self._declared]
@@ -114,7 +115,8 @@ class DirectFiring(Statements):
             self.line("}")
         takes = [m for m in self._moves_made if m.verb == "take"]
         puts = [m for m in self._moves_made if m.verb == "add"]
-        for take, _ in staying:
+        for take in (statements[position] for position, _ in staying):
+            assert isinstance(take, ir.Take)
             self.note(f"{take.note or self._x.place_names[take.place]}: stays where it is")
         self._look_at_slots()
         self._take(takes)

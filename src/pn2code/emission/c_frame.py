@@ -16,7 +16,6 @@ from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import NetIR, Rep
 from pn2code.lowering.nets.packing import KEY_BITS, key_bits
-from pn2code.lowering.passes import moves
 
 _MOST_INLINED = 150
 """Transitions of a net for which the compiler is told to put searches where they are called."""
@@ -85,11 +84,11 @@ class Frame:
     def _rooms_of_arrays(self) -> dict[str, int]:
         """By what holds the tokens: entries of untimed arrays behind their capacity, for what an occurrence adds."""
         found: dict[str, int] = {}
-        for p, most in zip(self._net.places, moves.rooms(self._net), strict=True):
+        for p in self._net.places:
             if not p.timed:
                 # gcc warns of loops that would go through an array of one, though they never do.
                 kept = self._kept[p.index]
-                found[kept] = max(found.get(kept, 0), most, 2 - p.capacity)
+                found[kept] = max(found.get(kept, 0), p.added, 2 - p.capacity)
         return found
 
     def _context_users(self) -> frozenset[str]:

@@ -18,7 +18,6 @@ from pn2code.emission.names import Members
 from pn2code.emission.needs import SIDE
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
-from pn2code.lowering.passes import moves
 
 
 class Transitions(Frame):
@@ -155,7 +154,7 @@ class Transitions(Frame):
             ),
             "guard": c_comment(f"guard [{t.guard_text}]") if t.guard_text else "",
             "origin": t.origin.describe(),
-            "is_plain": moves.is_plain(t.enumerate),
+            "is_plain": t.is_plain,
             "keeps": search.keeps and search.releases,
             "is_flat": search.is_flat,
             "search": search.lines,
@@ -259,7 +258,9 @@ class Transitions(Frame):
             direct.sums = self._sums(t)
             direct.otherwise = f"{name}_fire_lists(cx, m, self, b)"
             direct.variable_types = tuple(v.type for v in t.variables)
-            direct.fire(t.fire, uses_context(t.fire, self._needs_context, self._definitions))
+            direct.fire(
+                t.fire, t.staying, uses_context(t.fire, self._needs_context, self._definitions)
+            )
             return direct
         printer.variable_types = tuple(v.type for v in t.variables)
         printer.body(t.fire)

@@ -74,7 +74,8 @@ class _Dump:
 
     def _place(self, p: ir.Place) -> Iterator[str]:
         timed = " timed" if p.timed else ""
-        yield f"place {p.index} {p.name} : {p.colset}{timed} capacity {p.capacity} owner {p.owner}"
+        added = f" + {p.added}" if p.added else ""
+        yield f"place {p.index} {p.name} : {p.colset}{timed} capacity {p.capacity}{added} owner {p.owner}"
         yield from self._block(p.initial, 1)
 
     def _transition(self, t: ir.Transition) -> Iterator[str]:
@@ -83,13 +84,21 @@ class _Dump:
         if t.variables:
             parts = [f"{v.name}: {v.type}{' output' if v.is_output else ''}" for v in t.variables]
             yield f"  variables {', '.join(parts)}"
-        yield "  enumerate"
+        if t.staying:
+            yield f"  stays {', '.join(self._staying(t))}"
+        yield f"  enumerate{' plain' if t.is_plain else ''}"
         yield from self._block(t.enumerate, 2)
         yield "  fire"
         yield from self._block(t.fire, 2)
         if t.thresholds:
             yield "  thresholds"
             yield from self._block(t.thresholds, 2)
+
+    def _staying(self, t: ir.Transition) -> Iterator[str]:
+        for position, _ in t.staying:
+            take = t.fire[position]
+            assert isinstance(take, ir.Take)
+            yield self._move(take.place, take.count, take.value, None)
 
     # --- statements ----------------------------------------------------------------------------
 

@@ -714,6 +714,8 @@ class Place:
     bound: int | None = None
     """most tokens, where that is proven or declared; `proof` says how"""
     proof: str = ""
+    added: int = 0
+    """the most entries that one occurrence may add before it is asked whether they fit"""
 
 
 @frozen
@@ -744,6 +746,10 @@ class Transition:
     thresholds: tuple[Stmt, ...] = ()
     places: tuple[tuple[int, str], ...] = ()
     """those of its arcs, with their names on its page"""
+    staying: tuple[tuple[int, int], ...] = ()
+    """positions in `fire` of a take and a put of the same tokens: nothing need be done about them"""
+    is_plain: bool = False
+    """each choice of tokens, one for each input arc, gives a binding: the search is loops and nothing else"""
 
 
 @frozen

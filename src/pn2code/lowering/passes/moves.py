@@ -1,14 +1,32 @@
-"""What the programs of transitions take and put, and how plain the search for a binding is."""
+"""What the programs of transitions take and put, and how plain the search for a binding is.
+
+`with_moves` writes it into the places (`added`) and transitions (`staying`, `is_plain`).
+"""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable
+from dataclasses import replace
 
 from pn2code.ir import nodes as ir
 
 
-def rooms(net: ir.NetIR) -> tuple[int, ...]:
+def with_moves(net: ir.NetIR) -> ir.NetIR:
+    """The net, with what this pass finds."""
+    return replace(
+        net,
+        places=tuple(
+            replace(p, added=most) for p, most in zip(net.places, _added(net), strict=True)
+        ),
+        transitions=tuple(
+            replace(t, staying=_staying(t.fire), is_plain=_is_plain(t.enumerate))
+            for t in net.transitions
+        ),
+    )
+
+
+def _added(net: ir.NetIR) -> tuple[int, ...]:
     """For each place: the most entries that one occurrence may add before it is asked whether they fit."""
     most: Counter[int] = Counter()
     for t in net.transitions:
@@ -30,10 +48,10 @@ def puts(statements: Iterable[ir.Stmt]) -> Counter[int]:
     return total
 
 
-def is_plain(statements: Iterable[ir.Stmt]) -> bool:
+def _is_plain(statements: Iterable[ir.Stmt]) -> bool:
     """Whether each choice of tokens, one for each input arc, gives a binding: a search of loops and nothing else."""
     return all(
-        is_plain(s.body)
+        _is_plain(s.body)
         if isinstance(s, ir.ForTokens)
         else isinstance(s, ir.Bind | ir.Yield | ir.Note)
         for s in statements
@@ -45,16 +63,16 @@ def is_count(e: ir.Ir) -> bool:
     return isinstance(e, ir.Const) and isinstance(e.value, int) and 0 < e.value < 2**31
 
 
-def staying_pairs(statements: tuple[ir.Stmt, ...]) -> list[tuple[ir.Take, ir.Put]]:
-    """Takes and puts of the same tokens, as of arcs in both directions: nothing need be done about them."""
-    puts = [s for s in statements if isinstance(s, ir.Put)]
-    found: list[tuple[ir.Take, ir.Put]] = []
-    for take in statements:
+def _staying(statements: tuple[ir.Stmt, ...]) -> tuple[tuple[int, int], ...]:
+    """The positions of takes and puts of the same tokens, as of arcs in both directions."""
+    puts = [(i, s) for i, s in enumerate(statements) if isinstance(s, ir.Put)]
+    found: list[tuple[int, int]] = []
+    for position, take in enumerate(statements):
         if not isinstance(take, ir.Take):
             continue
-        for put in puts:
+        for k, (other, put) in enumerate(puts):
             if (put.place, put.value, put.count) == (take.place, take.value, take.count):
-                found.append((take, put))
-                puts.remove(put)
+                found.append((position, other))
+                del puts[k]
                 break
-    return found
+    return tuple(found)
