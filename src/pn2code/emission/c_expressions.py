@@ -10,6 +10,7 @@ from pn2code.emission.environment import c_float
 from pn2code.emission.names import Names, Scope, label
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Ir, IrType, Rep
+from pn2code.ir.types import holds_reference
 
 _PRIMARY, _POSTFIX, _UNARY, _CONDITIONAL = 17, 16, 14, 3
 
@@ -91,16 +92,7 @@ class Types:
 
     def holds_reference(self, t: IrType) -> bool:
         """Whether there may be references in a value of the type."""
-        seen: set[str] = set()
-        waiting = [t]
-        while waiting:
-            t = waiting.pop()
-            if t.rep is Rep.REF:
-                return True
-            if t.name and t.name not in seen:
-                seen.add(t.name)
-                waiting += ir.parts(self.definitions[t.name])
-        return False
+        return holds_reference(self.definitions, t)
 
     def zero(self, t: IrType) -> str:
         """The harmless value."""

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pn2code.diagnostics import Origin
 from pn2code.emission import c_packed, c_places, c_tables
-from pn2code.emission.c_effects import Effects
 from pn2code.emission.c_expressions import Expressions, Types
 from pn2code.emission.c_needs import used_locals, uses_context
 from pn2code.emission.c_own import OwnPlaces
@@ -16,6 +15,7 @@ from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import NetIR, Rep
 from pn2code.lowering.nets.packing import KEY_BITS, key_bits
+from pn2code.lowering.passes.effects import Effects
 
 _MOST_INLINED = 150
 """Transitions of a net for which the compiler is told to put searches where they are called."""

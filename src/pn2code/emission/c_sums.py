@@ -10,12 +10,12 @@ import math
 from collections.abc import Callable, Mapping
 
 from pn2code.base.frozen import frozen
-from pn2code.emission.c_effects import Effects
 from pn2code.emission.c_packed import Numbers
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
 from pn2code.ir.nodes import Descriptor
 from pn2code.lowering.nets.packing import colours
+from pn2code.lowering.passes.effects import Effects
 
 _MOST_SUMS = 1024
 _MOST_WORDS = 1 << 14

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from pn2code.emission import c_places, c_rows, c_sums
-from pn2code.emission.c_effects import is_assignment, is_draw
 from pn2code.emission.c_firing import DirectFiring
 from pn2code.emission.c_frame import Frame
 from pn2code.emission.c_lines import mentions
@@ -18,6 +17,7 @@ from pn2code.emission.names import Members
 from pn2code.emission.needs import SIDE
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
+from pn2code.lowering.passes.effects import is_assignment, is_draw
 
 
 class Transitions(Frame):

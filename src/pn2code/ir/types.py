@@ -110,6 +110,20 @@ def parts(definition: Definition) -> list[IrType]:
             return []
 
 
+def holds_reference(definitions: Mapping[str, Definition], t: IrType) -> bool:
+    """Whether there may be references in a value of the type."""
+    seen: set[str] = set()
+    waiting = [t]
+    while waiting:
+        t = waiting.pop()
+        if t.rep is Rep.REF:
+            return True
+        if t.name and t.name not in seen:
+            seen.add(t.name)
+            waiting += parts(definitions[t.name])
+    return False
+
+
 @frozen
 class Descriptor:
     """A colour set, or a type without one, as the runtime's table.
