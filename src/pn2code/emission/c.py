@@ -335,7 +335,8 @@ class _Emitter(Transitions):
             else [],
             "roots": [
                 (self._names.table(g.table), self._names.value(g.name, g.hint))
-                for g in self._effects.roots
+                for g in net.globals
+                if g.name in net.roots
             ],
             "referring": ", ".join(f"{i}U" for i in self._referring),
             "held": [v for v in variables if v["is_root"]],

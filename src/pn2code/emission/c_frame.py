@@ -15,7 +15,7 @@ from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import NetIR, Rep
 from pn2code.lowering.nets.packing import KEY_BITS, key_bits
-from pn2code.lowering.passes.effects import Effects
+from pn2code.lowering.passes.reach import Reach
 
 _MOST_INLINED = 150
 """Transitions of a net for which the compiler is told to put searches where they are called."""
@@ -45,12 +45,10 @@ class Frame:
         self._timed = tuple(p.timed for p in net.places)
         self._slots = slots(net)
         self._needs_context = self._context_users()
-        self._effects = Effects(net, self._types.holds_reference)
+        self._reach = Reach(net)
         self._orders = c_places.Orders(self._types, self._names, self._descriptors)
         self._numbers = c_packed.Numbers(self._types, self._names, self._descriptors)
-        self._packed = self._numbers.of_places(
-            net.places, lambda key: self._effects.is_pure(self._functions[key].body)
-        )
+        self._packed = self._numbers.of_places(net.places, lambda key: self._functions[key].is_pure)
         self._has_inlined = net.has_successors and len(net.transitions) <= _MOST_INLINED
         self._has_words = (
             self._has_inlined

@@ -15,7 +15,7 @@ from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
 from pn2code.ir.nodes import Descriptor
 from pn2code.lowering.nets.packing import colours
-from pn2code.lowering.passes.effects import Effects
+from pn2code.lowering.passes.reach import Reach
 
 _MOST_SUMS = 1024
 _MOST_WORDS = 1 << 14
@@ -55,7 +55,7 @@ def find(
     t: ir.Transition,
     stem: str,
     descriptors: Mapping[str, Descriptor],
-    effects: Effects,
+    reach: Reach,
 ) -> dict[tuple[int, ir.Ir], Sum]:
     """The sums of a transition by place and multi-set; `stem` is its name in C."""
     found: dict[tuple[int, ir.Ir], Sum] = {}
@@ -63,7 +63,7 @@ def find(
         if not isinstance(node, ir.TakeAll | ir.PutAll) or (node.place, node.multiset) in found:
             continue
         packed = net.places[node.place].packed
-        if packed is None or not _is_function_of_binding(node.multiset, effects):
+        if packed is None or not _is_function_of_binding(node.multiset, reach):
             continue
         variables = _variables(t, node.multiset, descriptors)
         words = (packed.bit % 64 + packed.colours * packed.width + 63) // 64
@@ -84,11 +84,11 @@ def find(
     return found
 
 
-def _is_function_of_binding(multiset: ir.Ir, effects: Effects) -> bool:
+def _is_function_of_binding(multiset: ir.Ir, reach: Reach) -> bool:
     return (
         not any(isinstance(n, ir.Use | ir.TokenValue) for n in ir_nodes(multiset))
-        and effects.is_pure(multiset)
-        and not effects.reaches(multiset, _is_now)
+        and reach.is_pure(multiset)
+        and not reach.reaches(multiset, _is_now)
     )
 
 

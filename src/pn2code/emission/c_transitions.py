@@ -17,7 +17,6 @@ from pn2code.emission.names import Members
 from pn2code.emission.needs import SIDE
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
-from pn2code.lowering.passes.effects import is_assignment, is_draw
 
 
 class Transitions(Frame):
@@ -72,14 +71,13 @@ class Transitions(Frame):
         """What the tables of hosts say of one instance."""
         own = self._own_places(shared)
         stem, flags = self._stem(shared), ("looks", "looks_outside", "assigns", "search_assigns")
-        affected = self._effects.affected(t.index)
         further = [f".places = &{self._names.instance(path_of(t), own.struct)}"] if own else []
         further += [f".successors = {stem}_successors"] if self._net.has_successors else []
         further += [f".words = {stem}_words"] if self._has_words else []
-        if len(affected) < len(self._net.transitions):
-            further += c_rows.indices("affected", affected)
-        further += c_rows.indices("touched", self._effects.touched(t.index))
-        further += c_rows.indices("read", self._effects.read(t.index))
+        if len(t.effects.affected) < len(self._net.transitions):
+            further += c_rows.indices("affected", t.effects.affected)
+        further += c_rows.indices("touched", t.effects.touched)
+        further += c_rows.indices("read", t.effects.read)
         further += [f".{flag} = true" for flag in flags if code[flag]]
         return {
             "index": t.index,
@@ -118,7 +116,7 @@ class Transitions(Frame):
             _without_wanted(t.enumerate), self._needs_context, self._definitions
         )
         search.is_flat = c_places.is_flat(t.enumerate, self._slots)
-        search.releases = not self._effects.reaches(t.enumerate, is_assignment)
+        search.releases = not t.effects.search_writes
         search.may_fail = search.keeps or any(
             isinstance(n, ir.Wanted | ir.UnlessLegal) for n in ir_nodes(t.enumerate)
         )
@@ -132,15 +130,12 @@ class Transitions(Frame):
         lists = self._firing(t, False, variables, own, name) if has_lists else None
         thresholds = self._thresholds(t, variables, own)
         text = "\n".join(fire.lines)
-        roots = self._effects.roots
-        search_draws = self._effects.reaches(t.enumerate, is_draw)
-        fire_draws = self._effects.reaches(t.fire, is_draw)
         return {
             "marks": [self._block(x.name, "transition", x.origin) for x in shared.instances],
             "index": t.index,
-            "search_draws": search_draws,
-            "fire_draws": fire_draws,
-            "draws_between": search_draws and fire_draws,
+            "search_draws": t.effects.search_draws,
+            "fire_draws": t.effects.fire_draws,
+            "draws_between": t.effects.search_draws and t.effects.fire_draws,
             "name": t.name,
             "stem": name,
             "title": self._title(shared),
@@ -161,7 +156,7 @@ class Transitions(Frame):
             "search_reach": own.reach(search.lines, is_const=True) if own else [],
             "thresholds": thresholds,
             "thresholds_reach": own.reach(thresholds, is_const=True) if own else [],
-            "thresholds_draw": self._effects.reaches(t.thresholds, is_draw),
+            "thresholds_draw": t.effects.thresholds_draw,
             "searches_marking": mentions("m", "\n".join(search.lines)),
             "fire": fire.lines,
             "fire_reach": own.reach(fire.lines, is_const=False) if own else [],
@@ -176,15 +171,12 @@ class Transitions(Frame):
             "lists_use_binding": lists is not None and mentions("b", "\n".join(lists.lines)),
             "uses_binding": mentions("b", text),
             "touched_bags": [
-                self._place_names[i]
-                for i in self._effects.touched(t.index)
-                if not self._net.places[i].packed
+                self._place_names[i] for i in t.effects.touched if not self._net.places[i].packed
             ],
-            "looks": self._effects.looks((t.enumerate, t.fire)),
-            "looks_outside": self._effects.looks_outside((t.enumerate, t.fire)),
-            "assigns": bool(roots) and self._effects.reaches(t.fire, is_assignment),
-            "search_assigns": bool(roots)
-            and self._effects.reaches((t.enumerate, t.thresholds), is_assignment),
+            "looks": t.effects.looks,
+            "looks_outside": t.effects.looks_outside,
+            "assigns": t.effects.assigns,
+            "search_assigns": t.effects.search_assigns,
         }
 
     def _thresholds(
@@ -203,13 +195,13 @@ class Transitions(Frame):
     def _is_direct(self, t: ir.Transition) -> bool:
         """Whether it can be printed with the functions of its places; what is taken must be what was found."""
         takes = tuple(s.value for s in t.fire if isinstance(s, ir.Take))
-        return c_places.is_direct(self._net, t, self._sums(t)) and self._effects.is_pure(takes)
+        return c_places.is_direct(self._net, t, self._sums(t)) and self._reach.is_pure(takes)
 
     def _sums(self, t: ir.Transition) -> dict[tuple[int, ir.Ir], Sum]:
         if t.index not in self._sums_found:
             stem = self._names.transition(t.index, t.name)
             self._sums_found[t.index] = c_sums.find(
-                self._net, t, stem, self._descriptors, self._effects
+                self._net, t, stem, self._descriptors, self._reach
             )
         return self._sums_found[t.index]
 

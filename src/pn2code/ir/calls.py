@@ -33,7 +33,9 @@ def ir_nodes(item: object) -> Iterator[object]:
 
 _VALUE = "bool | int | float | str | None"
 _PAIRS = "tuple[tuple[int, int], ...]"
-_LEAVES = frozenset({"IrType", "Origin", "bool", "int", "str", "tuple[int, ...]", _PAIRS, _VALUE})
+_LEAVES = frozenset(
+    {"Effects", "IrType", "Origin", "bool", "int", "str", "tuple[int, ...]", _PAIRS, _VALUE}
+)
 """What the annotations of fields say in which there is no node."""
 
 

@@ -15,8 +15,10 @@ transition 0 Top.Pick   (ID7) owner 0 priority 1000
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import fields
 
 from pn2code.ir import nodes as ir
+from pn2code.ir.effects import Effects
 from pn2code.ir.nodes import Ir, NetIR, Stmt
 
 
@@ -65,10 +67,13 @@ class _Dump:
         for g in self._net.globals:
             yield f"{'ref' if g.is_reference else 'val'} {g.name}: {g.type}"
             yield from self._block(g.setup, 1)
+        if self._net.roots:
+            yield f"state besides the marking {', '.join(self._net.roots)}"
 
     def _function(self, f: ir.Function) -> Iterator[str]:
         parameters = ", ".join(f"{_local(p)}: {p.type}" for p in f.parameters)
         flags = (" loops" if f.loops else "") + (" recursive" if f.recursive else "")
+        flags += "" if f.is_pure else " impure"
         yield f"function {f.key}({parameters}): {f.result}{flags}"
         yield from self._block(f.body, 1)
 
@@ -86,6 +91,7 @@ class _Dump:
             yield f"  variables {', '.join(parts)}"
         if t.staying:
             yield f"  stays {', '.join(self._staying(t))}"
+        yield from self._effects(t.effects)
         yield f"  enumerate{' plain' if t.is_plain else ''}"
         yield from self._block(t.enumerate, 2)
         yield "  fire"
@@ -99,6 +105,15 @@ class _Dump:
             take = t.fire[position]
             assert isinstance(take, ir.Take)
             yield self._move(take.place, take.count, take.value, None)
+
+    def _effects(self, e: Effects) -> Iterator[str]:
+        for verb, places in (("reads", e.read), ("touches", e.touched)):
+            if places:
+                yield f"  {verb} {', '.join(map(self._place_name, places))}"
+        if e.affected:
+            yield f"  affects {', '.join(self._net.transitions[i].name for i in e.affected)}"
+        if found := [f.name.replace("_", " ") for f in fields(e) if getattr(e, f.name) is True]:
+            yield f"  also {', '.join(found)}"
 
     # --- statements ----------------------------------------------------------------------------
 

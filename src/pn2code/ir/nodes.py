@@ -16,6 +16,7 @@ from dataclasses import field
 
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import NOWHERE, Origin
+from pn2code.ir.effects import Effects
 from pn2code.ir.types import (
     BIG,
     BOOL,
@@ -653,6 +654,7 @@ class Function:
         loops: its calls of itself are all `SelfCall`s: they become a loop.
         recursive: calls itself, perhaps through others: its depth is counted.
         source: the ML text.
+        is_pure: nothing but its arguments and the marking decides about its result.
     """
 
     key: str
@@ -664,6 +666,7 @@ class Function:
     recursive: bool
     source: str
     origin: Origin
+    is_pure: bool = False
 
 
 @frozen
@@ -750,6 +753,7 @@ class Transition:
     """positions in `fire` of a take and a put of the same tokens: nothing need be done about them"""
     is_plain: bool = False
     """each choice of tokens, one for each input arc, gives a binding: the search is loops and nothing else"""
+    effects: Effects = field(default_factory=Effects)
 
 
 @frozen
@@ -781,6 +785,7 @@ class NetIR:
         int_bits: width of `int`, 31 or 64.
         has_successors: whether there are functions that make all markings after a marking.
         predicates: what is asked of markings, by hosts that explore them.
+        roots: the `globals` that are state besides the marking, in order.
     """
 
     name: str
@@ -801,6 +806,7 @@ class NetIR:
     has_successors: bool = False
     predicates: tuple[Predicate, ...] = ()
     origin: Origin = field(default=NOWHERE)
+    roots: tuple[str, ...] = ()
 
     def definition(self, name: str) -> Definition:
         """A type's definition by key."""

@@ -50,6 +50,9 @@ def test_a_transition() -> None:
         """\
         transition 0 Top.Pick   (ID16) owner 0 priority 1000
           variables n: int
+          reads Top.Buffer
+          touches Top.Buffer, Top.Out
+          affects Top.Pick
           enumerate
             for i_1 in Top.Buffer   -- Buffer: n (ID21)
               bind n = Top.Buffer[i_1]

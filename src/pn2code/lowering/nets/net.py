@@ -25,7 +25,7 @@ from pn2code.lowering.nets.inscriptions import Putter
 from pn2code.lowering.nets.packing import Packing, packed
 from pn2code.lowering.nets.predicates import lower_predicate
 from pn2code.lowering.nets.transitions import lower_transition
-from pn2code.lowering.passes.moves import with_moves
+from pn2code.lowering.passes.analysis import analysed
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.types import BOOL
 from pn2code.net.flat import FlatNet, FlatPlace, FlatTransition
@@ -127,7 +127,7 @@ class _Lowering:
             has_successors=self._packing is not None and self._packing.successors,
             predicates=tuple(p for p in predicates if p is not None),
         )
-        return with_moves(net)
+        return analysed(net)
 
     def _packed(self, places: list[ir.Place]) -> tuple[ir.Place, ...]:
         if self._packing is None:

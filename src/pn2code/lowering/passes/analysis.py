@@ -1,0 +1,13 @@
+"""All passes over the programs of a net, in their order: each may look at what those before it have found."""
+
+from __future__ import annotations
+
+from pn2code.ir import nodes as ir
+from pn2code.lowering.passes.effects import with_effects
+from pn2code.lowering.passes.moves import with_moves
+from pn2code.lowering.passes.reach import Reach
+
+
+def analysed(net: ir.NetIR) -> ir.NetIR:
+    """The net, with what all passes find."""
+    return with_effects(with_moves(net), Reach(net))
