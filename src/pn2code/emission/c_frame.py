@@ -10,12 +10,12 @@ from pn2code.emission.c_own import OwnPlaces
 from pn2code.emission.c_shared import share, tables
 from pn2code.emission.c_slots import slots
 from pn2code.emission.c_statements import Statements
-from pn2code.emission.c_sums import Sum
 from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import NetIR, Rep
 from pn2code.lowering.nets.packing import KEY_BITS, key_bits
 from pn2code.lowering.passes.reach import Reach
+from pn2code.lowering.passes.sums import Sum
 
 _MOST_INLINED = 150
 """Transitions of a net for which the compiler is told to put searches where they are called."""

@@ -13,13 +13,13 @@ from pn2code.emission.c_expressions import (
 from pn2code.emission.c_lines import WIDTH, wrap
 from pn2code.emission.c_needs import does_nothing
 from pn2code.emission.c_slots import SCALARS
-from pn2code.emission.c_sums import Sum
 from pn2code.emission.environment import c_comment
 from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
 from pn2code.ir.nodes import Ir, Rep, Stmt
 from pn2code.lowering.expressions.values import is_atomic
+from pn2code.lowering.passes.sums import Sum
 
 _INDENT = "    "
 

@@ -10,13 +10,13 @@ from pn2code.emission.c_needs import uses_context
 from pn2code.emission.c_own import OwnPlaces
 from pn2code.emission.c_shared import PlaceTable, Shared, path_of
 from pn2code.emission.c_statements import Statements
-from pn2code.emission.c_sums import Sum
 from pn2code.emission.c_texts import where
 from pn2code.emission.environment import c_comment
 from pn2code.emission.names import Members
 from pn2code.emission.needs import SIDE
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
+from pn2code.lowering.passes.sums import Sum, find
 
 
 class Transitions(Frame):
@@ -200,9 +200,7 @@ class Transitions(Frame):
     def _sums(self, t: ir.Transition) -> dict[tuple[int, ir.Ir], Sum]:
         if t.index not in self._sums_found:
             stem = self._names.transition(t.index, t.name)
-            self._sums_found[t.index] = c_sums.find(
-                self._net, t, stem, self._descriptors, self._reach
-            )
+            self._sums_found[t.index] = find(self._net, t, stem, self._descriptors, self._reach)
         return self._sums_found[t.index]
 
     def _sum_function(
