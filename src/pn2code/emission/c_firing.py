@@ -246,7 +246,7 @@ class DirectFiring(Statements):
         name = self._scope.name(("sum", known.name), "sum")
         self._sums_used[known.name] = name
         verb = "take" if isinstance(s, ir.TakeAll) else "add"
-        self._moves_made.append(_Move(verb, s.place, name, "", s.note or known.note, True))
+        self._moves_made.append(_Move(verb, s.place, name, "", s.note or known.of.note, True))
 
     def _sum_lines(self) -> list[str]:
         """The sums, and the way to go when one is not known: list by list."""

@@ -15,7 +15,6 @@ from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import NetIR, Rep
 from pn2code.lowering.nets.packing import KEY_BITS, key_bits
 from pn2code.lowering.passes.reach import Reach
-from pn2code.lowering.passes.sums import Sum
 
 _MOST_INLINED = 150
 """Transitions of a net for which the compiler is told to put searches where they are called."""
@@ -56,7 +55,6 @@ class Frame:
             and all(p.packed for p in net.places)
             and 0 < key_bits(net.places) <= KEY_BITS
         )
-        self._sums_found: dict[int, dict[tuple[int, ir.Ir], Sum]] = {}
         self._referring = tuple(p.index for p in net.places if self._refers(p.table))
         self._kept = tuple(map(self._kept_in, net.places))
         self._room = self._rooms_of_arrays()

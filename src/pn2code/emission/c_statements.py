@@ -13,13 +13,13 @@ from pn2code.emission.c_expressions import (
 from pn2code.emission.c_lines import WIDTH, wrap
 from pn2code.emission.c_needs import does_nothing
 from pn2code.emission.c_slots import SCALARS
+from pn2code.emission.c_sums import SumFunction
 from pn2code.emission.environment import c_comment
 from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
 from pn2code.ir.nodes import Ir, Rep, Stmt
 from pn2code.lowering.expressions.values import is_atomic
-from pn2code.lowering.passes.sums import Sum
 
 _INDENT = "    "
 
@@ -48,7 +48,7 @@ class Statements:
         self.timed: tuple[bool, ...] = ()
         self.slots: frozenset[int] = frozenset()
         self.token_types: tuple[ir.IrType, ...] = ()
-        self.sums: Mapping[tuple[int, Ir], Sum] = {}
+        self.sums: Mapping[tuple[int, Ir], SumFunction] = {}
         self.number_of: Callable[[str], str] = lambda key: ""  # "": not by number
         self.moves = "moves"
         self.variable_types: tuple[ir.IrType, ...] = ()
@@ -469,9 +469,9 @@ class Statements:
         if known is None:
             self._work_out_wanted(takes, f"const bool {holds}")
         else:
-            place = self._x.place_names[known.place]
+            place = self._x.place_names[known.of.place]
             total = self._scope.name(("sum", id(takes)), "sum")
-            self.note(known.note)
+            self.note(known.of.note)
             self.line(f"const uint64_t *const {total} = {known.name}(cx, &b);")
             self.line(f"bool {holds} = false;")
             self.line(f"if ({total} != NULL) {{")

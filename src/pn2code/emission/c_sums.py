@@ -1,16 +1,32 @@
-"""The function in C that works out a multi-set of an arc once for each value of its variables."""
+"""The functions in C that work out multi-sets of arcs once for each value of their variables; see `passes.sums`."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
+from pn2code.base.frozen import frozen
 from pn2code.emission.c_packed import Numbers
 from pn2code.ir import nodes as ir
-from pn2code.lowering.passes.sums import Sum
+
+
+@frozen
+class SumFunction:
+    """The name of the function that gives the counters of a multi-set, and the multi-set."""
+
+    name: str
+    of: ir.Sum
+
+
+def functions(t: ir.Transition, stem: str) -> dict[tuple[int, ir.Ir], SumFunction]:
+    """Those of a transition by place and multi-set; `stem` is its name in C."""
+    return {
+        (s.place, s.multiset): SumFunction(f"{stem}_sum_{number}", s)
+        for number, s in enumerate(t.sums, 1)
+    }
 
 
 def function(
-    s: Sum,
+    known: SumFunction,
     binding: str,
     bag: str,
     list_table: str,
@@ -21,7 +37,7 @@ def function(
     """The function in C.
 
     Args:
-        s: the sum.
+        known: its name and the multi-set.
         binding: type of the binding.
         bag: a pointer to the table of the place.
         list_table: of the list.
@@ -29,8 +45,9 @@ def function(
         text: prints an expression over `b->`.
         address: of a variable.
     """
+    s = known.of
     lines = [
-        f"static const uint64_t *{s.name}(pn_ctx_t *cx, const {binding} *b)",
+        f"static const uint64_t *{known.name}(pn_ctx_t *cx, const {binding} *b)",
         "{",
         f"    static PN_OF_THREAD uint8_t state[{s.count}];",
         f"    static PN_OF_THREAD uint64_t counters[{s.count}][{s.words}];",

@@ -10,13 +10,13 @@ from pn2code.emission.c_needs import uses_context
 from pn2code.emission.c_own import OwnPlaces
 from pn2code.emission.c_shared import PlaceTable, Shared, path_of
 from pn2code.emission.c_statements import Statements
+from pn2code.emission.c_sums import SumFunction
 from pn2code.emission.c_texts import where
 from pn2code.emission.environment import c_comment
 from pn2code.emission.names import Members
 from pn2code.emission.needs import SIDE
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
-from pn2code.lowering.passes.sums import Sum, find
 
 
 class Transitions(Frame):
@@ -120,12 +120,12 @@ class Transitions(Frame):
         search.may_fail = search.keeps or any(
             isinstance(n, ir.Wanted | ir.UnlessLegal) for n in ir_nodes(t.enumerate)
         )
-        search.sums = self._sums(t)
+        sums = self._sums(t)
+        search.sums = sums
         search.body(t.enumerate)
         search.end_search()
         is_direct = self._is_direct(t)
         fire = self._firing(t, is_direct, variables, own, name)
-        sums = self._sums(t)
         has_lists = is_direct and any(isinstance(s, ir.TakeAll | ir.PutAll) for s in t.fire)
         lists = self._firing(t, False, variables, own, name) if has_lists else None
         thresholds = self._thresholds(t, variables, own)
@@ -197,22 +197,19 @@ class Transitions(Frame):
         takes = tuple(s.value for s in t.fire if isinstance(s, ir.Take))
         return c_places.is_direct(self._net, t, self._sums(t)) and self._reach.is_pure(takes)
 
-    def _sums(self, t: ir.Transition) -> dict[tuple[int, ir.Ir], Sum]:
-        if t.index not in self._sums_found:
-            stem = self._names.transition(t.index, t.name)
-            self._sums_found[t.index] = find(self._net, t, stem, self._descriptors, self._reach)
-        return self._sums_found[t.index]
+    def _sums(self, t: ir.Transition) -> dict[tuple[int, ir.Ir], SumFunction]:
+        return c_sums.functions(t, self._names.transition(t.index, t.name))
 
     def _sum_function(
-        self, s: Sum, t: ir.Transition, name: str, variables: tuple[str, ...]
+        self, s: SumFunction, t: ir.Transition, name: str, variables: tuple[str, ...]
     ) -> list[str]:
         _, x, _ = self._printer((), "b->")
         x.variables = variables
         return c_sums.function(
             s,
             f"{name}_binding_t",
-            self._bags[s.place],
-            self._names.table(s.table),
+            self._bags[s.of.place],
+            self._names.table(s.of.table),
             self._numbers,
             x.text,
             lambda i: x.address(ir.Bound(i, t.variables[i].type)),

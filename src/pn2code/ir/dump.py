@@ -92,6 +92,9 @@ class _Dump:
         if t.staying:
             yield f"  stays {', '.join(self._staying(t))}"
         yield from self._effects(t.effects)
+        for found in t.sums:
+            place, x = self._place_name(found.place), self._expression
+            yield f"  once for each of {found.count} {place} {x(found.multiset)}{_note(found.note)}"
         yield f"  enumerate{' plain' if t.is_plain else ''}"
         yield from self._block(t.enumerate, 2)
         yield "  fire"

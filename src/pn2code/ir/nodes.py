@@ -12,6 +12,7 @@ One transition with guard `[n > 0]`, input arc ``1`n`` and output arc ``1`(n - 1
 
 from __future__ import annotations
 
+import math
 from dataclasses import field
 
 from pn2code.base.frozen import frozen
@@ -732,6 +733,32 @@ class Variable:
 
 
 @frozen
+class Sum:
+    """A multi-set of an arc of a packed place that is worked out once for each value of the variables that decide.
+
+    Args:
+        place: whose.
+        multiset: the list.
+        table: descriptor of the list.
+        variables: (index in the binding, key of its descriptor, number of its colours).
+        words: of its counters.
+        note: the inscription.
+    """
+
+    place: int
+    multiset: Ir
+    table: str
+    variables: tuple[tuple[int, str, int], ...]
+    words: int
+    note: str
+
+    @property
+    def count(self) -> int:
+        """How many multi-sets there are."""
+        return math.prod(n for _, _, n in self.variables)
+
+
+@frozen
 class Transition:
     """A transition as two programs; and one more if delays of its input arcs have to be computed: `Threshold`s for all
     bindings that are possible whatever the stamps are."""
@@ -754,6 +781,8 @@ class Transition:
     is_plain: bool = False
     """each choice of tokens, one for each input arc, gives a binding: the search is loops and nothing else"""
     effects: Effects = field(default_factory=Effects)
+    sums: tuple[Sum, ...] = ()
+    """multi-sets of its arcs, in order of first use, that are kept as counters"""
 
 
 @frozen

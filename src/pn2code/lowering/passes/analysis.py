@@ -6,8 +6,10 @@ from pn2code.ir import nodes as ir
 from pn2code.lowering.passes.effects import with_effects
 from pn2code.lowering.passes.moves import with_moves
 from pn2code.lowering.passes.reach import Reach
+from pn2code.lowering.passes.sums import with_sums
 
 
 def analysed(net: ir.NetIR) -> ir.NetIR:
     """The net, with what all passes find."""
-    return with_effects(with_moves(net), Reach(net))
+    reach = Reach(net)
+    return with_sums(with_effects(with_moves(net), reach), reach)

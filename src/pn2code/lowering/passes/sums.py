@@ -2,14 +2,14 @@
 
 `others(s)` on an arc of a packed place is a function that makes a list. In C it is called once for each value of `s`;
 after that the arc is a comparison, addition or subtraction of words (`place_has_sum` and the like in pn_packed.h).
+`with_sums` writes them into the transitions (`sums`).
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
+from dataclasses import replace
 
-from pn2code.base.frozen import frozen
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
 from pn2code.ir.nodes import Descriptor
@@ -21,43 +21,23 @@ _MOST_WORDS = 1 << 14
 """Of all sums of one arc."""
 
 
-@frozen
-class Sum:
-    """A multi-set of an arc.
-
-    Args:
-        name: of the function in C that gives its counters.
-        place: whose.
-        multiset: the list.
-        table: descriptor of the list.
-        variables: (index in the binding, key of its descriptor, number of its colours).
-        words: of its counters.
-        note: the inscription.
-    """
-
-    name: str
-    place: int
-    multiset: ir.Ir
-    table: str
-    variables: tuple[tuple[int, str, int], ...]
-    words: int
-    note: str
-
-    @property
-    def count(self) -> int:
-        """How many multi-sets there are."""
-        return math.prod(n for _, _, n in self.variables)
+def with_sums(net: ir.NetIR, reach: Reach) -> ir.NetIR:
+    """The net, with what this pass finds."""
+    descriptors = {d.name: d for d in net.descriptors}
+    return replace(
+        net,
+        transitions=tuple(
+            replace(t, sums=tuple(_find(net, t, descriptors, reach).values()))
+            for t in net.transitions
+        ),
+    )
 
 
-def find(
-    net: ir.NetIR,
-    t: ir.Transition,
-    stem: str,
-    descriptors: Mapping[str, Descriptor],
-    reach: Reach,
-) -> dict[tuple[int, ir.Ir], Sum]:
-    """The sums of a transition by place and multi-set; `stem` is its name in C."""
-    found: dict[tuple[int, ir.Ir], Sum] = {}
+def _find(
+    net: ir.NetIR, t: ir.Transition, descriptors: Mapping[str, Descriptor], reach: Reach
+) -> dict[tuple[int, ir.Ir], ir.Sum]:
+    """The sums of a transition by place and multi-set."""
+    found: dict[tuple[int, ir.Ir], ir.Sum] = {}
     for node in ir_nodes((t.enumerate, t.fire)):
         if not isinstance(node, ir.TakeAll | ir.PutAll) or (node.place, node.multiset) in found:
             continue
@@ -68,16 +48,7 @@ def find(
         words = (packed.bit % 64 + packed.colours * packed.width + 63) // 64
         if variables is None:
             continue
-        number = len(found) + 1
-        made = Sum(
-            f"{stem}_sum_{number}",
-            node.place,
-            node.multiset,
-            node.table,
-            variables,
-            words,
-            node.note,
-        )
+        made = ir.Sum(node.place, node.multiset, node.table, variables, words, node.note)
         if made.count <= _MOST_SUMS and made.count * words <= _MOST_WORDS:
             found[node.place, node.multiset] = made
     return found
