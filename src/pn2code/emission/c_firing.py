@@ -1,4 +1,4 @@
-"""An occurrence printed with the inline functions of its places (pn_place.h), and with slots (c_slots.py).
+"""An occurrence printed with the inline functions of its places (pn_place.h), and with slots (`passes.slots`).
 
 First everything is worked out, so that whatever raises leaves the marking alone. Then it is looked whether the slots
 have room, then tokens are taken from the other places and put there; if one of those turns out to be full, all is put
@@ -11,8 +11,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from pn2code.emission.c_expressions import Expressions, Types
-from pn2code.emission.c_slots import is_structural
 from pn2code.emission.c_statements import Statements
+from pn2code.emission.c_values import is_structural
 from pn2code.emission.names import Scope
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Descriptor, Rep, Stmt
@@ -65,7 +65,7 @@ class _SlotMove:
 
 
 class DirectFiring(Statements):
-    """Prints the `fire` of a transition for which `c_places.is_direct` holds.
+    """Prints the `fire` of a transition for which `is_direct` holds.
 
     Args:
         descriptors: of all colour sets and types.

@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from pn2code.diagnostics import Origin
-from pn2code.emission import c_packed, c_places, c_tables
+from pn2code.emission import c_orders, c_packed, c_tables
 from pn2code.emission.c_expressions import Expressions, Types
 from pn2code.emission.c_needs import used_locals, uses_context
 from pn2code.emission.c_own import OwnPlaces
 from pn2code.emission.c_shared import share, tables
-from pn2code.emission.c_slots import slots
 from pn2code.emission.c_statements import Statements
 from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import NetIR, Rep
 from pn2code.lowering.nets.packing import KEY_BITS, key_bits
 from pn2code.lowering.passes.reach import Reach
+from pn2code.lowering.passes.slots import slots
 
 _MOST_INLINED = 150
 """Transitions of a net for which the compiler is told to put searches where they are called."""
@@ -45,7 +45,7 @@ class Frame:
         self._slots = slots(net)
         self._needs_context = self._context_users()
         self._reach = Reach(net)
-        self._orders = c_places.Orders(self._types, self._names, self._descriptors)
+        self._orders = c_orders.Orders(self._types, self._names, self._descriptors)
         self._numbers = c_packed.Numbers(self._types, self._names, self._descriptors)
         self._packed = self._numbers.of_places(net.places, lambda key: self._functions[key].is_pure)
         self._has_inlined = net.has_successors and len(net.transitions) <= _MOST_INLINED

@@ -12,8 +12,8 @@ from pn2code.emission.c_expressions import (
 )
 from pn2code.emission.c_lines import WIDTH, wrap
 from pn2code.emission.c_needs import does_nothing
-from pn2code.emission.c_slots import SCALARS
 from pn2code.emission.c_sums import SumFunction
+from pn2code.emission.c_values import SCALARS
 from pn2code.emission.environment import c_comment
 from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pn2code.emission import c_places, c_rows, c_sums
+from pn2code.emission import c_rows, c_sums
 from pn2code.emission.c_firing import DirectFiring
 from pn2code.emission.c_frame import Frame
 from pn2code.emission.c_lines import mentions
@@ -17,6 +17,8 @@ from pn2code.emission.names import Members
 from pn2code.emission.needs import SIDE
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
+from pn2code.lowering.passes.direct import is_direct
+from pn2code.lowering.passes.slots import is_flat
 
 
 class Transitions(Frame):
@@ -115,7 +117,7 @@ class Transitions(Frame):
         search.keeps = uses_context(
             _without_wanted(t.enumerate), self._needs_context, self._definitions
         )
-        search.is_flat = c_places.is_flat(t.enumerate, self._slots)
+        search.is_flat = is_flat(t.enumerate, self._slots)
         search.releases = not t.effects.search_writes
         search.may_fail = search.keeps or any(
             isinstance(n, ir.Wanted | ir.UnlessLegal) for n in ir_nodes(t.enumerate)
@@ -195,7 +197,7 @@ class Transitions(Frame):
     def _is_direct(self, t: ir.Transition) -> bool:
         """Whether it can be printed with the functions of its places; what is taken must be what was found."""
         takes = tuple(s.value for s in t.fire if isinstance(s, ir.Take))
-        return c_places.is_direct(self._net, t, self._sums(t)) and self._reach.is_pure(takes)
+        return is_direct(self._net, t, self._sums(t)) and self._reach.is_pure(takes)
 
     def _sums(self, t: ir.Transition) -> dict[tuple[int, ir.Ir], SumFunction]:
         return c_sums.functions(t, self._names.transition(t.index, t.name))

@@ -7,15 +7,11 @@ needs them before it changes the first, so nothing has to be put back.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Container, Iterator
+from collections.abc import Container, Iterator, Sequence
 
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
-from pn2code.ir.nodes import Rep
 from pn2code.lowering.passes.moves import is_count, puts
-
-SCALARS = frozenset({Rep.BOOL, Rep.INT, Rep.CHAR, Rep.ENUM})
-"""Representations whose values C compares with `==`."""
 
 
 def slots(net: ir.NetIR) -> frozenset[int]:
@@ -60,17 +56,11 @@ def _followed(statements: tuple[ir.Stmt, ...]) -> Iterator[int]:
             yield s.place
 
 
-def is_structural(value: ir.Ir, references: Container[str]) -> bool:
-    """Whether a value is put together from constants and variables alone: each evaluation gives the same."""
-    match value:
-        case ir.Const() | ir.EnumValue() | ir.Bound():
-            return True
-        case ir.GlobalUse(name=name):
-            return name not in references
-        case ir.MakeStruct(fields=fields):
-            return all(is_structural(part, references) for _, part in fields)
-        case ir.MakeUnion(argument=argument):
-            return argument is None or is_structural(argument, references)
-        case ir.Op(name="list.cons", arguments=arguments):
-            return all(is_structural(part, references) for part in arguments)
-    return False
+def is_flat(statements: Sequence[ir.Stmt], slots: Container[int]) -> bool:
+    """Whether a search gives one binding at most, and does so last: of a slot there is one token to look at."""
+    if not statements or any(isinstance(n, ir.Yield) for n in ir_nodes(tuple(statements[:-1]))):
+        return False
+    last = statements[-1]
+    if isinstance(last, ir.ForTokens):
+        return last.place in slots and is_flat(last.body, slots)
+    return isinstance(last, ir.Yield)

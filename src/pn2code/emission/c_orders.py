@@ -1,15 +1,12 @@
-"""Untimed places with their types known: the order of their values in C, and the room that an occurrence needs."""
+"""The order of the values of untimed places in C, with their types known."""
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Mapping, Sequence
+from collections.abc import Mapping
 
 from pn2code.emission.c_expressions import Types
 from pn2code.emission.names import Names, label
-from pn2code.ir import nodes as ir
-from pn2code.ir.calls import ir_nodes
 from pn2code.ir.nodes import Descriptor, Rep
-from pn2code.lowering.passes.moves import is_count
 
 _SCALAR = frozenset({Rep.BOOL, Rep.INT, Rep.CHAR, Rep.ENUM})
 """Representations whose values C compares in the order of the colour set."""
@@ -73,44 +70,3 @@ class Orders:
                 lines.append(f"    if ({order} != 0) {{")
                 lines.append(f"        return {order} < 0;")
                 lines.append("    }")
-
-
-def is_direct(net: ir.NetIR, t: ir.Transition, sums: Container[tuple[int, ir.Ir]] = ()) -> bool:
-    """Whether the occurrence is a fixed number of takes and puts of untimed places, known one by one or as `sums`."""
-    takes = [n for n in ir_nodes(t.fire) if isinstance(n, ir.Take)]
-    puts = [n for n in ir_nodes(t.fire) if isinstance(n, ir.Put)]
-    moved = {n.place for n in takes} | {n.place for n in puts}
-    top = [s for s in t.fire if isinstance(s, ir.Take)]
-    whole = [n for n in ir_nodes(t.fire) if isinstance(n, ir.TakeAll | ir.PutAll)]
-    return (
-        not any(isinstance(n, ir.Reset) for n in ir_nodes(t.fire))
-        and all((n.place, n.multiset) in sums for n in whole)
-        and len(whole) == sum(isinstance(s, ir.TakeAll | ir.PutAll) for s in t.fire)
-        and not any(net.places[place].timed for place in moved)
-        and len(takes) == len(top)
-        and all(is_count(n.count) for n in takes)
-        and len(puts) == len([*_ways(t.fire)])
-    )
-
-
-def _ways(statements: Iterable[ir.Stmt]) -> Iterable[ir.Put]:
-    """The `Put`s that stand at the top or in branches, not in loops."""
-    for s in statements:
-        match s:
-            case ir.Put():
-                yield s
-            case ir.If(then=then, otherwise=otherwise):
-                yield from _ways(then)
-                yield from _ways(otherwise)
-            case _:
-                pass
-
-
-def is_flat(statements: Sequence[ir.Stmt], slots: Container[int]) -> bool:
-    """Whether a search gives one binding at most, and does so last: of a slot there is one token to look at."""
-    if not statements or any(isinstance(n, ir.Yield) for n in ir_nodes(tuple(statements[:-1]))):
-        return False
-    last = statements[-1]
-    if isinstance(last, ir.ForTokens):
-        return last.place in slots and is_flat(last.body, slots)
-    return isinstance(last, ir.Yield)
