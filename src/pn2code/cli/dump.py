@@ -31,6 +31,7 @@ class Stage(StrEnum):
     FLAT = "flat"
     PARTITION = "partition"
     IR = "ir"
+    DEPLOYED = "deployed"
     ROBOTS = "robots"
 
 
@@ -70,6 +71,8 @@ def stage_text(
     from pn2code.net.source import read
     from pn2code.robot_scripts.translate import lower_robots
     from pn2code.semantics.evaluation.constants import compute
+    from pn2code.verify.controller.proofs import prove
+    from pn2code.verify.exploring.place_capacity import with_rooms
 
     found = locate(path, d)
     if found is None:
@@ -93,8 +96,11 @@ def stage_text(
         return None
     if stage is Stage.PARTITION:
         return dump_partition(partition)
-    if stage is Stage.IR:
+    if stage in (Stage.IR, Stage.DEPLOYED):
         compiled = lower(partition, config.storage if config else {}, d)
+        if compiled is not None and stage is Stage.DEPLOYED:
+            proofs = prove(partition, config, d, checked=False)
+            compiled = None if proofs is None else with_rooms(compiled, proofs.rooms)
         return None if compiled is None else dump_ir(compiled, only)
     robots = lower_robots(partition, config, d) if config else ()
     if robots is None:

@@ -65,7 +65,7 @@ class _SlotMove:
 
 
 class DirectFiring(Statements):
-    """Prints the `fire` of a transition for which `is_direct` holds.
+    """Prints the `fire` of a transition that `is_direct`.
 
     Args:
         descriptors: of all colour sets and types.

@@ -13,8 +13,6 @@ from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import NetIR, Rep
 from pn2code.lowering.nets.packing import KEY_BITS, key_bits
-from pn2code.lowering.passes.reach import Reach
-from pn2code.lowering.passes.slots import slots
 
 _MOST_INLINED = 150
 """Transitions of a net for which the compiler is told to put searches where they are called."""
@@ -42,9 +40,8 @@ class Frame:
         self._holders = tuple(f"&m->{name}" for name in self._place_names)
         self._tables = tuple(self._names.table(p.table) for p in net.places)
         self._timed = tuple(p.timed for p in net.places)
-        self._slots = slots(net)
+        self._slots = frozenset(p.index for p in net.places if p.is_slot)
         self._needs_context = self._context_users()
-        self._reach = Reach(net)
         self._orders = c_orders.Orders(self._types, self._names, self._descriptors)
         self._numbers = c_packed.Numbers(self._types, self._names, self._descriptors)
         self._packed = self._numbers.of_places(net.places, lambda key: self._functions[key].is_pure)

@@ -17,8 +17,6 @@ from pn2code.emission.names import Members
 from pn2code.emission.needs import SIDE
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
-from pn2code.lowering.passes.direct import is_direct
-from pn2code.lowering.passes.slots import is_flat
 
 
 class Transitions(Frame):
@@ -117,7 +115,7 @@ class Transitions(Frame):
         search.keeps = uses_context(
             _without_wanted(t.enumerate), self._needs_context, self._definitions
         )
-        search.is_flat = is_flat(t.enumerate, self._slots)
+        search.is_flat = t.is_flat
         search.releases = not t.effects.search_writes
         search.may_fail = search.keeps or any(
             isinstance(n, ir.Wanted | ir.UnlessLegal) for n in ir_nodes(t.enumerate)
@@ -126,9 +124,8 @@ class Transitions(Frame):
         search.sums = sums
         search.body(t.enumerate)
         search.end_search()
-        is_direct = self._is_direct(t)
-        fire = self._firing(t, is_direct, variables, own, name)
-        has_lists = is_direct and any(isinstance(s, ir.TakeAll | ir.PutAll) for s in t.fire)
+        fire = self._firing(t, t.is_direct, variables, own, name)
+        has_lists = t.is_direct and any(isinstance(s, ir.TakeAll | ir.PutAll) for s in t.fire)
         lists = self._firing(t, False, variables, own, name) if has_lists else None
         thresholds = self._thresholds(t, variables, own)
         text = "\n".join(fire.lines)
@@ -162,7 +159,7 @@ class Transitions(Frame):
             "searches_marking": mentions("m", "\n".join(search.lines)),
             "fire": fire.lines,
             "fire_reach": own.reach(fire.lines, is_const=False) if own else [],
-            "is_direct": is_direct,
+            "is_direct": t.is_direct,
             "sums": [
                 self._sum_function(s, t, name, variables)
                 for s in sums.values()
@@ -193,11 +190,6 @@ class Transitions(Frame):
         search.is_void = True
         search.body(t.thresholds)
         return search.lines
-
-    def _is_direct(self, t: ir.Transition) -> bool:
-        """Whether it can be printed with the functions of its places; what is taken must be what was found."""
-        takes = tuple(s.value for s in t.fire if isinstance(s, ir.Take))
-        return is_direct(self._net, t, self._sums(t)) and self._reach.is_pure(takes)
 
     def _sums(self, t: ir.Transition) -> dict[tuple[int, ir.Ir], SumFunction]:
         return c_sums.functions(t, self._names.transition(t.index, t.name))

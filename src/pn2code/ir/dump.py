@@ -80,7 +80,8 @@ class _Dump:
     def _place(self, p: ir.Place) -> Iterator[str]:
         timed = " timed" if p.timed else ""
         added = f" + {p.added}" if p.added else ""
-        yield f"place {p.index} {p.name} : {p.colset}{timed} capacity {p.capacity}{added} owner {p.owner}"
+        slot = " slot" if p.is_slot else ""
+        yield f"place {p.index} {p.name} : {p.colset}{timed} capacity {p.capacity}{added} owner {p.owner}{slot}"
         yield from self._block(p.initial, 1)
 
     def _transition(self, t: ir.Transition) -> Iterator[str]:
@@ -95,9 +96,9 @@ class _Dump:
         for found in t.sums:
             place, x = self._place_name(found.place), self._expression
             yield f"  once for each of {found.count} {place} {x(found.multiset)}{_note(found.note)}"
-        yield f"  enumerate{' plain' if t.is_plain else ''}"
+        yield f"  enumerate{' plain' if t.is_plain else ''}{' flat' if t.is_flat else ''}"
         yield from self._block(t.enumerate, 2)
-        yield "  fire"
+        yield f"  fire{' direct' if t.is_direct else ''}"
         yield from self._block(t.fire, 2)
         if t.thresholds:
             yield "  thresholds"

@@ -720,6 +720,8 @@ class Place:
     proof: str = ""
     added: int = 0
     """the most entries that one occurrence may add before it is asked whether they fit"""
+    is_slot: bool = False
+    """kept as a value, and whether it is there: it holds one token at most, and nobody moves more at a time"""
 
 
 @frozen
@@ -783,6 +785,10 @@ class Transition:
     effects: Effects = field(default_factory=Effects)
     sums: tuple[Sum, ...] = ()
     """multi-sets of its arcs, in order of first use, that are kept as counters"""
+    is_direct: bool = False
+    """an occurrence is a fixed number of takes and puts of untimed places, known one by one or as `sums`"""
+    is_flat: bool = False
+    """the search gives one binding at most, and does so last: of a slot there is one token to look at"""
 
 
 @frozen

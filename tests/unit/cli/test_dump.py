@@ -88,3 +88,27 @@ def test_nothing_is_dumped_of_what_cannot_be_compiled(tmp_path: Path) -> None:
     d = Diagnostics()
     assert stage_text(net, Stage.IR, "", {}, d) is None
     assert d.has_errors
+
+
+def test_places_with_what_is_proven_of_them(tmp_path: Path) -> None:
+    net = write(
+        """
+        net Cell
+          standard
+          var n: INT;
+          place A : INT = 1`1
+          place B : INT
+          trans T
+            in A : n
+            out B : n
+        """,
+        tmp_path / "cell.cpn",
+    )
+    d = Diagnostics()
+    text = stage_text(net, Stage.DEPLOYED, "", {}, d)
+    assert text is not None, list(d)
+    assert "place 0 Top.A : INT capacity 1 owner 0 slot\n" in text
+    assert "  enumerate plain flat\n" in text
+    assert "  fire direct\n" in text
+    lowered = stage_text(net, Stage.IR, "", {}, d)
+    assert lowered is not None and "slot" not in lowered

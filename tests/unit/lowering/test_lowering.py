@@ -58,7 +58,7 @@ def test_a_transition() -> None:
               bind n = Top.Buffer[i_1]
               unless (n Int.> 0): next   -- guard [n > 0]
               yield
-          fire
+          fire direct
             take Top.Buffer 1 ` n   -- Buffer: n (ID21)
             put Top.Out 2 ` n   -- Out: 2`n (ID23)
         """

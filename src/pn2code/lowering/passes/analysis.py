@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from pn2code.ir import nodes as ir
+from pn2code.lowering.passes.direct import with_direct
 from pn2code.lowering.passes.effects import with_effects
 from pn2code.lowering.passes.moves import with_moves
 from pn2code.lowering.passes.reach import Reach
+from pn2code.lowering.passes.slots import with_slots
 from pn2code.lowering.passes.sums import with_sums
 
 
 def analysed(net: ir.NetIR) -> ir.NetIR:
     """The net, with what all passes find."""
     reach = Reach(net)
-    return with_sums(with_effects(with_moves(net), reach), reach)
+    net = with_sums(with_effects(with_moves(net), reach), reach)
+    return with_slots(with_direct(net, reach))
