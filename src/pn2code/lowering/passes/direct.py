@@ -36,7 +36,7 @@ def _is_direct(net: ir.NetIR, t: ir.Transition, reach: Reach) -> bool:
         and len(takes) == len(top)
         and all(is_count(n.count) for n in takes)
         and len(puts) == len([*_ways(t.fire)])
-        and reach.is_pure(tuple(n.value for n in top))
+        and reach.is_pure(ir_nodes(tuple(n.value for n in top)))
     )
 
 

@@ -22,48 +22,54 @@ _READ = (*_EXAMINED, ir.Reset)
 
 def with_effects(net: ir.NetIR, reach: Reach) -> ir.NetIR:
     """The net, with what this pass finds; `staying` is known."""
-    examined = [_places(t.enumerate, _EXAMINED) for t in net.transitions]
-    volatile = [not reach.is_pure(t.enumerate) for t in net.transitions]
+    searches = [list(ir_nodes(t.enumerate)) for t in net.transitions]
+    examined = [_places(nodes, _EXAMINED) for nodes in searches]
+    volatile = [not reach.is_pure(nodes) for nodes in searches]
     roots = _roots(net, reach)
     impure = reach.impure()
 
-    def effects(t: ir.Transition) -> Effects:
-        changed = _changed(net, t, reach)
+    def effects(t: ir.Transition, search: list[object]) -> Effects:
+        fire, thresholds = list(ir_nodes(t.fire)), list(ir_nodes(t.thresholds))
+        changed = _changed(net, t, fire, reach)
+        search_writes = reach.assigns(search)
         return Effects(
             affected=tuple(
                 i for i, places in enumerate(examined) if volatile[i] or places & changed
             ),
             touched=tuple(sorted(changed)),
-            read=tuple(sorted(_places((*t.enumerate, *t.fire), _READ))),
-            looks=reach.looks((t.enumerate, t.fire)),
-            looks_outside=reach.looks_outside((t.enumerate, t.fire)),
-            assigns=bool(roots) and reach.assigns(t.fire),
-            search_assigns=bool(roots) and reach.assigns((t.enumerate, t.thresholds)),
-            search_writes=reach.assigns(t.enumerate),
-            search_draws=reach.draws(t.enumerate),
-            fire_draws=reach.draws(t.fire),
-            thresholds_draw=reach.draws(t.thresholds),
+            read=tuple(sorted(_places(search, _READ) | _places(fire, _READ))),
+            looks=reach.looks(search) or reach.looks(fire),
+            looks_outside=reach.looks_outside(search) or reach.looks_outside(fire),
+            assigns=bool(roots) and reach.assigns(fire),
+            search_assigns=bool(roots) and (search_writes or reach.assigns(thresholds)),
+            search_writes=search_writes,
+            search_draws=reach.draws(search),
+            fire_draws=reach.draws(fire),
+            thresholds_draw=reach.draws(thresholds),
         )
 
     return replace(
         net,
         functions=tuple(replace(f, is_pure=f.key not in impure) for f in net.functions),
-        transitions=tuple(replace(t, effects=effects(t)) for t in net.transitions),
+        transitions=tuple(
+            replace(t, effects=effects(t, search))
+            for t, search in zip(net.transitions, searches, strict=True)
+        ),
         roots=roots,
     )
 
 
-def _changed(net: ir.NetIR, t: ir.Transition, reach: Reach) -> frozenset[int]:
+def _changed(net: ir.NetIR, t: ir.Transition, fire: list[object], reach: Reach) -> frozenset[int]:
     """The places whose tokens are others after the occurrence: what stays where it is does not count."""
     staying = {
         id(s)
         for position, other in t.staying
         if isinstance(take := t.fire[position], ir.Take)
         and not net.places[take.place].timed
-        and reach.is_pure(take.value)
+        and reach.is_pure(ir_nodes(take.value))
         for s in (take, t.fire[other])
     }
-    moves = [n for n in ir_nodes(t.fire) if isinstance(n, _CHANGED) and id(n) not in staying]
+    moves = [n for n in fire if isinstance(n, _CHANGED) and id(n) not in staying]
     return frozenset(n.place for n in moves)
 
 
@@ -73,7 +79,8 @@ def _roots(net: ir.NetIR, reach: Reach) -> tuple[str, ...]:
     Those that transitions assign; and if they assign any, or the contents of any cell, all through which cells are
     reached, and all of which the address is known to others.
     """
-    nodes = reach.nodes(tuple((t.enumerate, t.fire, t.thresholds) for t in net.transitions))
+    programs = tuple((t.enumerate, t.fire, t.thresholds) for t in net.transitions)
+    nodes = reach.all_nodes(ir_nodes(programs))
     if not any(map(is_assignment, nodes)):
         return ()
     assigned = {n.name for n in nodes if isinstance(n, ir.SetGlobal) and n.is_reference}
@@ -85,5 +92,5 @@ def _roots(net: ir.NetIR, reach: Reach) -> tuple[str, ...]:
     )
 
 
-def _places(statements: tuple[ir.Stmt, ...], kinds: tuple[type, ...]) -> frozenset[int]:
-    return frozenset(n.place for n in ir_nodes(statements) if isinstance(n, kinds))  # type: ignore[attr-defined]
+def _places(nodes: list[object], kinds: tuple[type, ...]) -> frozenset[int]:
+    return frozenset(n.place for n in nodes if isinstance(n, kinds))  # type: ignore[attr-defined]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import called, ir_nodes
@@ -11,7 +11,7 @@ from pn2code.lowering.expressions.purity import is_impure_builtin
 
 
 class Reach:
-    """Of a net."""
+    """Of a net. `nodes` are pieces of IR, as `ir_nodes` gives them; those who ask several questions make a list."""
 
     def __init__(self, net: ir.NetIR) -> None:
         self._functions = net.functions
@@ -19,38 +19,35 @@ class Reach:
         self._reaching: dict[Callable[[object], bool], set[str]] = {}
         self._references = {g.name for g in net.globals if g.is_reference}
 
-    def is_pure(self, item: object) -> bool:
+    def is_pure(self, nodes: Iterable[object]) -> bool:
         """Whether nothing but the binding and the marking decides: no references, random numbers, step()."""
-        return not self.reaches(item, self._is_impure)
+        return not self.reaches(nodes, self._is_impure)
 
-    def looks(self, item: object) -> bool:
+    def looks(self, nodes: Iterable[object]) -> bool:
         """Whether more than the binding, the marking and the stream of random numbers decides."""
-        return self.reaches(item, self._is_look)
+        return self.reaches(nodes, self._is_look)
 
-    def looks_outside(self, item: object) -> bool:
+    def looks_outside(self, nodes: Iterable[object]) -> bool:
         """The same without references: whether it may be another time what it is now, in the same state."""
-        return self.reaches(item, _is_outside)
+        return self.reaches(nodes, _is_outside)
 
-    def assigns(self, item: object) -> bool:
+    def assigns(self, nodes: Iterable[object]) -> bool:
         """Whether it changes what a reference holds that may outlive the evaluation."""
-        return self.reaches(item, is_assignment)
+        return self.reaches(nodes, is_assignment)
 
-    def draws(self, item: object) -> bool:
+    def draws(self, nodes: Iterable[object]) -> bool:
         """Whether it takes numbers from the stream of random numbers."""
-        return self.reaches(item, _is_draw)
+        return self.reaches(nodes, _is_draw)
 
-    def reaches(self, item: object, what: Callable[[object], bool]) -> bool:
-        """Whether there is something of a kind in IR, directly or in a function that is called."""
+    def reaches(self, nodes: Iterable[object], what: Callable[[object], bool]) -> bool:
+        """Whether something of a kind is among the pieces, or in a function that is called."""
         reaching = self._functions_reaching(what)
-        return any(
-            what(n) or (isinstance(n, ir.FunCall) and n.function in reaching)
-            for n in ir_nodes(item)
-        )
+        return any(what(n) or (isinstance(n, ir.FunCall) and n.function in reaching) for n in nodes)
 
-    def nodes(self, item: object) -> list[object]:
-        """All pieces of IR in it and in the functions that it calls."""
+    def all_nodes(self, nodes: Iterable[object]) -> list[object]:
+        """The pieces, and all in the functions that they call."""
         bodies = {f.key: f.body for f in self._functions}
-        found: list[object] = list(ir_nodes(item))
+        found = list(nodes)
         waiting = [n.function for n in found if isinstance(n, ir.FunCall)]
         known: set[str] = set()
         while waiting:

@@ -55,10 +55,11 @@ def _find(
 
 
 def _is_function_of_binding(multiset: ir.Ir, reach: Reach) -> bool:
+    nodes = list(ir_nodes(multiset))
     return (
-        not any(isinstance(n, ir.Use | ir.TokenValue) for n in ir_nodes(multiset))
-        and reach.is_pure(multiset)
-        and not reach.reaches(multiset, _is_now)
+        not any(isinstance(n, ir.Use | ir.TokenValue) for n in nodes)
+        and reach.is_pure(nodes)
+        and not reach.reaches(nodes, _is_now)
     )
 
 
