@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from pn2code.emission import c_rows, c_tables
-from pn2code.emission.c_expressions import c_big_initialiser, op_needs_table
+from pn2code.emission.c_expressions import c_big_initialiser
 from pn2code.emission.c_lines import wrap
 from pn2code.emission.c_proofs import proofs
 from pn2code.emission.c_texts import comment_lines, initial, where
@@ -20,6 +20,7 @@ from pn2code.emission.output import Block, OutputFile
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import called, ir_nodes
 from pn2code.ir.nodes import NetIR, Rep
+from pn2code.ir.operations import op_needs_table
 from pn2code.lowering.nets.packing import key_bits, packed_bits
 
 _MARK = "\x01"

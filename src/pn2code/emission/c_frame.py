@@ -5,7 +5,7 @@ from __future__ import annotations
 from pn2code.diagnostics import Origin
 from pn2code.emission import c_orders, c_packed, c_tables
 from pn2code.emission.c_expressions import Expressions, Types
-from pn2code.emission.c_needs import used_locals, uses_context
+from pn2code.emission.c_needs import used_locals
 from pn2code.emission.c_own import OwnPlaces
 from pn2code.emission.c_shared import share, tables
 from pn2code.emission.c_statements import Statements
@@ -13,6 +13,7 @@ from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import NetIR, Rep
 from pn2code.lowering.nets.packing import KEY_BITS, key_bits
+from pn2code.lowering.passes.context import uses_context
 
 _MOST_INLINED = 150
 """Transitions of a net for which the compiler is told to put searches where they are called."""

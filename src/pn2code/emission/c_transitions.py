@@ -6,7 +6,6 @@ from pn2code.emission import c_rows, c_sums
 from pn2code.emission.c_firing import DirectFiring
 from pn2code.emission.c_frame import Frame
 from pn2code.emission.c_lines import mentions
-from pn2code.emission.c_needs import uses_context
 from pn2code.emission.c_own import OwnPlaces
 from pn2code.emission.c_shared import PlaceTable, Shared, path_of
 from pn2code.emission.c_statements import Statements
@@ -17,6 +16,7 @@ from pn2code.emission.names import Members
 from pn2code.emission.needs import SIDE
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
+from pn2code.lowering.passes.context import uses_context
 
 
 class Transitions(Frame):
