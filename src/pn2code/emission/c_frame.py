@@ -13,7 +13,6 @@ from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import NetIR, Rep
 from pn2code.lowering.nets.packing import KEY_BITS, key_bits
-from pn2code.lowering.passes.context import uses_context
 
 _MOST_INLINED = 150
 """Transitions of a net for which the compiler is told to put searches where they are called."""
@@ -42,7 +41,7 @@ class Frame:
         self._tables = tuple(self._names.table(p.table) for p in net.places)
         self._timed = tuple(p.timed for p in net.places)
         self._slots = frozenset(p.index for p in net.places if p.is_slot)
-        self._needs_context = self._context_users()
+        self._needs_context = frozenset(f.key for f in net.functions if f.needs_context)
         self._orders = c_orders.Orders(self._types, self._names, self._descriptors)
         self._numbers = c_packed.Numbers(self._types, self._names, self._descriptors)
         self._packed = self._numbers.of_places(net.places, lambda key: self._functions[key].is_pure)
@@ -84,19 +83,6 @@ class Frame:
                 kept = self._kept[p.index]
                 found[kept] = max(found.get(kept, 0), p.added, 2 - p.capacity)
         return found
-
-    def _context_users(self) -> frozenset[str]:
-        """The functions that take the context: those that may raise, directly or through what they call."""
-        users = {f.key for f in self._net.functions if f.loops or f.recursive}
-        while True:
-            more = {
-                f.key
-                for f in self._net.functions
-                if f.key not in users and uses_context(f.body, frozenset(users), self._definitions)
-            }
-            if not more:
-                return frozenset(users)
-            users |= more
 
     # --- pieces --------------------------------------------------------------------------------
 

@@ -16,7 +16,6 @@ from pn2code.emission.names import Members
 from pn2code.emission.needs import SIDE
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
-from pn2code.lowering.passes.context import uses_context
 
 
 class Transitions(Frame):
@@ -112,9 +111,7 @@ class Transitions(Frame):
         search, x, _ = self._printer(t.enumerate, "b.", own)
         x.variables = variables
         search.variable_types = tuple(v.type for v in t.variables)
-        search.keeps = uses_context(
-            _without_wanted(t.enumerate), self._needs_context, self._definitions
-        )
+        search.keeps = t.search_needs_context
         search.is_flat = t.is_flat
         search.releases = not t.effects.search_writes
         search.may_fail = search.keeps or any(
@@ -239,27 +236,8 @@ class Transitions(Frame):
             direct.sums = self._sums(t)
             direct.otherwise = f"{name}_fire_lists(cx, m, self, b)"
             direct.variable_types = tuple(v.type for v in t.variables)
-            direct.fire(
-                t.fire, t.staying, uses_context(t.fire, self._needs_context, self._definitions)
-            )
+            direct.fire(t.fire, t.staying, t.fire_needs_context)
             return direct
         printer.variable_types = tuple(v.type for v in t.variables)
         printer.body(t.fire)
         return printer
-
-    # --- the whole -----------------------------------------------------------------------------
-
-
-def _without_wanted(statements: tuple[ir.Stmt, ...]) -> tuple[ir.Stmt, ...]:
-    """The statements that may leave something in the arena: the demands clean up after themselves."""
-    out: list[ir.Stmt] = []
-    for s in statements:
-        if isinstance(s, ir.Wanted):
-            out.extend(x for x in s.takes if not isinstance(x, (ir.Take, ir.TakeAll)))
-        elif isinstance(s, ir.ForTokens):
-            out.append(ir.ForTokens(s.place, s.index, _without_wanted(s.body), s.note))
-        elif isinstance(s, ir.ForValues):
-            out.append(ir.ForValues(s.variable, s.table, _without_wanted(s.body), s.note))
-        else:
-            out.append(s)
-    return tuple(out)

@@ -73,7 +73,7 @@ class _Dump:
     def _function(self, f: ir.Function) -> Iterator[str]:
         parameters = ", ".join(f"{_local(p)}: {p.type}" for p in f.parameters)
         flags = (" loops" if f.loops else "") + (" recursive" if f.recursive else "")
-        flags += "" if f.is_pure else " impure"
+        flags += ("" if f.is_pure else " impure") + (" context" if f.needs_context else "")
         yield f"function {f.key}({parameters}): {f.result}{flags}"
         yield from self._block(f.body, 1)
 
@@ -96,9 +96,9 @@ class _Dump:
         for found in t.sums:
             place, x = self._place_name(found.place), self._expression
             yield f"  once for each of {found.count} {place} {x(found.multiset)}{_note(found.note)}"
-        yield f"  enumerate{' plain' if t.is_plain else ''}{' flat' if t.is_flat else ''}"
+        yield f"  enumerate{_flags(plain=t.is_plain, flat=t.is_flat, context=t.search_needs_context)}"
         yield from self._block(t.enumerate, 2)
-        yield f"  fire{' direct' if t.is_direct else ''}"
+        yield f"  fire{_flags(direct=t.is_direct, context=t.fire_needs_context)}"
         yield from self._block(t.fire, 2)
         if t.thresholds:
             yield "  thresholds"
@@ -296,6 +296,10 @@ class _Dump:
 
 def _local(local: ir.Local) -> str:
     return f"{local.hint}{'' if local.uid < 0 else f'_{local.uid}'}"
+
+
+def _flags(**flags: bool) -> str:
+    return "".join(f" {name}" for name, holds in flags.items() if holds)
 
 
 def _note(text: str) -> str:

@@ -656,6 +656,7 @@ class Function:
         recursive: calls itself, perhaps through others: its depth is counted.
         source: the ML text.
         is_pure: nothing but its arguments and the marking decides about its result.
+        needs_context: it takes the context, since it may raise, allocate, or look at the time.
     """
 
     key: str
@@ -668,6 +669,7 @@ class Function:
     source: str
     origin: Origin
     is_pure: bool = False
+    needs_context: bool = False
 
 
 @frozen
@@ -789,6 +791,10 @@ class Transition:
     """an occurrence is a fixed number of takes and puts of untimed places, known one by one or as `sums`"""
     is_flat: bool = False
     """the search gives one binding at most, and does so last: of a slot there is one token to look at"""
+    search_needs_context: bool = False
+    """the search may raise, allocate, or look at the time; its demands, which clean up behind them, do not count"""
+    fire_needs_context: bool = False
+    """an occurrence may raise (not only since a token or room is missing), allocate, or look at the time"""
 
 
 @frozen

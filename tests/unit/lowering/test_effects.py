@@ -131,5 +131,5 @@ def test_functions_that_are_not_pure() -> None:
         "next": False, "draw": False, "plain": True,
     }  # fmt: skip
     text = dump(net)
-    assert "function plain/1(n: int): int\n" in text
-    assert "function next/1(n: int): int impure\n" in text
+    assert "function plain/1(n: int): int context\n" in text
+    assert "function next/1(n: int): int impure context\n" in text

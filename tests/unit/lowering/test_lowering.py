@@ -109,10 +109,10 @@ def test_tuple_parameters_are_passed_apart_and_units_left_out() -> None:
 
 def test_self_tail_calls_become_loops() -> None:
     text = function("fun f (0, s) = s | f (k, s) = f (k - 1, s + k)", "f (n, 0)", "f")
-    assert text.splitlines()[0].endswith("loops")
+    assert text.splitlines()[0].endswith("loops context")
     assert "again(" in text
     other = function("fun g 0 = 0 | g k = 1 + g (k - 1)", "g n", "g")
-    assert other.splitlines()[0].endswith("recursive")
+    assert other.splitlines()[0].endswith("recursive context")
 
 
 def test_polymorphic_functions_are_specialised() -> None:
@@ -124,7 +124,7 @@ def test_polymorphic_functions_are_specialised() -> None:
 def test_functions_passed_as_arguments_are_followed() -> None:
     text = function("fun twice f x = f (f x)", "twice (fn y => y + n) 3", "twice")
     # What the passed function captures is a parameter.
-    assert text.splitlines()[0] == "function twice/1(n: int, x: int): int"
+    assert text.splitlines()[0] == "function twice/1(n: int, x: int): int context"
 
 
 def test_functions_as_values() -> None:

@@ -86,4 +86,4 @@ def test_what_is_not_direct() -> None:
     assert not is_direct("  in A : n", "  reset B"), "a reset"
     assert not is_direct("  in X : l", "  out B : l"), "a computed multi-set"
     assert not is_direct("  in B : m", "  in A : m`7"), "a computed number of tokens is taken"
-    assert "  fire\n" in dump(net_of("trans T", "  in L : late"))
+    assert "  fire context\n" in dump(net_of("trans T", "  in L : late"))

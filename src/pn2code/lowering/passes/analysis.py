@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pn2code.ir import nodes as ir
+from pn2code.lowering.passes.context import with_context
 from pn2code.lowering.passes.direct import with_direct
 from pn2code.lowering.passes.effects import with_effects
 from pn2code.lowering.passes.moves import with_moves
@@ -15,4 +16,4 @@ def analysed(net: ir.NetIR) -> ir.NetIR:
     """The net, with what all passes find."""
     reach = Reach(net)
     net = with_sums(with_effects(with_moves(net), reach), reach)
-    return with_slots(with_direct(net, reach))
+    return with_slots(with_context(with_direct(net, reach)))
