@@ -18,10 +18,9 @@ from pn2code.emission.environment import render
 from pn2code.emission.names import stem
 from pn2code.emission.output import Block, OutputFile
 from pn2code.ir import nodes as ir
-from pn2code.ir.calls import called, ir_nodes
 from pn2code.ir.nodes import NetIR, Rep
-from pn2code.ir.operations import op_needs_table
 from pn2code.lowering.nets.packing import key_bits, packed_bits
+from pn2code.lowering.passes.used import Used
 
 _MARK = "\x01"
 
@@ -34,9 +33,7 @@ def emit(net: NetIR, version: str) -> tuple[OutputFile, ...]:
 class _Emitter(Transitions):
     def __init__(self, net: NetIR, version: str) -> None:
         super().__init__(net, version)
-        self._mentioned: dict[
-            int, frozenset[str]
-        ] = {}  # by id of a body, all of which belong to the net
+        self._used = Used(net)
 
     def _holder(self, p: ir.Place) -> dict[str, object]:
         """The C type that holds the tokens of a place."""
@@ -210,70 +207,10 @@ class _Emitter(Transitions):
             "lines": s.lines,
         }
 
-    def _used_functions(self, *, with_predicates: bool) -> list[ir.Function]:
-        roots: list[str] = []
-        for predicate in self._net.predicates if with_predicates else ():
-            roots += called(predicate.body)
-        for t in self._net.transitions:
-            roots += called(t.enumerate) + called(t.fire) + called(t.thresholds)
-        for p in self._net.places:
-            roots += called(p.initial)
-        for g in self._net.globals:
-            roots += called(g.setup)
-        found: set[str] = set()
-        while True:
-            while roots:
-                key = roots.pop()
-                if key not in found:
-                    found.add(key)
-                    roots += called(self._functions[key].body)
-            functions = [f for f in self._net.functions if f.key in found]
-            tables = self._used_tables(functions, self._net.predicates if with_predicates else ())
-            roots = [m for key in tables if (m := self._descriptors[key].member) and m not in found]
-            if not roots:
-                return functions
-
-    def _used_tables(
-        self, functions: Iterable[ir.Function], predicates: Iterable[ir.Predicate] = ()
-    ) -> list[str]:
-        """Keys in order of dependence."""
-        roots = {p.table for p in self._net.places}
-        bodies: list[object] = [f.body for f in functions]
-        bodies += [p.body for p in predicates]
-        for t in self._net.transitions:
-            roots |= {v.table for v in t.variables}
-            bodies += [t.enumerate, t.fire, t.thresholds]
-        bodies += [p.initial for p in self._net.places] + [g.setup for g in self._net.globals]
-        roots |= {
-            g.table
-            for g in self._net.globals
-            if g.is_reference or self._types.holds_reference(g.type)
-        }
-        for b in bodies:
-            roots |= self._tables_in(b)
-        needed = self._closure(roots)
-        return [key for key in self._descriptors if key in needed]
-
-    def _tables_in(self, body: object) -> frozenset[str]:
-        """The tables that a body mentions itself."""
-        known = self._mentioned.get(id(body))
-        if known is not None:
-            return known
-        found: set[str] = set()
-        for node in ir_nodes(body):
-            table = getattr(node, "table", "")
-            is_looked_at = not isinstance(node, ir.Op) or op_needs_table(node)
-            if isinstance(table, str) and table and is_looked_at:
-                found.add(table)
-            if isinstance(node, ir.Op) and node.name == "Colset.all":
-                found.add(f"type {node.type}")
-        self._mentioned[id(body)] = frozenset(found)
-        return self._mentioned[id(body)]
-
     def run(self) -> tuple[OutputFile, ...]:
         net = self._net
-        functions = self._used_functions(with_predicates=False)
-        keys = self._used_tables(functions)
+        functions = self._used.functions(with_predicates=False)
+        keys = self._used.tables(functions)
         wrappers = _wrappers(functions)
         tables = c_tables.Tables(self._types, self._descriptors, wrappers)
         recursive = tables.to_declare(keys)
@@ -286,10 +223,10 @@ class _Emitter(Transitions):
             ),
             key=lambda row: row[0],
         )
-        further = [f for f in self._used_functions(with_predicates=True) if f not in functions]
+        further = [f for f in self._used.functions(with_predicates=True) if f not in functions]
         wrappers |= _wrappers(further)
         further_keys = [
-            k for k in self._used_tables([*functions, *further], net.predicates) if k not in keys
+            k for k in self._used.tables([*functions, *further], net.predicates) if k not in keys
         ]
         variables = [self._global(g) for g in net.globals]
         values = {

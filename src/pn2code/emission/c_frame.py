@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pn2code.diagnostics import Origin
-from pn2code.emission import c_orders, c_packed, c_tables
+from pn2code.emission import c_orders, c_packed
 from pn2code.emission.c_expressions import Expressions, Types
 from pn2code.emission.c_needs import used_locals
 from pn2code.emission.c_own import OwnPlaces
@@ -12,6 +12,7 @@ from pn2code.emission.c_statements import Statements
 from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import NetIR, Rep
+from pn2code.ir.types import closure
 from pn2code.lowering.nets.packing import KEY_BITS, key_bits
 
 _MOST_INLINED = 150
@@ -123,8 +124,5 @@ class Frame:
 
     def _refers(self, table: str) -> bool:
         """Whether values of a type refer into the arena."""
-        found = (self._descriptors[key].type.rep for key in self._closure({table}))
+        found = (self._descriptors[key].type.rep for key in closure(self._descriptors, {table}))
         return any(rep in (Rep.STRING, Rep.LIST, Rep.UNION, Rep.BIG) for rep in found)
-
-    def _closure(self, roots: set[str]) -> set[str]:
-        return c_tables.Tables(self._types, self._descriptors, {}).needed(roots)

@@ -157,6 +157,22 @@ class Descriptor:
     comment: str = ""
 
 
+def closure(descriptors: Mapping[str, Descriptor], roots: set[str]) -> set[str]:
+    """The descriptors that some refer to, with these."""
+    found: set[str] = set()
+    pending = list(roots)
+    while pending:
+        key = pending.pop()
+        if key in found or not key:
+            continue
+        found.add(key)
+        d = descriptors[key]
+        pending += [part for _, part in d.fields if part]
+        if d.element:
+            pending.append(d.element)
+    return found
+
+
 def is_restricted(descriptors: Mapping[str, Descriptor], key: str) -> bool:
     """Whether a descriptor excludes values of its type, or rounds them, itself or in a part."""
     d = descriptors[key]
