@@ -20,7 +20,6 @@ from pn2code.emission.output import Block, OutputFile
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import NetIR, Rep
 from pn2code.lowering.nets.packing import key_bits, packed_bits
-from pn2code.lowering.passes.used import Used
 
 _MARK = "\x01"
 
@@ -31,10 +30,6 @@ def emit(net: NetIR, version: str) -> tuple[OutputFile, ...]:
 
 
 class _Emitter(Transitions):
-    def __init__(self, net: NetIR, version: str) -> None:
-        super().__init__(net, version)
-        self._used = Used(net)
-
     def _holder(self, p: ir.Place) -> dict[str, object]:
         """The C type that holds the tokens of a place."""
         is_slot = p.index in self._slots
@@ -135,7 +130,7 @@ class _Emitter(Transitions):
             "name": name,
             "constant": constant,
             "zero": initial(self._types.zero(g.type), g.type.rep),
-            "is_root": g.is_reference or self._types.holds_reference(g.type),
+            "is_root": g.is_held,
             "setup": [] if constant else s.lines,
             "has_locals": any(
                 isinstance(n, ir.Let | ir.Declare | ir.SetContents)
@@ -209,8 +204,8 @@ class _Emitter(Transitions):
 
     def run(self) -> tuple[OutputFile, ...]:
         net = self._net
-        functions = self._used.functions(with_predicates=False)
-        keys = self._used.tables(functions)
+        functions = [self._functions[key] for key in net.used.functions]
+        keys = list(net.used.tables)
         wrappers = _wrappers(functions)
         tables = c_tables.Tables(self._types, self._descriptors, wrappers)
         recursive = tables.to_declare(keys)
@@ -223,11 +218,9 @@ class _Emitter(Transitions):
             ),
             key=lambda row: row[0],
         )
-        further = [f for f in self._used.functions(with_predicates=True) if f not in functions]
+        further = [self._functions[key] for key in net.used.further_functions]
         wrappers |= _wrappers(further)
-        further_keys = [
-            k for k in self._used.tables([*functions, *further], net.predicates) if k not in keys
-        ]
+        further_keys = list(net.used.further_tables)
         variables = [self._global(g) for g in net.globals]
         values = {
             "version": self._version,

@@ -10,7 +10,6 @@ from pn2code.ir import nodes as ir
 from pn2code.ir import operations
 from pn2code.ir.nodes import Ir, IrType, Rep
 from pn2code.ir.operations import OPS, Call, Compared, Infix, Literal, Prefix
-from pn2code.ir.types import holds_reference
 
 _PRIMARY, _POSTFIX, _UNARY, _CONDITIONAL = 17, 16, 14, 3
 
@@ -89,10 +88,6 @@ class Types:
     def name(self, t: IrType) -> str:
         """The C type."""
         return _SCALARS.get(t.rep) or self.names.type(t.name)
-
-    def holds_reference(self, t: IrType) -> bool:
-        """Whether there may be references in a value of the type."""
-        return holds_reference(self.definitions, t)
 
     def zero(self, t: IrType) -> str:
         """The harmless value."""

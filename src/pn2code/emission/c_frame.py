@@ -11,8 +11,7 @@ from pn2code.emission.c_shared import share, tables
 from pn2code.emission.c_statements import Statements
 from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
-from pn2code.ir.nodes import NetIR, Rep
-from pn2code.ir.types import closure
+from pn2code.ir.nodes import NetIR
 from pn2code.lowering.nets.packing import KEY_BITS, key_bits
 
 _MOST_INLINED = 150
@@ -53,7 +52,7 @@ class Frame:
             and all(p.packed for p in net.places)
             and 0 < key_bits(net.places) <= KEY_BITS
         )
-        self._referring = tuple(p.index for p in net.places if self._refers(p.table))
+        self._referring = tuple(p.index for p in net.places if p.refers)
         self._kept = tuple(map(self._kept_in, net.places))
         self._room = self._rooms_of_arrays()
         # Explorers have a function for each instance, so that the compiler can put it where it is called.
@@ -121,8 +120,3 @@ class Frame:
         number = str(len(self._blocks))
         self._blocks[number] = (element, kind, origin)
         return number
-
-    def _refers(self, table: str) -> bool:
-        """Whether values of a type refer into the arena."""
-        found = (self._descriptors[key].type.rep for key in closure(self._descriptors, {table}))
-        return any(rep in (Rep.STRING, Rep.LIST, Rep.UNION, Rep.BIG) for rep in found)

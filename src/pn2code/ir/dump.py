@@ -38,6 +38,7 @@ class _Dump:
             yield f"net {net.name} from {net.source}" + (" timed" if net.timed else "")
             yield from (self._definition(d) for d in net.definitions)
             yield from self._globals()
+            yield from self._used()
         for f in net.functions:
             if only in f.hint:
                 yield from self._function(f)
@@ -65,23 +66,39 @@ class _Dump:
 
     def _globals(self) -> Iterator[str]:
         for g in self._net.globals:
-            yield f"{'ref' if g.is_reference else 'val'} {g.name}: {g.type}"
+            flags = _flags(held=g.is_held)
+            yield f"{'ref' if g.is_reference else 'val'} {g.name}: {g.type}{flags}"
             yield from self._block(g.setup, 1)
         if self._net.roots:
             yield f"state besides the marking {', '.join(self._net.roots)}"
+
+    def _used(self) -> Iterator[str]:
+        used = self._net.used
+        for what, keys in (("tables", used.tables), ("tables of predicates", used.further_tables)):
+            if keys:
+                yield f"{what} {', '.join(keys)}"
+        if used.files:
+            yield "reads or writes files"
+
+    def _use(self, f: ir.Function) -> str:
+        used = self._net.used
+        if f.key in used.functions:
+            return ""
+        return " of predicates" if f.key in used.further_functions else " unused"
 
     def _function(self, f: ir.Function) -> Iterator[str]:
         parameters = ", ".join(f"{_local(p)}: {p.type}" for p in f.parameters)
         flags = (" loops" if f.loops else "") + (" recursive" if f.recursive else "")
         flags += ("" if f.is_pure else " impure") + (" context" if f.needs_context else "")
+        flags += self._use(f)
         yield f"function {f.key}({parameters}): {f.result}{flags}"
         yield from self._block(f.body, 1)
 
     def _place(self, p: ir.Place) -> Iterator[str]:
         timed = " timed" if p.timed else ""
         added = f" + {p.added}" if p.added else ""
-        slot = " slot" if p.is_slot else ""
-        yield f"place {p.index} {p.name} : {p.colset}{timed} capacity {p.capacity}{added} owner {p.owner}{slot}"
+        flags = _flags(slot=p.is_slot, refers=p.refers)
+        yield f"place {p.index} {p.name} : {p.colset}{timed} capacity {p.capacity}{added} owner {p.owner}{flags}"
         yield from self._block(p.initial, 1)
 
     def _transition(self, t: ir.Transition) -> Iterator[str]:

@@ -684,6 +684,8 @@ class Global:
     setup: tuple[Stmt, ...]
     source: str
     origin: Origin
+    is_held: bool = False
+    """it is, or may lead to, cells in the arena, which are kept for it"""
 
 
 @frozen
@@ -724,6 +726,8 @@ class Place:
     """the most entries that one occurrence may add before it is asked whether they fit"""
     is_slot: bool = False
     """kept as a value, and whether it is there: it holds one token at most, and nobody moves more at a time"""
+    refers: bool = False
+    """its tokens refer into the arena"""
 
 
 @frozen
@@ -814,6 +818,25 @@ class Predicate:
 
 
 @frozen
+class Used:
+    """What comes into the program: not everything that is declared.
+
+    Args:
+        functions: keys, in order.
+        tables: keys of descriptors, in order of dependence.
+        further_functions: those that predicates alone call.
+        further_tables: those that predicates, and the functions that they alone call, look at.
+        files: whether it reads or writes files.
+    """
+
+    functions: tuple[str, ...] = ()
+    tables: tuple[str, ...] = ()
+    further_functions: tuple[str, ...] = ()
+    further_tables: tuple[str, ...] = ()
+    files: bool = False
+
+
+@frozen
 class NetIR:
     """The whole net.
 
@@ -848,6 +871,7 @@ class NetIR:
     predicates: tuple[Predicate, ...] = ()
     origin: Origin = field(default=NOWHERE)
     roots: tuple[str, ...] = ()
+    used: Used = field(default_factory=Used)
 
     def definition(self, name: str) -> Definition:
         """A type's definition by key."""

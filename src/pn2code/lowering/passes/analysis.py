@@ -10,10 +10,11 @@ from pn2code.lowering.passes.moves import with_moves
 from pn2code.lowering.passes.reach import Reach
 from pn2code.lowering.passes.slots import with_slots
 from pn2code.lowering.passes.sums import with_sums
+from pn2code.lowering.passes.used import with_used
 
 
 def analysed(net: ir.NetIR) -> ir.NetIR:
     """The net, with what all passes find."""
     reach = Reach(net)
     net = with_sums(with_effects(with_moves(net), reach), reach)
-    return with_slots(with_context(with_direct(net, reach)))
+    return with_slots(with_used(with_context(with_direct(net, reach))))
