@@ -114,7 +114,7 @@ def generate(
     deployed = with_rooms(ir, proofs.rooms)
     net_files = emit_c.emit(deployed, version)
     arriving = [c.place for c in partition.channels] + [i.place for i in partition.inputs]
-    arena = arena_size.of(deployed, net_files[0].text, arriving, proofs.arena)
+    arena = arena_size.of(deployed, arriving, proofs.arena)
     files = [
         *net_files,
         *emit_supervisor.emit(

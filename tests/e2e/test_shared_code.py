@@ -16,7 +16,7 @@ from pn2code.emission.c import emit
 from pn2code.emission.output import OutputFile
 from pn2code.ir.nodes import NetIR
 from pn2code.lowering.nets.packing import Packing
-from pn2code.lowering.passes.slots import with_slots
+from pn2code.lowering.passes.analysis import bounded
 from pn2code.net.flat import FlatNet
 
 CELL = """
@@ -80,7 +80,7 @@ HELD = {"Top.First.Held", "Top.Second.Held"}
 
 def with_bounds(net: NetIR, small: set[str]) -> NetIR:
     """The net with slots where places are proven to hold one token."""
-    return with_slots(
+    return bounded(
         replace(
             net,
             places=tuple(

@@ -14,7 +14,7 @@ from helpers.compiled import Workshop, agrees, lowered, run
 from helpers.netbuilder import flat
 from pn2code.emission.c import emit
 from pn2code.ir.nodes import NetIR
-from pn2code.lowering.passes.slots import with_slots
+from pn2code.lowering.passes.analysis import bounded
 from pn2code.net.flat import FlatNet
 
 pytestmark = pytest.mark.cc
@@ -110,7 +110,7 @@ def _transition(t: int, machines: list[tuple[str, list[str]]], r: Random) -> lis
 def with_arrays_of_one(net: NetIR, places: set[str]) -> NetIR:
     """The net with arrays of one where a place holds one token at most."""
     short = [p.name.rsplit(".", 1)[-1] for p in net.places]
-    return with_slots(
+    return bounded(
         replace(
             net,
             places=tuple(

@@ -20,6 +20,7 @@ from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
 from pn2code.ir.nodes import Ir, Rep, Stmt
 from pn2code.lowering.expressions.values import is_atomic
+from pn2code.lowering.passes.moves import is_pair
 
 _INDENT = "    "
 
@@ -548,18 +549,6 @@ class Statements:
             self._x.text(s.multiset), self._x.time(time),
         ]  # fmt: skip
         self.line(f"pn_moves_{verb}({', '.join(parts)});")
-
-
-def is_pair(takes: tuple[Stmt, ...], timed: tuple[bool, ...]) -> bool:
-    """Whether one token each of two values of one untimed place is wanted."""
-    wanted = [s for s in takes if isinstance(s, ir.Take)]
-    return (
-        len(wanted) == 2
-        and len({s.place for s in wanted}) == 1
-        and not timed[wanted[0].place]
-        and all(isinstance(s.count, ir.Const) and s.count.value == 1 for s in wanted)
-        and all(isinstance(s, ir.Take | ir.Let | ir.Note) for s in takes)
-    )
 
 
 _ERRORS = {

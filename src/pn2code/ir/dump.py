@@ -79,6 +79,10 @@ class _Dump:
                 yield f"{what} {', '.join(keys)}"
         if used.files:
             yield "reads or writes files"
+        if used.makers:
+            yield f"allocates in {', '.join(used.makers)}"
+        if self._net.has_moves:
+            yield "has lists of moves"
 
     def _use(self, f: ir.Function) -> str:
         used = self._net.used

@@ -827,6 +827,7 @@ class Used:
         further_functions: those that predicates alone call.
         further_tables: those that predicates, and the functions that they alone call, look at.
         files: whether it reads or writes files.
+        makers: functions of the runtime that it calls and that put something into the arena, but for moves, sorted.
     """
 
     functions: tuple[str, ...] = ()
@@ -834,6 +835,7 @@ class Used:
     further_functions: tuple[str, ...] = ()
     further_tables: tuple[str, ...] = ()
     files: bool = False
+    makers: tuple[str, ...] = ()
 
 
 @frozen
@@ -850,6 +852,8 @@ class NetIR:
         has_successors: whether there are functions that make all markings after a marking.
         predicates: what is asked of markings, by hosts that explore them.
         roots: the `globals` that are state besides the marking, in order.
+        used: what of it comes into the program.
+        has_moves: whether there are lists of moves: not all is done by functions of the places.
     """
 
     name: str
@@ -872,6 +876,7 @@ class NetIR:
     origin: Origin = field(default=NOWHERE)
     roots: tuple[str, ...] = ()
     used: Used = field(default_factory=Used)
+    has_moves: bool = False
 
     def definition(self, name: str) -> Definition:
         """A type's definition by key."""

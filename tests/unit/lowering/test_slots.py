@@ -9,7 +9,7 @@ from helpers.compiled import lowered
 from helpers.netbuilder import flat
 from pn2code.ir import nodes as ir
 from pn2code.ir.dump import dump
-from pn2code.lowering.passes.slots import with_slots
+from pn2code.lowering.passes.analysis import bounded
 
 HEAD = """
     net Cell
@@ -32,7 +32,7 @@ def net_of(*lines: str, bounds: Collection[int] = ()) -> ir.NetIR:
     assert net is not None, d.errors
     assert not any(p.is_slot for p in net.places), "no bound is known yet"
     places = tuple(replace(p, bound=1, capacity=1) if p.index in bounds else p for p in net.places)
-    return with_slots(replace(net, places=places)) if bounds else net
+    return bounded(replace(net, places=places)) if bounds else net
 
 
 def slots(*lines: str, bounds: Collection[int] = (0, 1)) -> list[int]:

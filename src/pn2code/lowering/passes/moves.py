@@ -63,6 +63,18 @@ def is_count(e: ir.Ir) -> bool:
     return isinstance(e, ir.Const) and isinstance(e.value, int) and 0 < e.value < 2**31
 
 
+def is_pair(takes: tuple[ir.Stmt, ...], timed: tuple[bool, ...]) -> bool:
+    """Whether one token each of two values of one untimed place is wanted."""
+    wanted = [s for s in takes if isinstance(s, ir.Take)]
+    return (
+        len(wanted) == 2
+        and len({s.place for s in wanted}) == 1
+        and not timed[wanted[0].place]
+        and all(isinstance(s.count, ir.Const) and s.count.value == 1 for s in wanted)
+        and all(isinstance(s, ir.Take | ir.Let | ir.Note) for s in takes)
+    )
+
+
 def _staying(statements: tuple[ir.Stmt, ...]) -> tuple[tuple[int, int], ...]:
     """The positions of takes and puts of the same tokens, as of arcs in both directions."""
     puts = [(i, s) for i, s in enumerate(statements) if isinstance(s, ir.Put)]

@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from pn2code.ir import nodes as ir
+from pn2code.ir.allocating import maker
 from pn2code.ir.calls import called, ir_nodes
 from pn2code.ir.operations import op_needs_table
 from pn2code.ir.types import Rep, closure, holds_reference
@@ -45,6 +46,8 @@ class _Search:
         self._net = net
         self._files: set[int] = set()
         """ids of bodies that read or write files"""
+        self._makers: set[str] = set()
+        self._definitions = {d.name: d for d in net.definitions}
         self._descriptors = {d.name: d for d in net.descriptors}
         self._functions = {f.key: f for f in net.functions}
         self._mentioned: dict[int, frozenset[str]] = {}
@@ -64,6 +67,7 @@ class _Search:
             further_functions=tuple(f.key for f in further),
             further_tables=tuple(k for k in further_tables if k not in known_tables),
             files=bool(self._files),
+            makers=tuple(sorted(self._makers)),
         )
 
     def _called(self, *, with_predicates: bool) -> list[ir.Function]:
@@ -122,5 +126,7 @@ class _Search:
                 found.add(f"type {node.type}")
             if isinstance(node, ir.Op) and node.name.startswith(_FILES):
                 self._files.add(id(body))
+            if made := maker(node, self._definitions, self._net.int_bits):
+                self._makers.add(made)
         self._mentioned[id(body)] = frozenset(found)
         return self._mentioned[id(body)]
