@@ -114,7 +114,7 @@ def generate(
     deployed = with_rooms(ir, proofs.rooms)
     net_files = emit_c.emit(deployed, version)
     arriving = [c.place for c in partition.channels] + [i.place for i in partition.inputs]
-    arena = arena_size.of(deployed, net_files[0].text, arriving, proofs.arena)
+    arena = arena_size.of(deployed, arriving, proofs.arena)
     files = [
         *net_files,
         *emit_supervisor.emit(
@@ -125,7 +125,8 @@ def generate(
             version=version,
             verdicts=proofs.verdicts,
             arena=arena,
-            net_c=net_files[0].text,
+            compiled=deployed,
+            net_size=len(net_files[0].text),
         ),
         *emit_tdl.emit(robots, source=Path(net.file).name, digest=digest, version=version),
         *runtime.emit("supervisor", "simulate"),

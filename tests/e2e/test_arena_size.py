@@ -15,8 +15,8 @@ from helpers.compiled import lowered
 from helpers.netbuilder import flat
 from pn2code.base.resources import cnative_folder
 from pn2code.emission import arena_size, c_flags
-from pn2code.emission.c import emit
 from pn2code.emission.write import write
+from pn2code.ir.allocating import ALLOCATING, MOVES
 from pn2code.pipeline import Generated
 
 pytestmark = pytest.mark.cc
@@ -52,7 +52,7 @@ def test_the_functions_that_allocate_are_known(tmp_path: Path) -> None:
             waiting += callers[name]
     names = {name.rpartition(":")[2] for name in found}
     public = {n for n in names if n.startswith("pn_")}  # what begins otherwise is static
-    assert public == arena_size.ALLOCATING | arena_size.MOVES
+    assert public == ALLOCATING | MOVES
     # The host comes there only by tokens that arrive, which are counted.
     own = {n for n in names if n.startswith("sup_")}
     assert own == {"sup_read_inputs", "sup_run_cell"}
@@ -124,7 +124,7 @@ def _size(out: str = "n", taken: str = "n", arriving: tuple[str, ...] = ()) -> a
     compiled, _ = lowered(net)
     assert compiled is not None
     where = [p.index for p in compiled.places if p.name in arriving]
-    return arena_size.of(compiled, emit(compiled, "test")[0].text, where, None)
+    return arena_size.of(compiled, where, None)
 
 
 def test_moves_are_counted() -> None:

@@ -10,7 +10,7 @@ from helpers.explored import Explorers, agrees
 from helpers.netbuilder import flat
 from helpers.random_tables import random_tables, restless_tables
 from pn2code.contest.tables import Tables
-from pn2code.lowering.nets import counting
+from pn2code.lowering.passes import counting
 
 pytestmark = pytest.mark.cc
 

@@ -16,6 +16,7 @@ from pn2code.emission.c import emit
 from pn2code.emission.output import OutputFile
 from pn2code.ir.nodes import NetIR
 from pn2code.lowering.nets.packing import Packing
+from pn2code.lowering.passes.analysis import bounded
 from pn2code.net.flat import FlatNet
 
 CELL = """
@@ -79,12 +80,14 @@ HELD = {"Top.First.Held", "Top.Second.Held"}
 
 def with_bounds(net: NetIR, small: set[str]) -> NetIR:
     """The net with slots where places are proven to hold one token."""
-    return replace(
-        net,
-        places=tuple(
-            replace(p, capacity=1, bound=1, proof="invariant") if p.name in small else p
-            for p in net.places
-        ),
+    return bounded(
+        replace(
+            net,
+            places=tuple(
+                replace(p, capacity=1, bound=1, proof="invariant") if p.name in small else p
+                for p in net.places
+            ),
+        )
     )
 
 

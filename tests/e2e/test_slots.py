@@ -14,6 +14,7 @@ from helpers.compiled import Workshop, agrees, lowered, run
 from helpers.netbuilder import flat
 from pn2code.emission.c import emit
 from pn2code.ir.nodes import NetIR
+from pn2code.lowering.passes.analysis import bounded
 from pn2code.net.flat import FlatNet
 
 pytestmark = pytest.mark.cc
@@ -106,15 +107,17 @@ def _transition(t: int, machines: list[tuple[str, list[str]]], r: Random) -> lis
     return [f"trans T{t}", *(f"  {line}" for line in found)]
 
 
-def with_slots(net: NetIR, places: set[str]) -> NetIR:
+def with_arrays_of_one(net: NetIR, places: set[str]) -> NetIR:
     """The net with arrays of one where a place holds one token at most."""
     short = [p.name.rsplit(".", 1)[-1] for p in net.places]
-    return replace(
-        net,
-        places=tuple(
-            replace(p, capacity=1, bound=1, proof="invariant") if name in places else p
-            for p, name in zip(net.places, short, strict=True)
-        ),
+    return bounded(
+        replace(
+            net,
+            places=tuple(
+                replace(p, capacity=1, bound=1, proof="invariant") if name in places else p
+                for p, name in zip(net.places, short, strict=True)
+            ),
+        )
     )
 
 
@@ -125,7 +128,7 @@ def compiled(
     net = flat(text)
     ir, d = lowered(net)
     assert ir is not None, d.errors
-    ir = with_slots(ir, places)
+    ir = with_arrays_of_one(ir, places)
     (header,) = (f.text for f in emit(ir, "test") if f.path == "net.h")
     return net, workshop.build(ir, folder), header
 

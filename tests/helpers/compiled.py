@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 from collections.abc import Mapping
@@ -22,6 +23,7 @@ from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission import arena_size, c_flags
 from pn2code.emission.c import emit
+from pn2code.ir.allocating import ALLOCATING, MOVES
 from pn2code.ir.nodes import NetIR
 from pn2code.lowering.nets.net import lower
 from pn2code.lowering.nets.packing import Packing
@@ -134,10 +136,18 @@ class Workshop:
         files = emit(net, "test")
         for file in files:
             (folder / file.path).write_text(file.text)
-        size = arena_size.of(net, files[0].text, (), None)
+        assert_calls_are_known(net, files[0].text)
+        size = arena_size.of(net, (), None)
         (folder / ARENA).write_text(str(size.bytes if size.is_proven else arena_size.DEFAULT))
         self.compile(folder / "net.c", folder / "net.o", folder, *flags)
         return self.link(folder / host, folder / "net.o", *sorted(self.runtime.glob(f"{host}*.o")))
+
+
+def assert_calls_are_known(net: NetIR, net_c: str) -> None:
+    """The C calls no function that puts something into the arena but those that the passes have found."""
+    called = set(re.findall(r"\bpn_\w+", re.sub(r"/\*.*?\*/", "", net_c, flags=re.DOTALL)))
+    assert called & ALLOCATING <= {*net.used.makers}
+    assert net.has_moves or not called & MOVES
 
 
 def run(

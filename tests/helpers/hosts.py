@@ -14,6 +14,7 @@ from collections import Counter
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from helpers.compiled import lowered
 from helpers.explored import LIBRARY, Explorers, wide
 from helpers.netbuilder import flat
 from helpers.random_references import referring
@@ -103,7 +104,7 @@ class Hosts:
             reply_timeout_s=0.0,
             digest=found[1],
             version="test",
-            net_c=(folder / "net.c").read_text(),
+            compiled=lowered(net)[0],
         )
         (config,) = (f for f in emitted if f.path == "cell_config.c")
         (folder / "cell_config.c").write_text(config.text)

@@ -63,7 +63,7 @@ def sources(
     text: str, conditions: Sequence[str], width: int = 1
 ) -> tuple[FlatNet, tuple[OutputFile, ...]]:
     """A net, and what is generated for it with conditions."""
-    flat, elaborator = _net(text)
+    flat, elaborator = net_and_elaborator(text)
     predicates = [predicate(flat, elaborator, f"p{i}", c) for i, c in enumerate(conditions)]
     d = Diagnostics()
     files = generated(flat, {}, wide(Sizes.start(flat, {}), width), d, predicates)
@@ -71,7 +71,8 @@ def sources(
     return flat, files
 
 
-def _net(text: str) -> tuple[FlatNet, Elaborator]:
+def net_and_elaborator(text: str) -> tuple[FlatNet, Elaborator]:
+    """The flat net, and what conditions over it are typed by."""
     d = Diagnostics()
     with tempfile.TemporaryDirectory() as folder:
         found = examine(netbuilder.write(text, Path(folder) / "net.cpn"), d)

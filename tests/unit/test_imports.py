@@ -54,9 +54,9 @@ ALLOWED: dict[str, set[str]] = {
         "trace"},
     "verdict": {"arms", "cell", "channel_model", "channels", "diagnostics", "division", "ml", "net", "pipeline",
         "properties", "robot", "robot_scripts", "run", "semantics", "tdl", "trace", "verify"},
-    "cli": {"cell", "channels", "conform", "contest", "convert", "diagnostics", "division", "drawing", "emission", "ml",
-        "net", "pipeline", "reading", "report", "robot", "robot_scripts", "run", "semantics", "simulate", "structure",
-        "tdl", "trace", "unfold", "verdict", "verify"},
+    "cli": {"cell", "channels", "conform", "contest", "convert", "diagnostics", "division", "drawing", "emission", "ir",
+        "lowering", "ml", "net", "pipeline", "reading", "report", "robot", "robot_scripts", "run", "semantics",
+        "simulate", "structure", "tdl", "trace", "unfold", "verdict", "verify"},
     "start": {"cli"},
 }  # fmt: skip
 EVERYWHERE = {"base"}

@@ -17,6 +17,8 @@ EPILOG = """Examples:
   pn2code dump net.cpn --stage flat
 
   pn2code dump examples/riveting --stage partition
+
+  pn2code dump net.cpn --stage ir --only Pick
 """
 
 
@@ -28,6 +30,8 @@ class Stage(StrEnum):
     DECLARATIONS = "ml"
     FLAT = "flat"
     PARTITION = "partition"
+    IR = "ir"
+    DEPLOYED = "deployed"
     ROBOTS = "robots"
 
 
@@ -58,6 +62,8 @@ def stage_text(
     from pn2code.cell.locate import locate
     from pn2code.division import divided
     from pn2code.emission.tdl import emit
+    from pn2code.ir.dump import dump as dump_ir
+    from pn2code.lowering.nets.net import lower
     from pn2code.ml.core.dump import dump_program
     from pn2code.net import front
     from pn2code.net.dump import dump_document, dump_flat, dump_net
@@ -65,6 +71,8 @@ def stage_text(
     from pn2code.net.source import read
     from pn2code.robot_scripts.translate import lower_robots
     from pn2code.semantics.evaluation.constants import compute
+    from pn2code.verify.controller.proofs import prove
+    from pn2code.verify.exploring.place_capacity import with_rooms
 
     found = locate(path, d)
     if found is None:
@@ -88,6 +96,12 @@ def stage_text(
         return None
     if stage is Stage.PARTITION:
         return dump_partition(partition)
+    if stage in (Stage.IR, Stage.DEPLOYED):
+        compiled = lower(partition, config.storage if config else {}, d)
+        if compiled is not None and stage is Stage.DEPLOYED:
+            proofs = prove(partition, config, d, checked=False)
+            compiled = None if proofs is None else with_rooms(compiled, proofs.rooms)
+        return None if compiled is None else dump_ir(compiled, only)
     robots = lower_robots(partition, config, d) if config else ()
     if robots is None:
         return None

@@ -1,6 +1,6 @@
 """How much memory a deployed program has for lists, strings and the moves of a firing: the size of its arena.
 
-    arena_size.of(net, net_c, arriving=[3, 7], seen=None)
+    arena_size.of(net, arriving=[3, 7], seen=None)
     # ArenaSize(0, "proven: the program puts nothing there")
 
 An allocation that is refused is a fault at run time, so a size is small only where a proof says that it is enough. The
@@ -13,7 +13,6 @@ has its places packed otherwise than the deployed one, and files and robots may 
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 
 from pn2code.base.frozen import frozen
@@ -32,28 +31,7 @@ MOVE = 96
 ON_STACK = 256
 """Bytes of an arriving token that needs no arena: `pn_colour_t`."""
 
-MOVES = frozenset(("pn_moves_put", "pn_moves_reset", "pn_moves_take"))
-"""Functions that allocate one move a call, or one a token: their bytes are counted."""
-ALLOCATING = frozenset((
-    "pn_arena_alloc", "pn_arena_copy", "pn_bag_add_bytes", "pn_bag_decode", "pn_bag_put", "pn_bag_relocate",
-    "pn_big_abs", "pn_big_add", "pn_big_and", "pn_big_copy", "pn_big_difference", "pn_big_div", "pn_big_mod",
-    "pn_big_mul", "pn_big_neg", "pn_big_not", "pn_big_of_digits", "pn_big_of_real", "pn_big_or", "pn_big_quot",
-    "pn_big_rem", "pn_big_shift_left", "pn_big_shift_right", "pn_big_string", "pn_big_sub", "pn_big_sum",
-    "pn_big_xor", "pn_colset_all", "pn_colset_input", "pn_decode", "pn_decode_with", "pn_file_full_path",
-    "pn_file_here", "pn_file_names", "pn_file_problem", "pn_file_read", "pn_from_leaves", "pn_list_append",
-    "pn_list_concat", "pn_list_cons", "pn_list_copies", "pn_list_new", "pn_list_remdupl", "pn_list_remove",
-    "pn_list_remove_all", "pn_list_reverse", "pn_list_reverse_onto", "pn_list_take", "pn_marking_collect",
-    "pn_marking_decode", "pn_marking_put", "pn_mkstr_string", "pn_moves_put_list", "pn_moves_put_timed",
-    "pn_moves_take_list", "pn_ms_intersect", "pn_ms_subtract", "pn_ms_times", "pn_raise_value",
-    "pn_read_integer", "pn_real_styled", "pn_ref_new", "pn_relocate", "pn_roots_decode", "pn_string_concat",
-    "pn_string_explode", "pn_string_implode", "pn_string_join", "pn_string_make", "pn_string_of_char",
-    "pn_string_of_int", "pn_string_of_real", "pn_string_sub",
-))  # fmt: skip
-"""All other functions of the runtime that allocate for a net without nested types; a test holds this against the
-runtime's call graph."""
 _REFERRING = frozenset((Rep.STRING, Rep.BIG, Rep.LIST, Rep.UNION, Rep.REF))
-_KINDS = re.compile(r"\bPN_KIND_(?:STRING|BIG|LIST|UNION|REF)\b")
-_CALLED = re.compile(r"\bpn_\w+")
 _LOOPS = (ir.While, ir.ForList, ir.ForCount, ir.ForTokens, ir.ForValues)
 
 
@@ -79,17 +57,16 @@ class ArenaSize:
 UNKNOWN = ArenaSize(DEFAULT, "the usual size; nothing proves it to be enough")
 
 
-def of(net: ir.NetIR, net_c: str, arriving: Iterable[int], seen: int | None) -> ArenaSize:
+def of(net: ir.NetIR, arriving: Iterable[int], seen: int | None) -> ArenaSize:
     """The size for a program.
 
     Args:
         net: what is deployed, with the room of its places.
-        net_c: the C that was made of it.
         arriving: the places that get tokens from channels and input files.
         seen: bytes that are enough according to the state space; None: it does not say.
     """
     try:
-        found = _proven(net, net_c, frozenset(arriving))
+        found = _proven(net, frozenset(arriving))
     except _UnknownError as unknown:
         if seen is None:
             return ArenaSize(DEFAULT, f"not proven to be enough ({unknown}): the usual size")
@@ -104,18 +81,18 @@ def of(net: ir.NetIR, net_c: str, arriving: Iterable[int], seen: int | None) -> 
     )
 
 
-def _proven(net: ir.NetIR, net_c: str, arriving: frozenset[int]) -> int:
+def _proven(net: ir.NetIR, arriving: frozenset[int]) -> int:
     """Bytes of a net that keeps nothing in the arena between firings; raises `_UnknownError` for others."""
-    called = frozenset(_CALLED.findall(net_c))
-    if _KINDS.search(net_c):
+    tables = {*net.used.tables, *net.used.further_tables}
+    if any(d.type.rep in _REFERRING for d in net.descriptors if d.name in tables):
         raise _UnknownError("the net has lists, strings, unions, references or unlimited integers")
-    if makers := sorted(called & ALLOCATING):
-        raise _UnknownError(f"{makers[0]} is called")
+    if net.used.makers:
+        raise _UnknownError(f"{net.used.makers[0]} is called")
     if any(g.is_reference for g in net.globals):
         raise _UnknownError("the net has references")
     sizes = _Sizes(net)
     start, firing = 0, 0
-    if called & MOVES:
+    if net.has_moves:
         start = sum(sizes.moves(p.initial) for p in net.places)
         for t in net.transitions:
             wanted = [

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from pn2code.emission import c_rows, c_tables
-from pn2code.emission.c_expressions import c_big_initialiser, op_needs_table
+from pn2code.emission.c_expressions import c_big_initialiser
 from pn2code.emission.c_lines import wrap
 from pn2code.emission.c_proofs import proofs
 from pn2code.emission.c_texts import comment_lines, initial, where
@@ -18,7 +18,6 @@ from pn2code.emission.environment import render
 from pn2code.emission.names import stem
 from pn2code.emission.output import Block, OutputFile
 from pn2code.ir import nodes as ir
-from pn2code.ir.calls import called, ir_nodes
 from pn2code.ir.nodes import NetIR, Rep
 from pn2code.lowering.nets.packing import packed_bits
 
@@ -31,12 +30,6 @@ def emit(net: NetIR, version: str) -> tuple[OutputFile, ...]:
 
 
 class _Emitter(Transitions):
-    def __init__(self, net: NetIR, version: str) -> None:
-        super().__init__(net, version)
-        self._mentioned: dict[
-            int, frozenset[str]
-        ] = {}  # by id of a body, all of which belong to the net
-
     def _holder(self, p: ir.Place) -> dict[str, object]:
         """The C type that holds the tokens of a place."""
         is_slot = p.index in self._slots
@@ -54,17 +47,6 @@ class _Emitter(Transitions):
         """What takes away what follows from the rest of the first word of the packed part."""
         has_more = any(p.packed and p.packed.shares and p.packed.bit < 64 for p in self._net.places)
         return f" & 0x{self._key:x}U" if has_more else ""
-
-    def _places_with_functions(self) -> frozenset[int]:
-        """Those that are reached by functions of their own, unlike those of transitions that only count."""
-        if not any(t.counts is not None for t in self._net.transitions):
-            return frozenset(p.index for p in self._net.places)
-        bodies: list[object] = [f.body for f in self._net.functions]
-        bodies += [p.body for p in self._net.predicates]
-        for t in self._net.transitions:
-            bodies += [t.enumerate, t.fire, t.thresholds] if t.counts is None else []
-        found = (getattr(node, "place", None) for body in bodies for node in ir_nodes(body))
-        return frozenset(place for place in found if place is not None)
 
     def _function(self, f: ir.Function) -> dict[str, object]:
         s, x, scope = self._printer(f.body)
@@ -148,7 +130,7 @@ class _Emitter(Transitions):
             "name": name,
             "constant": constant,
             "zero": initial(self._types.zero(g.type), g.type.rep),
-            "is_root": g.is_reference or self._types.holds_reference(g.type),
+            "is_root": g.is_held,
             "setup": [] if constant else s.lines,
             "has_locals": any(
                 isinstance(n, ir.Let | ir.Declare | ir.SetContents)
@@ -166,8 +148,8 @@ class _Emitter(Transitions):
         early = f"s_early_{member}"
         return {
             "mark": self._block(p.name, "place", p.origin),
-            "index": p.index,
             "name": p.name,
+            "is_only_counted": p.is_only_counted,
             "member": member,
             "bag": bag,
             "colset": p.colset,
@@ -221,70 +203,10 @@ class _Emitter(Transitions):
             "lines": s.lines,
         }
 
-    def _used_functions(self, *, with_predicates: bool) -> list[ir.Function]:
-        roots: list[str] = []
-        for predicate in self._net.predicates if with_predicates else ():
-            roots += called(predicate.body)
-        for t in self._net.transitions:
-            roots += called(t.enumerate) + called(t.fire) + called(t.thresholds)
-        for p in self._net.places:
-            roots += called(p.initial)
-        for g in self._net.globals:
-            roots += called(g.setup)
-        found: set[str] = set()
-        while True:
-            while roots:
-                key = roots.pop()
-                if key not in found:
-                    found.add(key)
-                    roots += called(self._functions[key].body)
-            functions = [f for f in self._net.functions if f.key in found]
-            tables = self._used_tables(functions, self._net.predicates if with_predicates else ())
-            roots = [m for key in tables if (m := self._descriptors[key].member) and m not in found]
-            if not roots:
-                return functions
-
-    def _used_tables(
-        self, functions: Iterable[ir.Function], predicates: Iterable[ir.Predicate] = ()
-    ) -> list[str]:
-        """Keys in order of dependence."""
-        roots = {p.table for p in self._net.places}
-        bodies: list[object] = [f.body for f in functions]
-        bodies += [p.body for p in predicates]
-        for t in self._net.transitions:
-            roots |= {v.table for v in t.variables}
-            bodies += [t.enumerate, t.fire, t.thresholds]
-        bodies += [p.initial for p in self._net.places] + [g.setup for g in self._net.globals]
-        roots |= {
-            g.table
-            for g in self._net.globals
-            if g.is_reference or self._types.holds_reference(g.type)
-        }
-        for b in bodies:
-            roots |= self._tables_in(b)
-        needed = self._closure(roots)
-        return [key for key in self._descriptors if key in needed]
-
-    def _tables_in(self, body: object) -> frozenset[str]:
-        """The tables that a body mentions itself."""
-        known = self._mentioned.get(id(body))
-        if known is not None:
-            return known
-        found: set[str] = set()
-        for node in ir_nodes(body):
-            table = getattr(node, "table", "")
-            is_looked_at = not isinstance(node, ir.Op) or op_needs_table(node)
-            if isinstance(table, str) and table and is_looked_at:
-                found.add(table)
-            if isinstance(node, ir.Op) and node.name == "Colset.all":
-                found.add(f"type {node.type}")
-        self._mentioned[id(body)] = frozenset(found)
-        return self._mentioned[id(body)]
-
     def run(self) -> tuple[OutputFile, ...]:
         net = self._net
-        functions = self._used_functions(with_predicates=False)
-        keys = self._used_tables(functions)
+        functions = [self._functions[key] for key in net.used.functions]
+        keys = list(net.used.tables)
         wrappers = _wrappers(functions)
         tables = c_tables.Tables(self._types, self._descriptors, wrappers)
         recursive = tables.to_declare(keys)
@@ -297,11 +219,9 @@ class _Emitter(Transitions):
             ),
             key=lambda row: row[0],
         )
-        further = [f for f in self._used_functions(with_predicates=True) if f not in functions]
+        further = [self._functions[key] for key in net.used.further_functions]
         wrappers |= _wrappers(further)
-        further_keys = [
-            k for k in self._used_tables([*functions, *further], net.predicates) if k not in keys
-        ]
+        further_keys = list(net.used.further_tables)
         variables = [self._global(g) for g in net.globals]
         values = {
             "version": self._version,
@@ -322,7 +242,6 @@ class _Emitter(Transitions):
             ),
             "proofs": list(proofs(net.places)),
             "orders": list(self._orders.functions.values()),
-            "with_functions": self._places_with_functions(),
             "is_counting": any(t.counts is not None for t in net.transitions),
             "is_all_counting": all(t.counts is not None for t in net.transitions),
             "packed_words": (packed_bits(net.places) + 63) // 64,
@@ -350,7 +269,8 @@ class _Emitter(Transitions):
             else [],
             "roots": [
                 (self._names.table(g.table), self._names.value(g.name, g.hint))
-                for g in self._effects.roots
+                for g in net.globals
+                if g.name in net.roots
             ],
             "referring": ", ".join(f"{i}U" for i in self._referring),
             "held": [v for v in variables if v["is_root"]],

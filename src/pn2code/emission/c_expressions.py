@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pn2code.emission import c_ops
-from pn2code.emission.c_ops import OPS, Call, Compared, Infix, Literal, Prefix
 from pn2code.emission.environment import c_float
 from pn2code.emission.names import Names, Scope, label
 from pn2code.ir import nodes as ir
+from pn2code.ir import operations
 from pn2code.ir.nodes import Ir, IrType, Rep
+from pn2code.ir.operations import OPS, Call, Compared, Infix, Literal, Prefix
 
 _PRIMARY, _POSTFIX, _UNARY, _CONDITIONAL = 17, 16, 14, 3
 
@@ -88,19 +88,6 @@ class Types:
     def name(self, t: IrType) -> str:
         """The C type."""
         return _SCALARS.get(t.rep) or self.names.type(t.name)
-
-    def holds_reference(self, t: IrType) -> bool:
-        """Whether there may be references in a value of the type."""
-        seen: set[str] = set()
-        waiting = [t]
-        while waiting:
-            t = waiting.pop()
-            if t.rep is Rep.REF:
-                return True
-            if t.name and t.name not in seen:
-                seen.add(t.name)
-                waiting += ir.parts(self.definitions[t.name])
-        return False
 
     def zero(self, t: IrType) -> str:
         """The harmless value."""
@@ -309,7 +296,7 @@ class Expressions:
             case ir.IsNil(list=inner):
                 if _is_nil(inner):
                     return "true", _PRIMARY
-                return f"{self.inside(inner, c_ops.EQUALITY)} == NULL", c_ops.EQUALITY
+                return f"{self.inside(inner, operations.EQUALITY)} == NULL", operations.EQUALITY
             case ir.Ok():
                 return "pn_ok(cx)", _POSTFIX
             case ir.HasError(name=""):
@@ -324,7 +311,7 @@ class Expressions:
                 pointer, zero = self.inside(inner, _UNARY - 1), self._types.zero(t)
                 return f"({pointer} != NULL) ? *{pointer} : {zero}", _CONDITIONAL
             case ir.HasPacket():
-                return "cx->exception != NULL", c_ops.EQUALITY
+                return "cx->exception != NULL", operations.EQUALITY
             case ir.Packet(type=t):
                 return f"*(const {self._types.name(t)} *)cx->exception", _UNARY
             case ir.HasError(name=name):
@@ -418,14 +405,14 @@ class Expressions:
         t = e.value.type
         tag, member = self._constructor(t, e.tag)
         if t.rep is Rep.ENUM:
-            return f"{self.inside(e.value, c_ops.EQUALITY)} == {tag}", c_ops.EQUALITY
+            return f"{self.inside(e.value, operations.EQUALITY)} == {tag}", operations.EQUALITY
         value = self.inside(e.value, _UNARY)
         definition = self._types.definitions[t.name]
         assert isinstance(definition, ir.UnionDef)
         test = f"{value}.tag == {tag}"
         if definition.constructors[e.tag][2]:
-            return f"({test}) && ({value}.as.{member} != NULL)", c_ops.AND
-        return test, c_ops.EQUALITY
+            return f"({test}) && ({value}.as.{member} != NULL)", operations.AND
+        return test, operations.EQUALITY
 
     # --- operations ----------------------------------------------------------------------------
 
@@ -441,11 +428,11 @@ class Expressions:
             return f"pn_colset_all(cx, &{own}, &{layout})", _POSTFIX
         if e.name == "Bool.not":
             return self._negation(e.arguments[0])
-        if e.name in c_ops.CONTAINED:
+        if e.name in operations.CONTAINED:
             a, b = e.arguments
-            return self._op(ir.Op(c_ops.CONTAINED[e.name], (b, a), e.type, e.table))
-        arguments = e.arguments[::-1] if e.name in c_ops.SWAPPED else e.arguments
-        match c_ops.form_of(e.name, self.int_bits):
+            return self._op(ir.Op(operations.CONTAINED[e.name], (b, a), e.type, e.table))
+        arguments = e.arguments[::-1] if e.name in operations.SWAPPED else e.arguments
+        match operations.form_of(e.name, self.int_bits):
             case Literal(text=text):
                 return text, _PRIMARY
             case Infix(operator=operator, precedence=precedence):
@@ -457,7 +444,7 @@ class Expressions:
             case Compared(function=function, operator=operator):
                 parts = [f"&{self._names.table(e.table)}"] if e.table else []
                 parts += [self.address(a) if e.table else self.text(a) for a in arguments]
-                return f"{function}({', '.join(parts)}) {operator} 0", c_ops.RELATION
+                return f"{function}({', '.join(parts)}) {operator} 0", operations.RELATION
             case Call() as call:
                 return self._function(call, e, arguments)
 
@@ -477,7 +464,7 @@ class Expressions:
 
     def _infix(self, operator: str, precedence: int, arguments: tuple[Ir, ...]) -> str:
         left, right = arguments
-        if precedence in (c_ops.AND, c_ops.OR):
+        if precedence in (operations.AND, operations.OR):
             first = (
                 self.inside(left, precedence - 1)
                 if self._is_same(left, operator)
@@ -496,7 +483,7 @@ class Expressions:
         """Not, put into the comparison where that is exact."""
         match e:
             case ir.IsNil(list=inner) if not _is_nil(inner):
-                return f"{self.inside(inner, c_ops.EQUALITY)} != NULL", c_ops.EQUALITY
+                return f"{self.inside(inner, operations.EQUALITY)} != NULL", operations.EQUALITY
             case ir.Op(name="=" | "same"):
                 return self._equality(e, "!=")
             case ir.IsTag() if e.value.type.rep is Rep.ENUM:
@@ -516,11 +503,11 @@ class Expressions:
                     wanted = b.value == (operator == "==")
                     return self._print(a) if wanted else self._negation(a)
                 # C reads `a == b < c` as intended, but compilers warn of it, and people stumble.
-                x, y = (self.inside(v, c_ops.RELATION) for v in (a, b))
-                return f"{x} {operator} {y}", c_ops.EQUALITY
+                x, y = (self.inside(v, operations.RELATION) for v in (a, b))
+                return f"{x} {operator} {y}", operations.EQUALITY
             case Rep.REAL if e.name == "same":
                 test = f"pn_real_order({self.text(a)}, {self.text(b)}) {operator} 0"
-                return test, c_ops.EQUALITY
+                return test, operations.EQUALITY
             case Rep.REAL:
                 return f"{negation}pn_real_equal({self.text(a)}, {self.text(b)})", precedence
             case Rep.BIG:
@@ -534,19 +521,3 @@ class Expressions:
                 function = "pn_same" if e.name == "same" else "pn_equal"
                 text = f"{negation}{function}(&{table}, {self.address(a)}, {self.address(b)})"
                 return text, precedence
-
-
-def op_needs_table(e: ir.Op) -> bool:
-    """Whether the operation looks at the table of a type in C."""
-    if e.name == "=" and e.arguments[0].type.rep is Rep.REF:
-        return False
-    form = OPS.get(c_ops.CONTAINED.get(e.name, e.name))
-    return form is None or isinstance(form, Compared) or (isinstance(form, Call) and form.table)
-
-
-def op_needs_context(e: ir.Op) -> bool:
-    """Whether the operation takes the context in C."""
-    if e.name == "Colset.all":
-        return True
-    form = OPS.get(c_ops.CONTAINED.get(e.name, e.name))
-    return isinstance(form, Call) and form.context

@@ -1,4 +1,4 @@
-"""An occurrence printed with the inline functions of its places (pn_place.h), and with slots (c_slots.py).
+"""An occurrence printed with the inline functions of its places (pn_place.h), and with slots (`passes.slots`).
 
 First everything is worked out, so that whatever raises leaves the marking alone. Then it is looked whether the slots
 have room, then tokens are taken from the other places and put there; if one of those turns out to be full, all is put
@@ -11,13 +11,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from pn2code.emission.c_expressions import Expressions, Types
-from pn2code.emission.c_places import is_count, staying_pairs
-from pn2code.emission.c_slots import is_structural
 from pn2code.emission.c_statements import Statements
+from pn2code.emission.c_values import is_structural
 from pn2code.emission.names import Scope
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Descriptor, Rep, Stmt
 from pn2code.ir.types import is_restricted
+from pn2code.lowering.passes.moves import is_count
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +65,7 @@ class _SlotMove:
 
 
 class DirectFiring(Statements):
-    """Prints the `fire` of a transition for which `c_places.is_direct` holds.
+    """Prints the `fire` of a transition that `is_direct`.
 
     Args:
         descriptors: of all colour sets and types.
@@ -101,10 +101,11 @@ class DirectFiring(Statements):
         self.otherwise = ""
         self.has_checks = False
 
-    def fire(self, statements: tuple[Stmt, ...], may_fail: bool) -> None:
-        """The whole body after the preamble."""
-        staying = staying_pairs(statements)
-        self._staying = {id(s) for pair in staying for s in pair}
+    def fire(
+        self, statements: tuple[Stmt, ...], staying: tuple[tuple[int, int], ...], may_fail: bool
+    ) -> None:
+        """The whole body after the preamble; `staying`: as of a transition."""
+        self._staying = {id(statements[i]) for pair in staying for i in pair}
         self._takes = [s for s in statements if isinstance(s, ir.Take)]
         self.body(statements)
         self.lines[:0] = [*self._sum_lines(), *self._declared]
@@ -114,7 +115,8 @@ class DirectFiring(Statements):
             self.line("}")
         takes = [m for m in self._moves_made if m.verb == "take"]
         puts = [m for m in self._moves_made if m.verb == "add"]
-        for take, _ in staying:
+        for take in (statements[position] for position, _ in staying):
+            assert isinstance(take, ir.Take)
             self.note(f"{take.note or self._x.place_names[take.place]}: stays where it is")
         self._look_at_slots()
         self._take(takes)
@@ -244,7 +246,7 @@ class DirectFiring(Statements):
         name = self._scope.name(("sum", known.name), "sum")
         self._sums_used[known.name] = name
         verb = "take" if isinstance(s, ir.TakeAll) else "add"
-        self._moves_made.append(_Move(verb, s.place, name, "", s.note or known.note, True))
+        self._moves_made.append(_Move(verb, s.place, name, "", s.note or known.of.note, True))
 
     def _sum_lines(self) -> list[str]:
         """The sums, and the way to go when one is not known: list by list."""

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from pn2code.diagnostics import Origin
-from pn2code.emission import c_packed, c_places, c_tables
-from pn2code.emission.c_effects import Effects
+from pn2code.emission import c_orders, c_packed
 from pn2code.emission.c_expressions import Expressions, Types
-from pn2code.emission.c_needs import used_locals, uses_context
+from pn2code.emission.c_needs import used_locals
 from pn2code.emission.c_own import OwnPlaces
 from pn2code.emission.c_shared import share, tables
-from pn2code.emission.c_slots import slots
 from pn2code.emission.c_statements import Statements
-from pn2code.emission.c_sums import Sum
 from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
-from pn2code.ir.nodes import NetIR, Rep
+from pn2code.ir.nodes import NetIR
 from pn2code.lowering.nets.packing import KEY_BITS, key_bits
 
 _MOST_INLINED = 150
@@ -43,14 +40,11 @@ class Frame:
         self._holders = tuple(f"&m->{name}" for name in self._place_names)
         self._tables = tuple(self._names.table(p.table) for p in net.places)
         self._timed = tuple(p.timed for p in net.places)
-        self._slots = slots(net)
-        self._needs_context = self._context_users()
-        self._effects = Effects(net, self._types.holds_reference)
-        self._orders = c_places.Orders(self._types, self._names, self._descriptors)
+        self._slots = frozenset(p.index for p in net.places if p.is_slot)
+        self._needs_context = frozenset(f.key for f in net.functions if f.needs_context)
+        self._orders = c_orders.Orders(self._types, self._names, self._descriptors)
         self._numbers = c_packed.Numbers(self._types, self._names, self._descriptors)
-        self._packed = self._numbers.of_places(
-            net.places, lambda key: self._effects.is_pure(self._functions[key].body)
-        )
+        self._packed = self._numbers.of_places(net.places, lambda key: self._functions[key].is_pure)
         self._has_inlined = net.has_successors and len(net.transitions) <= _MOST_INLINED
         self._has_words = (
             self._has_inlined
@@ -59,8 +53,7 @@ class Frame:
             and 0 < key_bits(net.places) <= KEY_BITS
         )
         self._key = (1 << key_bits(net.places)) - 1
-        self._sums_found: dict[int, dict[tuple[int, ir.Ir], Sum]] = {}
-        self._referring = tuple(p.index for p in net.places if self._refers(p.table))
+        self._referring = tuple(p.index for p in net.places if p.refers)
         self._kept = tuple(map(self._kept_in, net.places))
         self._room = self._rooms_of_arrays()
         # Explorers have a function for each instance, so that the compiler can put it where it is called.
@@ -85,25 +78,12 @@ class Frame:
     def _rooms_of_arrays(self) -> dict[str, int]:
         """By what holds the tokens: entries of untimed arrays behind their capacity, for what an occurrence adds."""
         found: dict[str, int] = {}
-        for p, most in zip(self._net.places, c_places.rooms(self._net), strict=True):
+        for p in self._net.places:
             if not p.timed:
                 # gcc warns of loops that would go through an array of one, though they never do.
                 kept = self._kept[p.index]
-                found[kept] = max(found.get(kept, 0), most, 2 - p.capacity)
+                found[kept] = max(found.get(kept, 0), p.added, 2 - p.capacity)
         return found
-
-    def _context_users(self) -> frozenset[str]:
-        """The functions that take the context: those that may raise, directly or through what they call."""
-        users = {f.key for f in self._net.functions if f.loops or f.recursive}
-        while True:
-            more = {
-                f.key
-                for f in self._net.functions
-                if f.key not in users and uses_context(f.body, frozenset(users), self._definitions)
-            }
-            if not more:
-                return frozenset(users)
-            users |= more
 
     # --- pieces --------------------------------------------------------------------------------
 
@@ -141,11 +121,3 @@ class Frame:
         number = str(len(self._blocks))
         self._blocks[number] = (element, kind, origin)
         return number
-
-    def _refers(self, table: str) -> bool:
-        """Whether values of a type refer into the arena."""
-        found = (self._descriptors[key].type.rep for key in self._closure({table}))
-        return any(rep in (Rep.STRING, Rep.LIST, Rep.UNION, Rep.BIG) for rep in found)
-
-    def _closure(self, roots: set[str]) -> set[str]:
-        return c_tables.Tables(self._types, self._descriptors, {}).needed(roots)

@@ -12,14 +12,15 @@ from pn2code.emission.c_expressions import (
 )
 from pn2code.emission.c_lines import WIDTH, wrap
 from pn2code.emission.c_needs import does_nothing
-from pn2code.emission.c_slots import SCALARS
-from pn2code.emission.c_sums import Sum
+from pn2code.emission.c_sums import SumFunction
+from pn2code.emission.c_values import SCALARS
 from pn2code.emission.environment import c_comment
 from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
 from pn2code.ir.nodes import Ir, Rep, Stmt
 from pn2code.lowering.expressions.values import is_atomic
+from pn2code.lowering.passes.moves import is_pair
 
 _INDENT = "    "
 
@@ -48,7 +49,7 @@ class Statements:
         self.timed: tuple[bool, ...] = ()
         self.slots: frozenset[int] = frozenset()
         self.token_types: tuple[ir.IrType, ...] = ()
-        self.sums: Mapping[tuple[int, Ir], Sum] = {}
+        self.sums: Mapping[tuple[int, Ir], SumFunction] = {}
         self.number_of: Callable[[str], str] = lambda key: ""  # "": not by number
         self.moves = "moves"
         self.variable_types: tuple[ir.IrType, ...] = ()
@@ -469,9 +470,9 @@ class Statements:
         if known is None:
             self._work_out_wanted(takes, f"const bool {holds}")
         else:
-            place = self._x.place_names[known.place]
+            place = self._x.place_names[known.of.place]
             total = self._scope.name(("sum", id(takes)), "sum")
-            self.note(known.note)
+            self.note(known.of.note)
             self.line(f"const uint64_t *const {total} = {known.name}(cx, &b);")
             self.line(f"bool {holds} = false;")
             self.line(f"if ({total} != NULL) {{")
@@ -548,18 +549,6 @@ class Statements:
             self._x.text(s.multiset), self._x.time(time),
         ]  # fmt: skip
         self.line(f"pn_moves_{verb}({', '.join(parts)});")
-
-
-def is_pair(takes: tuple[Stmt, ...], timed: tuple[bool, ...]) -> bool:
-    """Whether one token each of two values of one untimed place is wanted."""
-    wanted = [s for s in takes if isinstance(s, ir.Take)]
-    return (
-        len(wanted) == 2
-        and len({s.place for s in wanted}) == 1
-        and not timed[wanted[0].place]
-        and all(isinstance(s.count, ir.Const) and s.count.value == 1 for s in wanted)
-        and all(isinstance(s, ir.Take | ir.Let | ir.Note) for s in takes)
-    )
 
 
 _ERRORS = {

@@ -1,115 +1,32 @@
-"""Multi-sets that arcs compute from a few variables with few values: worked out once for each, then kept as counters.
-
-`others(s)` on an arc of a packed place is a function that makes a list. In C it is called once for each value of `s`;
-after that the arc is a comparison, addition or subtraction of words (`place_has_sum` and the like in pn_packed.h).
-"""
+"""The functions in C that work out multi-sets of arcs once for each value of their variables; see `passes.sums`."""
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 from pn2code.base.frozen import frozen
-from pn2code.emission.c_effects import Effects
 from pn2code.emission.c_packed import Numbers
 from pn2code.ir import nodes as ir
-from pn2code.ir.calls import ir_nodes
-from pn2code.ir.nodes import Descriptor
-from pn2code.lowering.nets.packing import colours
-
-_MOST_SUMS = 1024
-_MOST_WORDS = 1 << 14
-"""Of all sums of one arc."""
 
 
 @frozen
-class Sum:
-    """A multi-set of an arc.
-
-    Args:
-        name: of the function in C that gives its counters.
-        place: whose.
-        multiset: the list.
-        table: descriptor of the list.
-        variables: (index in the binding, key of its descriptor, number of its colours).
-        words: of its counters.
-        note: the inscription.
-    """
+class SumFunction:
+    """The name of the function that gives the counters of a multi-set, and the multi-set."""
 
     name: str
-    place: int
-    multiset: ir.Ir
-    table: str
-    variables: tuple[tuple[int, str, int], ...]
-    words: int
-    note: str
-
-    @property
-    def count(self) -> int:
-        """How many multi-sets there are."""
-        return math.prod(n for _, _, n in self.variables)
+    of: ir.Sum
 
 
-def find(
-    net: ir.NetIR,
-    t: ir.Transition,
-    stem: str,
-    descriptors: Mapping[str, Descriptor],
-    effects: Effects,
-) -> dict[tuple[int, ir.Ir], Sum]:
-    """The sums of a transition by place and multi-set; `stem` is its name in C."""
-    found: dict[tuple[int, ir.Ir], Sum] = {}
-    for node in ir_nodes((t.enumerate, t.fire)):
-        if not isinstance(node, ir.TakeAll | ir.PutAll) or (node.place, node.multiset) in found:
-            continue
-        packed = net.places[node.place].packed
-        if packed is None or not _is_function_of_binding(node.multiset, effects):
-            continue
-        variables = _variables(t, node.multiset, descriptors)
-        words = (packed.bit % 64 + packed.colours * packed.width + 63) // 64
-        if variables is None:
-            continue
-        number = len(found) + 1
-        made = Sum(
-            f"{stem}_sum_{number}",
-            node.place,
-            node.multiset,
-            node.table,
-            variables,
-            words,
-            node.note,
-        )
-        if made.count <= _MOST_SUMS and made.count * words <= _MOST_WORDS:
-            found[node.place, node.multiset] = made
-    return found
-
-
-def _is_function_of_binding(multiset: ir.Ir, effects: Effects) -> bool:
-    return (
-        not any(isinstance(n, ir.Use | ir.TokenValue) for n in ir_nodes(multiset))
-        and effects.is_pure(multiset)
-        and not effects.reaches(multiset, _is_now)
-    )
-
-
-def _is_now(node: object) -> bool:
-    return isinstance(node, ir.Now)
-
-
-def _variables(
-    t: ir.Transition, multiset: ir.Ir, descriptors: Mapping[str, Descriptor]
-) -> tuple[tuple[int, str, int], ...] | None:
-    """The variables that decide; None if they have too many values."""
-    indices = sorted({n.index for n in ir_nodes(multiset) if isinstance(n, ir.Bound)})
-    own = [t.variables[i] for i in indices]
-    counts = [colours(descriptors, v.table) for v in own]
-    if any(v.is_output for v in own) or 0 in counts:
-        return None
-    return tuple((i, v.table, n) for i, v, n in zip(indices, own, counts, strict=True))
+def functions(t: ir.Transition, stem: str) -> dict[tuple[int, ir.Ir], SumFunction]:
+    """Those of a transition by place and multi-set; `stem` is its name in C."""
+    return {
+        (s.place, s.multiset): SumFunction(f"{stem}_sum_{number}", s)
+        for number, s in enumerate(t.sums, 1)
+    }
 
 
 def function(
-    s: Sum,
+    known: SumFunction,
     binding: str,
     bag: str,
     list_table: str,
@@ -120,7 +37,7 @@ def function(
     """The function in C.
 
     Args:
-        s: the sum.
+        known: its name and the multi-set.
         binding: type of the binding.
         bag: a pointer to the table of the place.
         list_table: of the list.
@@ -128,8 +45,9 @@ def function(
         text: prints an expression over `b->`.
         address: of a variable.
     """
+    s = known.of
     lines = [
-        f"static const uint64_t *{s.name}(pn_ctx_t *cx, const {binding} *b)",
+        f"static const uint64_t *{known.name}(pn_ctx_t *cx, const {binding} *b)",
         "{",
         f"    static PN_OF_THREAD uint8_t state[{s.count}];",
         f"    static PN_OF_THREAD uint64_t counters[{s.count}][{s.words}];",

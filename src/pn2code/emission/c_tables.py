@@ -10,6 +10,7 @@ from pn2code.emission.environment import c_comment, c_float, c_string
 from pn2code.emission.names import label
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Definition, Descriptor, Rep
+from pn2code.ir.types import closure
 
 _KINDS = {
     Rep.UNIT: "PN_KIND_UNIT",
@@ -101,26 +102,11 @@ class Tables:
         self._descriptors = descriptors
         self._members = names_of_members
 
-    def needed(self, roots: set[str]) -> set[str]:
-        """The tables that some tables refer to, with these."""
-        found: set[str] = set()
-        pending = list(roots)
-        while pending:
-            key = pending.pop()
-            if key in found or not key:
-                continue
-            found.add(key)
-            d = self._descriptors[key]
-            pending += [part for _, part in d.fields if part]
-            if d.element:
-                pending.append(d.element)
-        return found
-
     def is_recursive(self, key: str) -> bool:
         """Whether the table refers to itself, perhaps through others."""
         d = self._descriptors[key]
         parts = {part for _, part in d.fields if part} | ({d.element} if d.element else set())
-        return key in self.needed(parts)
+        return key in closure(self._descriptors, parts)
 
     def to_declare(self, keys: list[str]) -> list[str]:
         """The tables that are needed before they are defined, in this order."""

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from pn2code.emission import c_places, c_rows, c_sums
-from pn2code.emission.c_effects import is_assignment, is_draw
+from pn2code.emission import c_rows, c_sums
 from pn2code.emission.c_firing import DirectFiring
 from pn2code.emission.c_frame import Frame
 from pn2code.emission.c_lines import mentions
-from pn2code.emission.c_needs import uses_context
 from pn2code.emission.c_own import OwnPlaces
 from pn2code.emission.c_shared import PlaceTable, Shared, path_of
 from pn2code.emission.c_statements import Statements
-from pn2code.emission.c_sums import Sum
+from pn2code.emission.c_sums import SumFunction
 from pn2code.emission.c_texts import where
 from pn2code.emission.environment import c_comment
 from pn2code.emission.names import Members
@@ -77,15 +75,14 @@ class Transitions(Frame):
             counting = c_rows.counting(
                 f"s_counts_of_{stem}", t, self._key if self._has_words else None
             )
-        affected = self._effects.affected(t.index)
         further = [f".places = &{self._names.instance(path_of(t), own.struct)}"] if own else []
         if not counting:
             further += [f".successors = {stem}_successors"] if self._net.has_successors else []
             further += [f".words = {stem}_words"] if self._has_words else []
-        if len(affected) < len(self._net.transitions):
-            further += c_rows.indices("affected", affected)
-        further += c_rows.indices("touched", self._effects.touched(t.index))
-        further += c_rows.indices("read", self._effects.read(t.index))
+        if len(t.effects.affected) < len(self._net.transitions):
+            further += c_rows.indices("affected", t.effects.affected)
+        further += c_rows.indices("touched", t.effects.touched)
+        further += c_rows.indices("read", t.effects.read)
         further += [f".{flag} = true" for flag in flags if code[flag]]
         return {
             "index": t.index,
@@ -140,33 +137,27 @@ class Transitions(Frame):
         search, x, _ = self._printer(t.enumerate, "b.", own)
         x.variables = variables
         search.variable_types = tuple(v.type for v in t.variables)
-        search.keeps = uses_context(
-            _without_wanted(t.enumerate), self._needs_context, self._definitions
-        )
-        search.is_flat = c_places.is_flat(t.enumerate, self._slots)
-        search.releases = not self._effects.reaches(t.enumerate, is_assignment)
+        search.keeps = t.search_needs_context
+        search.is_flat = t.is_flat
+        search.releases = not t.effects.search_writes
         search.may_fail = search.keeps or any(
             isinstance(n, ir.Wanted | ir.UnlessLegal) for n in ir_nodes(t.enumerate)
         )
-        search.sums = self._sums(t)
+        sums = self._sums(t)
+        search.sums = sums
         search.body(t.enumerate)
         search.end_search()
-        is_direct = self._is_direct(t)
-        fire = self._firing(t, is_direct, variables, own, name)
-        sums = self._sums(t)
-        has_lists = is_direct and any(isinstance(s, ir.TakeAll | ir.PutAll) for s in t.fire)
+        fire = self._firing(t, t.is_direct, variables, own, name)
+        has_lists = t.is_direct and any(isinstance(s, ir.TakeAll | ir.PutAll) for s in t.fire)
         lists = self._firing(t, False, variables, own, name) if has_lists else None
         thresholds = self._thresholds(t, variables, own)
         text = "\n".join(fire.lines)
-        roots = self._effects.roots
-        search_draws = self._effects.reaches(t.enumerate, is_draw)
-        fire_draws = self._effects.reaches(t.fire, is_draw)
         return {
             "marks": [self._block(x.name, "transition", x.origin) for x in shared.instances],
             "index": t.index,
-            "search_draws": search_draws,
-            "fire_draws": fire_draws,
-            "draws_between": search_draws and fire_draws,
+            "search_draws": t.effects.search_draws,
+            "fire_draws": t.effects.fire_draws,
+            "draws_between": t.effects.search_draws and t.effects.fire_draws,
             "name": t.name,
             "stem": name,
             "title": self._title(shared),
@@ -180,19 +171,19 @@ class Transitions(Frame):
             ),
             "guard": c_comment(f"guard [{t.guard_text}]") if t.guard_text else "",
             "origin": t.origin.describe(),
-            "is_plain": c_places.is_plain(t.enumerate),
+            "is_plain": t.is_plain,
             "keeps": search.keeps and search.releases,
             "is_flat": search.is_flat,
             "search": search.lines,
             "search_reach": own.reach(search.lines, is_const=True) if own else [],
             "thresholds": thresholds,
             "thresholds_reach": own.reach(thresholds, is_const=True) if own else [],
-            "thresholds_draw": self._effects.reaches(t.thresholds, is_draw),
+            "thresholds_draw": t.effects.thresholds_draw,
             "searches_marking": mentions("m", "\n".join(search.lines)),
             "fire": fire.lines,
             "fire_reach": own.reach(fire.lines, is_const=False) if own else [],
             "is_counting": False,
-            "is_direct": is_direct,
+            "is_direct": t.is_direct,
             "sums": [
                 self._sum_function(s, t, name, variables)
                 for s in sums.values()
@@ -203,15 +194,12 @@ class Transitions(Frame):
             "lists_use_binding": lists is not None and mentions("b", "\n".join(lists.lines)),
             "uses_binding": mentions("b", text),
             "touched_bags": [
-                self._place_names[i]
-                for i in self._effects.touched(t.index)
-                if not self._net.places[i].packed
+                self._place_names[i] for i in t.effects.touched if not self._net.places[i].packed
             ],
-            "looks": self._effects.looks((t.enumerate, t.fire)),
-            "looks_outside": self._effects.looks_outside((t.enumerate, t.fire)),
-            "assigns": bool(roots) and self._effects.reaches(t.fire, is_assignment),
-            "search_assigns": bool(roots)
-            and self._effects.reaches((t.enumerate, t.thresholds), is_assignment),
+            "looks": t.effects.looks,
+            "looks_outside": t.effects.looks_outside,
+            "assigns": t.effects.assigns,
+            "search_assigns": t.effects.search_assigns,
         }
 
     def _thresholds(
@@ -227,29 +215,19 @@ class Transitions(Frame):
         search.body(t.thresholds)
         return search.lines
 
-    def _is_direct(self, t: ir.Transition) -> bool:
-        """Whether it can be printed with the functions of its places; what is taken must be what was found."""
-        takes = tuple(s.value for s in t.fire if isinstance(s, ir.Take))
-        return c_places.is_direct(self._net, t, self._sums(t)) and self._effects.is_pure(takes)
-
-    def _sums(self, t: ir.Transition) -> dict[tuple[int, ir.Ir], Sum]:
-        if t.index not in self._sums_found:
-            stem = self._names.transition(t.index, t.name)
-            self._sums_found[t.index] = c_sums.find(
-                self._net, t, stem, self._descriptors, self._effects
-            )
-        return self._sums_found[t.index]
+    def _sums(self, t: ir.Transition) -> dict[tuple[int, ir.Ir], SumFunction]:
+        return c_sums.functions(t, self._names.transition(t.index, t.name))
 
     def _sum_function(
-        self, s: Sum, t: ir.Transition, name: str, variables: tuple[str, ...]
+        self, s: SumFunction, t: ir.Transition, name: str, variables: tuple[str, ...]
     ) -> list[str]:
         _, x, _ = self._printer((), "b->")
         x.variables = variables
         return c_sums.function(
             s,
             f"{name}_binding_t",
-            self._bags[s.place],
-            self._names.table(s.table),
+            self._bags[s.of.place],
+            self._names.table(s.of.table),
             self._numbers,
             x.text,
             lambda i: x.address(ir.Bound(i, t.variables[i].type)),
@@ -285,25 +263,8 @@ class Transitions(Frame):
             direct.sums = self._sums(t)
             direct.otherwise = f"{name}_fire_lists(cx, m, self, b)"
             direct.variable_types = tuple(v.type for v in t.variables)
-            direct.fire(t.fire, uses_context(t.fire, self._needs_context, self._definitions))
+            direct.fire(t.fire, t.staying, t.fire_needs_context)
             return direct
         printer.variable_types = tuple(v.type for v in t.variables)
         printer.body(t.fire)
         return printer
-
-    # --- the whole -----------------------------------------------------------------------------
-
-
-def _without_wanted(statements: tuple[ir.Stmt, ...]) -> tuple[ir.Stmt, ...]:
-    """The statements that may leave something in the arena: the demands clean up after themselves."""
-    out: list[ir.Stmt] = []
-    for s in statements:
-        if isinstance(s, ir.Wanted):
-            out.extend(x for x in s.takes if not isinstance(x, (ir.Take, ir.TakeAll)))
-        elif isinstance(s, ir.ForTokens):
-            out.append(ir.ForTokens(s.place, s.index, _without_wanted(s.body), s.note))
-        elif isinstance(s, ir.ForValues):
-            out.append(ir.ForValues(s.variable, s.table, _without_wanted(s.body), s.note))
-        else:
-            out.append(s)
-    return tuple(out)

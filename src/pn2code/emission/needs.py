@@ -1,18 +1,19 @@
-"""What a supervisor needs of the runtime, from the C of its net: all else is left out when it is linked.
+"""What a supervisor needs of the runtime, from its net: all else is left out when it is linked.
 
-needs = of(net_c, is_cell=True)
+needs = of(net, is_cell=True)
 needs.next_time                       # "pn_next_time"; "NULL": the net has no time
 needs.flags                           # ("-DPN_FLAT_TYPES",): no list, no union, no reference
 """
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass
+
+from pn2code.ir.nodes import NetIR, Rep
 
 SIDE = "supervisor"
 """The supervisor's name among the owners of a net, and in the shared directory."""
-_NESTED = re.compile(r"\bPN_KIND_(?:LIST|UNION|REF)\b")
+_NESTED = frozenset({Rep.LIST, Rep.UNION, Rep.REF})
 _NONE = "NULL"
 
 
@@ -47,25 +48,29 @@ class Needs:
         return tuple(found)
 
 
-def of(net_c: str, *, is_cell: bool) -> Needs:
+def of(net: NetIR, *, is_cell: bool) -> Needs:
     """The needs of a net.
 
     Args:
-        net_c: the generated net.
+        net: what is deployed.
         is_cell: the supervisor has channels; without any it plays its net alone.
     """
 
-    def if_in(name: str, *words: str) -> str:
-        return name if any(word in net_c for word in words) else _NONE
+    def named(name: str, is_needed: bool) -> str:
+        return name if is_needed else _NONE
 
+    refers = any(p.refers for p in net.places) or any(g.is_held for g in net.globals)
+    tables = {*net.used.tables, *net.used.further_tables}
+    is_nested = any(d.type.rep in _NESTED for d in net.descriptors if d.name in tables)
+    is_packed = any(p.packed for p in net.places)
     return Needs(
         run="sup_run_cell" if is_cell else "sup_run_alone",
-        allow_files=if_in("pn_file_allow", "pn_file_"),
-        collect=if_in("pn_marking_collect", ".refer_count =", ".held_count ="),
+        allow_files=named("pn_file_allow", net.used.files),
+        collect=named("pn_marking_collect", refers),
         object="net_own.o" if is_cell else "net.o",
-        next_time=if_in("pn_next_time", ".timed = true"),
+        next_time=named("pn_next_time", net.timed),
         flags=(
-            *(() if _NESTED.search(net_c) else ("-DPN_FLAT_TYPES",)),
-            *(() if ".is_packed = true" in net_c else ("-DPN_ARRAYS_ONLY",)),
+            *(() if is_nested else ("-DPN_FLAT_TYPES",)),
+            *(() if is_packed else ("-DPN_ARRAYS_ONLY",)),
         ),
     )

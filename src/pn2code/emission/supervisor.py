@@ -20,6 +20,7 @@ from pn2code.emission import arena_size, c_flags, needs
 from pn2code.emission.arena_size import ArenaSize
 from pn2code.emission.environment import c_float, c_int, render
 from pn2code.emission.output import Block, OutputFile
+from pn2code.ir.nodes import NetIR
 from pn2code.net.flat import FlatPlace
 
 _INT_MIN, _INT_MAX = -(2**63), 2**63 - 1
@@ -120,7 +121,8 @@ def emit(
     version: str,
     verdicts: Sequence[str] = (),
     arena: ArenaSize = arena_size.UNKNOWN,
-    net_c: str | None,
+    compiled: NetIR | None,
+    net_size: int = 0,
 ) -> tuple[OutputFile, ...]:
     """`cell_config.c` and `Makefile`.
 
@@ -130,7 +132,8 @@ def emit(
         digest: of net and cell, the same as in net.c.
         version: of pn2code.
         verdicts: lines about what was checked, for the head.
-        net_c: the generated net, for what it needs of the runtime; None: it is not linked with it.
+        compiled: what is deployed, for what it needs of the runtime; None: it is not linked with it.
+        net_size: characters of the generated net.
         arena: the memory for lists, strings and moves.
     """
     net = partition.net
@@ -172,7 +175,7 @@ def emit(
         )
     is_cell = bool(peers or channels)
     source_name = Path(net.file).name
-    required = needs.of(net_c, is_cell=bool(channels)) if net_c is not None else None
+    required = needs.of(compiled, is_cell=bool(channels)) if compiled is not None else None
     config = render(
         "c/cell_config.c.j2",
         needs=required,
@@ -200,7 +203,7 @@ def emit(
         source=" ".join(source_name.split()),
         has_simulate=True,
         c_flags=c_flags,
-        net_flags=" ".join(c_flags.for_size(len(net_c or ""))),
+        net_flags=" ".join(c_flags.for_size(net_size)),
         needs=required,
     )
     elements = [

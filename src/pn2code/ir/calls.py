@@ -32,7 +32,10 @@ def ir_nodes(item: object) -> Iterator[object]:
 
 
 _VALUE = "bool | int | float | str | None"
-_LEAVES = frozenset({"IrType", "Origin", "bool", "int", "str", "tuple[int, ...]", _VALUE})
+_PAIRS = "tuple[tuple[int, int], ...]"
+_LEAVES = frozenset(
+    {"Effects", "IrType", "Origin", "bool", "int", "str", "tuple[int, ...]", _PAIRS, _VALUE}
+)
 """What the annotations of fields say in which there is no node."""
 
 

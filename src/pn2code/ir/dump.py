@@ -15,8 +15,10 @@ transition 0 Top.Pick   (ID7) owner 0 priority 1000
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import fields
 
 from pn2code.ir import nodes as ir
+from pn2code.ir.effects import Effects
 from pn2code.ir.nodes import Ir, NetIR, Stmt
 
 
@@ -36,6 +38,7 @@ class _Dump:
             yield f"net {net.name} from {net.source}" + (" timed" if net.timed else "")
             yield from (self._definition(d) for d in net.definitions)
             yield from self._globals()
+            yield from self._used()
         for f in net.functions:
             if only in f.hint:
                 yield from self._function(f)
@@ -63,18 +66,43 @@ class _Dump:
 
     def _globals(self) -> Iterator[str]:
         for g in self._net.globals:
-            yield f"{'ref' if g.is_reference else 'val'} {g.name}: {g.type}"
+            flags = _flags(held=g.is_held)
+            yield f"{'ref' if g.is_reference else 'val'} {g.name}: {g.type}{flags}"
             yield from self._block(g.setup, 1)
+        if self._net.roots:
+            yield f"state besides the marking {', '.join(self._net.roots)}"
+
+    def _used(self) -> Iterator[str]:
+        used = self._net.used
+        for what, keys in (("tables", used.tables), ("tables of predicates", used.further_tables)):
+            if keys:
+                yield f"{what} {', '.join(keys)}"
+        if used.files:
+            yield "reads or writes files"
+        if used.makers:
+            yield f"allocates in {', '.join(used.makers)}"
+        if self._net.has_moves:
+            yield "has lists of moves"
+
+    def _use(self, f: ir.Function) -> str:
+        used = self._net.used
+        if f.key in used.functions:
+            return ""
+        return " of predicates" if f.key in used.further_functions else " unused"
 
     def _function(self, f: ir.Function) -> Iterator[str]:
         parameters = ", ".join(f"{_local(p)}: {p.type}" for p in f.parameters)
         flags = (" loops" if f.loops else "") + (" recursive" if f.recursive else "")
+        flags += ("" if f.is_pure else " impure") + (" context" if f.needs_context else "")
+        flags += self._use(f)
         yield f"function {f.key}({parameters}): {f.result}{flags}"
         yield from self._block(f.body, 1)
 
     def _place(self, p: ir.Place) -> Iterator[str]:
         timed = " timed" if p.timed else ""
-        yield f"place {p.index} {p.name} : {p.colset}{timed} capacity {p.capacity} owner {p.owner}"
+        added = f" + {p.added}" if p.added else ""
+        flags = _flags(slot=p.is_slot, refers=p.refers)
+        yield f"place {p.index} {p.name} : {p.colset}{timed} capacity {p.capacity}{added} owner {p.owner}{flags}"
         yield from self._block(p.initial, 1)
 
     def _transition(self, t: ir.Transition) -> Iterator[str]:
@@ -83,9 +111,15 @@ class _Dump:
         if t.variables:
             parts = [f"{v.name}: {v.type}{' output' if v.is_output else ''}" for v in t.variables]
             yield f"  variables {', '.join(parts)}"
-        yield "  enumerate"
+        if t.staying:
+            yield f"  stays {', '.join(self._staying(t))}"
+        yield from self._effects(t.effects)
+        for found in t.sums:
+            place, x = self._place_name(found.place), self._expression
+            yield f"  once for each of {found.count} {place} {x(found.multiset)}{_note(found.note)}"
+        yield f"  enumerate{_flags(plain=t.is_plain, flat=t.is_flat, context=t.search_needs_context)}"
         yield from self._block(t.enumerate, 2)
-        yield "  fire"
+        yield f"  fire{_flags(direct=t.is_direct, context=t.fire_needs_context)}"
         yield from self._block(t.fire, 2)
         if t.counts is not None:
             yield "  counts"
@@ -95,6 +129,21 @@ class _Dump:
         if t.thresholds:
             yield "  thresholds"
             yield from self._block(t.thresholds, 2)
+
+    def _staying(self, t: ir.Transition) -> Iterator[str]:
+        for position, _ in t.staying:
+            take = t.fire[position]
+            assert isinstance(take, ir.Take)
+            yield self._move(take.place, take.count, take.value, None)
+
+    def _effects(self, e: Effects) -> Iterator[str]:
+        for verb, places in (("reads", e.read), ("touches", e.touched)):
+            if places:
+                yield f"  {verb} {', '.join(map(self._place_name, places))}"
+        if e.affected:
+            yield f"  affects {', '.join(self._net.transitions[i].name for i in e.affected)}"
+        if found := [f.name.replace("_", " ") for f in fields(e) if getattr(e, f.name) is True]:
+            yield f"  also {', '.join(found)}"
 
     # --- statements ----------------------------------------------------------------------------
 
@@ -273,6 +322,10 @@ class _Dump:
 
 def _local(local: ir.Local) -> str:
     return f"{local.hint}{'' if local.uid < 0 else f'_{local.uid}'}"
+
+
+def _flags(**flags: bool) -> str:
+    return "".join(f" {name}" for name, holds in flags.items() if holds)
 
 
 def _note(text: str) -> str:

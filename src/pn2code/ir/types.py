@@ -110,6 +110,20 @@ def parts(definition: Definition) -> list[IrType]:
             return []
 
 
+def holds_reference(definitions: Mapping[str, Definition], t: IrType) -> bool:
+    """Whether there may be references in a value of the type."""
+    seen: set[str] = set()
+    waiting = [t]
+    while waiting:
+        t = waiting.pop()
+        if t.rep is Rep.REF:
+            return True
+        if t.name and t.name not in seen:
+            seen.add(t.name)
+            waiting += parts(definitions[t.name])
+    return False
+
+
 @frozen
 class Descriptor:
     """A colour set, or a type without one, as the runtime's table.
@@ -141,6 +155,22 @@ class Descriptor:
     is_tuple: bool = False
     member: str = ""
     comment: str = ""
+
+
+def closure(descriptors: Mapping[str, Descriptor], roots: set[str]) -> set[str]:
+    """The descriptors that some refer to, with these."""
+    found: set[str] = set()
+    pending = list(roots)
+    while pending:
+        key = pending.pop()
+        if key in found or not key:
+            continue
+        found.add(key)
+        d = descriptors[key]
+        pending += [part for _, part in d.fields if part]
+        if d.element:
+            pending.append(d.element)
+    return found
 
 
 def is_restricted(descriptors: Mapping[str, Descriptor], key: str) -> bool:

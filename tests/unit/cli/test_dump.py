@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
-from helpers.netbuilder import cpn, flat
+from pathlib import Path
+
+from helpers.netbuilder import cpn, flat, write
+from pn2code.cli.dump import Stage, stage_text
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.dump import dump_document, dump_flat, dump_net
 from pn2code.net.link import link
@@ -69,3 +72,43 @@ def test_only() -> None:
     text = dump_flat(flat(NET.replace("          reset A1\n", "")), only="Pick")
     assert "place " not in text
     assert "transition 0 Top.S.Pick" in text
+
+
+def test_the_programs_that_c_is_printed_from(tmp_path: Path) -> None:
+    net = write(NET.replace("          reset A1\n", ""), tmp_path / "cell.cpn")
+    d = Diagnostics()
+    text = stage_text(net, Stage.IR, "Pick", {}, d)
+    assert text is not None, list(d)
+    assert text.startswith("transition 0 Top.S.Pick   (ID64) owner 0 priority 5\n")
+    assert "    put Top.S.Q 1 ` " in text
+
+
+def test_nothing_is_dumped_of_what_cannot_be_compiled(tmp_path: Path) -> None:
+    net = write("net Cell\n  standard\n  place A : INT = foo\n", tmp_path / "cell.cpn")
+    d = Diagnostics()
+    assert stage_text(net, Stage.IR, "", {}, d) is None
+    assert d.has_errors
+
+
+def test_places_with_what_is_proven_of_them(tmp_path: Path) -> None:
+    net = write(
+        """
+        net Cell
+          standard
+          var n: INT;
+          place A : INT = 1`1
+          place B : INT
+          trans T
+            in A : n
+            out B : n
+        """,
+        tmp_path / "cell.cpn",
+    )
+    d = Diagnostics()
+    text = stage_text(net, Stage.DEPLOYED, "", {}, d)
+    assert text is not None, list(d)
+    assert "place 0 Top.A : INT capacity 1 owner 0 slot\n" in text
+    assert "  enumerate plain flat\n" in text
+    assert "  fire direct\n" in text
+    lowered = stage_text(net, Stage.IR, "", {}, d)
+    assert lowered is not None and "slot" not in lowered

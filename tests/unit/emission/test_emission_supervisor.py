@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from helpers.compiled import lowered
+from helpers.netbuilder import flat
 from pn2code.cell.partition import Channel, ChannelKind, Input, Owner, OwnerKind, Partition
 from pn2code.diagnostics import NOWHERE
 from pn2code.emission import c_flags
@@ -19,6 +21,7 @@ from pn2code.ml.core.types import INT, REAL, STRING
 from pn2code.net.flat import FlatNet, FlatPlace
 from pn2code.toolchain.programs import FLAGS
 
+EMPTY = lowered(flat("net Cell\n  standard\n  place A : INT\n"))[0]
 COORD = Colset("COORD", Kind.REAL, REAL)
 COUNT = Colset("COUNT", Kind.INT, INT, low=0, high=9)
 MODE = Colset("MODE", Kind.ENUM, STRING, names=("joint", "linear"))
@@ -55,7 +58,9 @@ def partition() -> Partition:
 
 
 def config(p: Partition) -> str:
-    files = emit(p, name="cell", reply_timeout_s=120.0, digest="d" * 64, version="9.9", net_c="")
+    files = emit(
+        p, name="cell", reply_timeout_s=120.0, digest="d" * 64, version="9.9", compiled=EMPTY
+    )
     assert [f.path for f in files] == ["cell_config.c", "Makefile"]
     return files[0].text
 
@@ -86,7 +91,12 @@ def test_same_input_same_bytes() -> None:
 
 def test_blocks_name_the_channels_lines() -> None:
     files = emit(
-        partition(), name="cell", reply_timeout_s=1.0, digest="d" * 64, version="9.9", net_c=""
+        partition(),
+        name="cell",
+        reply_timeout_s=1.0,
+        digest="d" * 64,
+        version="9.9",
+        compiled=EMPTY,
     )
     lines = files[0].text.splitlines()
     blocks = {b.element: b for b in files[0].blocks}
@@ -124,7 +134,12 @@ def test_c_literals() -> None:
 def test_sums_are_rounded_everywhere_alike(tmp_path: Path) -> None:
     """Whatever the caller's CFLAGS say, the last word is that of the token game and the explorer."""
     files = emit(
-        partition(), name="cell", reply_timeout_s=1.0, digest="d" * 64, version="9.9", net_c=""
+        partition(),
+        name="cell",
+        reply_timeout_s=1.0,
+        digest="d" * 64,
+        version="9.9",
+        compiled=EMPTY,
     )
 
     (makefile,) = [f for f in files if f.path == "Makefile"]
@@ -152,9 +167,14 @@ def test_a_large_net_is_compiled_quickly(
 ) -> None:
     """Unless the user has said how."""
     monkeypatch.delenv("CFLAGS", raising=False)
-    net_c = " " * (c_flags.LARGE + more)
     files = emit(
-        partition(), name="cell", reply_timeout_s=1.0, digest="d" * 64, version="9.9", net_c=net_c
+        partition(),
+        name="cell",
+        reply_timeout_s=1.0,
+        digest="d" * 64,
+        version="9.9",
+        compiled=EMPTY,
+        net_size=c_flags.LARGE + more,
     )
     (makefile,) = [f for f in files if f.path == "Makefile"]
     (tmp_path / "Makefile").write_text(makefile.text)

@@ -8,8 +8,8 @@ from helpers.compiled import lowered
 from helpers.netbuilder import flat
 from pn2code.ir import nodes as ir
 from pn2code.ir.dump import dump
-from pn2code.lowering.nets import counting
 from pn2code.lowering.nets.packing import Packing
+from pn2code.lowering.passes import counting
 
 NET = """
     net Cell
@@ -68,7 +68,9 @@ def _counts(net: ir.NetIR) -> dict[str, list[tuple[str, int, int, int]]]:
 
 
 def test_what_only_counts() -> None:
-    assert _counts(_net()) == {
+    net = _net()
+    assert {p.name for p in net.places if p.is_only_counted} == {"Top.L"}
+    assert _counts(net) == {
         "Weighs": [("A", 2, 2, 0), ("B", 1, 1, 3)],
         "Makes": [("A", 0, 0, 1)],
         "Nothing": [],

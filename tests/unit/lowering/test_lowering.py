@@ -50,12 +50,15 @@ def test_a_transition() -> None:
         """\
         transition 0 Top.Pick   (ID16) owner 0 priority 1000
           variables n: int
+          reads Top.Buffer
+          touches Top.Buffer, Top.Out
+          affects Top.Pick
           enumerate
             for i_1 in Top.Buffer   -- Buffer: n (ID21)
               bind n = Top.Buffer[i_1]
               unless (n Int.> 0): next   -- guard [n > 0]
               yield
-          fire
+          fire direct
             take Top.Buffer 1 ` n   -- Buffer: n (ID21)
             put Top.Out 2 ` n   -- Out: 2`n (ID23)
         """
@@ -106,10 +109,10 @@ def test_tuple_parameters_are_passed_apart_and_units_left_out() -> None:
 
 def test_self_tail_calls_become_loops() -> None:
     text = function("fun f (0, s) = s | f (k, s) = f (k - 1, s + k)", "f (n, 0)", "f")
-    assert text.splitlines()[0].endswith("loops")
+    assert text.splitlines()[0].endswith("loops context")
     assert "again(" in text
     other = function("fun g 0 = 0 | g k = 1 + g (k - 1)", "g n", "g")
-    assert other.splitlines()[0].endswith("recursive")
+    assert other.splitlines()[0].endswith("recursive context")
 
 
 def test_polymorphic_functions_are_specialised() -> None:
@@ -121,7 +124,7 @@ def test_polymorphic_functions_are_specialised() -> None:
 def test_functions_passed_as_arguments_are_followed() -> None:
     text = function("fun twice f x = f (f x)", "twice (fn y => y + n) 3", "twice")
     # What the passed function captures is a parameter.
-    assert text.splitlines()[0] == "function twice/1(n: int, x: int): int"
+    assert text.splitlines()[0] == "function twice/1(n: int, x: int): int context"
 
 
 def test_functions_as_values() -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from pn2code.emission.c_ops import OPS
+from pn2code.ir.operations import OPS
 from pn2code.lowering import prelude
 from pn2code.lowering.expressions.builtins import Builtins
 from pn2code.ml.core.types import TCon, TFun, TRecord, TVar, Type

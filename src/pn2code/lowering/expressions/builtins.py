@@ -1,6 +1,6 @@
 """Built-in functions applied: most become an `Op` of the same name, some a few lines of IR.
 
-What an `Op` looks like in C is the business of `emission.c_ops`; a built-in function is supported exactly if
+What an `Op` looks like in C is the business of `ir.operations`; a built-in function is supported exactly if
 it is in `DIRECT` or has a method here or in `higher_order`.
 """
 

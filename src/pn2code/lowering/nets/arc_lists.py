@@ -1,6 +1,6 @@
 """Multi-sets that arcs compute: in nets with packed places they are functions of the variables that decide about them.
 
-A function can be asked once for each value of its variables; see `emission.c_sums`.
+A function can be asked once for each value of its variables; see `passes.sums`.
 """
 
 from __future__ import annotations

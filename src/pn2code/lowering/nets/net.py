@@ -21,11 +21,11 @@ from pn2code.lowering.expressions.body import Body
 from pn2code.lowering.expressions.builtins import Builtins
 from pn2code.lowering.expressions.functions import Program
 from pn2code.lowering.expressions.types import Types
-from pn2code.lowering.nets.counting import with_counts
 from pn2code.lowering.nets.inscriptions import Putter
 from pn2code.lowering.nets.packing import Packing, packed
 from pn2code.lowering.nets.predicates import lower_predicate
 from pn2code.lowering.nets.transitions import lower_transition
+from pn2code.lowering.passes.analysis import analysed
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.types import BOOL
 from pn2code.net.flat import FlatNet, FlatPlace, FlatTransition
@@ -106,12 +106,7 @@ class _Lowering:
         order = sorted(
             range(len(transitions)), key=lambda i: (self._net.transitions[i].priority, i)
         )
-        kept = self._packed(
-            [replace(p, capacity=p.capacity or room) for p in places if p is not None]
-        )
-        lowered = tuple(t for t in transitions if t is not None)
-        has_successors = self._packing is not None and self._packing.successors
-        return ir.NetIR(
+        net = ir.NetIR(
             name=self._net.name,
             source=self._net.file.replace("\\", "/").rsplit("/", 1)[-1],
             sha256=self._net.sha256,
@@ -122,14 +117,17 @@ class _Lowering:
             descriptors=tuple(self._types.descriptors.values()),
             globals=self._program.globals(),
             functions=functions,
-            places=kept,
-            transitions=with_counts(lowered, kept) if has_successors else lowered,
+            places=self._packed(
+                [replace(p, capacity=p.capacity or room) for p in places if p is not None]
+            ),
+            transitions=tuple(t for t in transitions if t is not None),
             owners=tuple(o.name for o in self._partition.owners),
             order=tuple(order),
             int_bits=self._net.program.int_bits,
-            has_successors=has_successors,
+            has_successors=self._packing is not None and self._packing.successors,
             predicates=tuple(p for p in predicates if p is not None),
         )
+        return analysed(net)
 
     def _packed(self, places: list[ir.Place]) -> tuple[ir.Place, ...]:
         if self._packing is None:

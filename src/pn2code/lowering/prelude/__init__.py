@@ -3,7 +3,7 @@
 Each structure of the library has a file here, `String.sml` for `String.*`; `String.map` is its function
 `String_map` (operators by the words in `WORDS`: `Word.+` is `Word_plus`). A file is elaborated when the first of
 its functions is asked for, and of that only what is used gets compiled. A function of a file whose name begins with
-`prim_` stands for the operation `prim.<rest>` of `emission.c_ops`; its body is never looked at.
+`prim_` stands for the operation `prim.<rest>` of `ir.operations`; its body is never looked at.
 
 The code refers to other built-in functions by their usual names, so that each file stands for itself. Types that CPN ML
 only knows by name are tuples, lists and numbers here: see `representation`.

@@ -97,7 +97,7 @@ def codec(partition: Partition, d: Diagnostics) -> Iterator[Codec | None]:
         reply_timeout_s=0.0,
         digest="",
         version=pn2code.__version__,
-        net_c=None,
+        compiled=None,
     )
     own = [f for f in files if f.path == "cell_config.c"]
     with programs.program(HOST, own, d) as program:

@@ -17,6 +17,7 @@ from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.ir import nodes as ir
 from pn2code.lowering.nets.packing import colours
+from pn2code.lowering.passes.analysis import bounded
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.enabling import GameError
 from pn2code.structure.bounds import PlaceBound
@@ -103,7 +104,7 @@ def with_rooms(net: ir.NetIR, found: Sequence[PlaceCapacity]) -> ir.NetIR:
             few = 0 if place.timed else colours(descriptors, place.table)
             capacity = max(min(room.bound, few) if few else room.bound, 1)
         places.append(replace(place, capacity=capacity, bound=room.bound, proof=room.proof))
-    return replace(net, places=tuple(places))
+    return bounded(replace(net, places=tuple(places)))
 
 
 # --- what is said of them ------------------------------------------------------------------------

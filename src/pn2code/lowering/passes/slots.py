@@ -2,26 +2,38 @@
 
 To take from a slot is a test and a read, to put is a test and a write. An occurrence looks whether all slots are as it
 needs them before it changes the first, so nothing has to be put back.
+
+`with_slots` writes it into the places (`is_slot`) and transitions (`is_flat`), and again whenever bounds of places have
+become known.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Container, Iterator
+from collections.abc import Container, Iterator, Sequence
+from dataclasses import replace
 
-from pn2code.emission.c_places import is_count, puts
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
-from pn2code.ir.nodes import Rep
-
-SCALARS = frozenset({Rep.BOOL, Rep.INT, Rep.CHAR, Rep.ENUM})
-"""Representations whose values C compares with `==`."""
+from pn2code.lowering.passes.moves import is_count, puts
 
 
-def slots(net: ir.NetIR) -> frozenset[int]:
+def with_slots(net: ir.NetIR) -> ir.NetIR:
+    """The net, with what this pass finds."""
+    slots = _slots(net)
+    return replace(
+        net,
+        places=tuple(replace(p, is_slot=p.index in slots) for p in net.places),
+        transitions=tuple(
+            replace(t, is_flat=_is_flat(t.enumerate, slots)) for t in net.transitions
+        ),
+    )
+
+
+def _slots(net: ir.NetIR) -> frozenset[int]:
     """The places that are slots: proven (or declared) to hold one token at most, and nobody moves more at a time."""
     found = {p.index for p in net.places if _is_small(p)}
-    for t in net.transitions:
+    for t in net.transitions if found else ():
         found.difference_update(_excluded(t))
     return frozenset(found)
 
@@ -60,17 +72,11 @@ def _followed(statements: tuple[ir.Stmt, ...]) -> Iterator[int]:
             yield s.place
 
 
-def is_structural(value: ir.Ir, references: Container[str]) -> bool:
-    """Whether a value is put together from constants and variables alone: each evaluation gives the same."""
-    match value:
-        case ir.Const() | ir.EnumValue() | ir.Bound():
-            return True
-        case ir.GlobalUse(name=name):
-            return name not in references
-        case ir.MakeStruct(fields=fields):
-            return all(is_structural(part, references) for _, part in fields)
-        case ir.MakeUnion(argument=argument):
-            return argument is None or is_structural(argument, references)
-        case ir.Op(name="list.cons", arguments=arguments):
-            return all(is_structural(part, references) for part in arguments)
-    return False
+def _is_flat(statements: Sequence[ir.Stmt], slots: Container[int]) -> bool:
+    """Whether a search gives one binding at most, and does so last: of a slot there is one token to look at."""
+    if not statements or any(isinstance(n, ir.Yield) for n in ir_nodes(tuple(statements[:-1]))):
+        return False
+    last = statements[-1]
+    if isinstance(last, ir.ForTokens):
+        return last.place in slots and _is_flat(last.body, slots)
+    return isinstance(last, ir.Yield)

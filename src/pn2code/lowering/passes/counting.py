@@ -11,24 +11,27 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from pn2code.ir import nodes as ir
+from pn2code.ir.calls import ir_nodes
 from pn2code.ir.types import Rep
 
 FEW = 40
 """Transitions of a net that is compiled soon enough as it is: with code of its own each is somewhat faster."""
 
 
-def with_counts(
-    transitions: Sequence[ir.Transition], places: Sequence[ir.Place]
-) -> tuple[ir.Transition, ...]:
-    """The same with `Transition.counts`, in large nets all of whose places are packed.
-
-    Args:
-        transitions: of the net.
-        places: of the net, by index.
-    """
-    if len(transitions) <= FEW or not all(p.packed for p in places):
-        return tuple(transitions)
-    return tuple(replace(t, counts=counts(t, places)) for t in transitions)
+def with_counts(net: ir.NetIR) -> ir.NetIR:
+    """The net with `Transition.counts` and `Place.is_only_counted`: for explorers, in large nets whose places are all
+    packed."""
+    is_table = net.has_successors and len(net.transitions) > FEW
+    if not is_table or not all(p.packed for p in net.places):
+        return net
+    transitions = tuple(replace(t, counts=counts(t, net.places)) for t in net.transitions)
+    bodies: list[object] = [f.body for f in net.functions]
+    bodies += [p.body for p in net.predicates]
+    for t in transitions:
+        bodies += [t.enumerate, t.fire, t.thresholds] if t.counts is None else []
+    reached = {getattr(node, "place", None) for body in bodies for node in ir_nodes(body)}
+    places = tuple(replace(p, is_only_counted=p.index not in reached) for p in net.places)
+    return replace(net, transitions=transitions, places=places)
 
 
 def counts(t: ir.Transition, places: Sequence[ir.Place]) -> tuple[ir.Count, ...] | None:

@@ -9,6 +9,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from pn2code.ir import nodes as ir
+from pn2code.ir.nodes import Rep
+
 
 @dataclass(frozen=True, slots=True)
 class Infix:
@@ -284,3 +287,19 @@ SWAPPED = frozenset({"List.rm", "List.rmall", "List.pos", "Ms.cf"})
 """Operations whose ML operands are (value, list) and whose C operands are (list, value)."""
 CONTAINED = {"Ms.<<=": "Ms.>>=", "Ms.<<": "Ms.>>"}
 """Operations that are another one with its operands exchanged."""
+
+
+def op_needs_table(e: ir.Op) -> bool:
+    """Whether the operation looks at the table of a type in C."""
+    if e.name == "=" and e.arguments[0].type.rep is Rep.REF:
+        return False
+    form = OPS.get(CONTAINED.get(e.name, e.name))
+    return form is None or isinstance(form, Compared) or (isinstance(form, Call) and form.table)
+
+
+def op_needs_context(e: ir.Op) -> bool:
+    """Whether the operation takes the context in C."""
+    if e.name == "Colset.all":
+        return True
+    form = OPS.get(CONTAINED.get(e.name, e.name))
+    return isinstance(form, Call) and form.context
