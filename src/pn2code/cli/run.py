@@ -105,6 +105,8 @@ def run(
     from pn2code.run.progress import Progress
     from pn2code.verdict.input_files import tokens
 
+    if speed != 1.0 and not realtime:
+        raise typer.BadParameter("it has a meaning only with `--realtime`", param_hint="--speed")
     d = Diagnostics()
     console = Console(highlight=False)
     options = RunOptions(

@@ -80,7 +80,11 @@ class Evaluator:
         self._depth += 1
         try:
             if self._depth > 20 * MAX_DEPTH:
-                raise UnsupportedError("this is nested too deeply for a robot script", e.span)
+                raise UnsupportedError(
+                    "a function that calls itself so often cannot be a part of a robot script, which has no recursion "
+                    "(let the supervisor compute the value, and send it)",
+                    e.span,
+                )
             return self._evaluate(e, env)
         finally:
             self._depth -= 1

@@ -20,7 +20,7 @@ from collections.abc import Sequence
 from pn2code.cell.codes import CELL_VALUE
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Owner, OwnerKind, Partition
-from pn2code.diagnostics import Diagnostics
+from pn2code.diagnostics import Diagnostics, Note
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot_scripts.data import Data
 from pn2code.robot_scripts.ir import (
@@ -91,7 +91,20 @@ def _unasked(
                 f"no robot or device asks sensor `{sensor.name}`: none of them leaves variable "
                 f"`{sensor.variable}` open",
                 sensor.origin,
-                hint=did_you_mean(sensor.variable, names - {sensor.variable}),
+                notes=[
+                    Note(
+                        f"transition `{t.name}` has a value for it, by its guard or an arc",
+                        t.origin,
+                    )
+                    for t in partition.net.transitions
+                    if any(v.name == sensor.variable for v in t.variables)
+                ],
+                hint=did_you_mean(
+                    sensor.variable,
+                    names - {sensor.variable},
+                    "a sensor is asked where nothing in the net gives its variable a value: let the transition leave "
+                    "it open, and decide in the guards of those that follow",
+                ),
             )
 
 
