@@ -217,3 +217,46 @@ def test_lockstep_stops_for_what_stops_the_supervisor(name: str, tmp_path: Path)
     assert why in str(last.get("reason")), last
     if name == "late":
         assert last["t"] == pytest.approx(4.0)
+
+
+# B sends again and again; the supervisor takes a message only while it waits for A, and then before all else.
+FLOOD = net(
+    ONE
+    + """    trans HearB priority P_HIGH
+      both Armed : ()
+      in fromB : k
+    place Mute : INT
+    trans Hush
+      in Mute : k
+      out toB : k
+""",
+    {
+        "A": SLOW,
+        "B": """    place On = 1
+    place Never : INT
+    trans Send code action act ()
+      both On : ()
+      out say : 1
+    trans Listen
+      in Never : n
+      in ask : k
+      out say : k
+""",
+    },
+    ACT + "  var n: INT;\n",
+)
+
+
+def test_messages_that_gather_end_the_exploration(tmp_path: Path) -> None:
+    """No limit is set: a channel of few colours in which more and more messages lie needs none."""
+    head, b = FLOOD.split("  page PB\n")
+    text = head.replace("fromB : INT", "fromB : FEW").replace(
+        "fromB port in : INT", "fromB port in : FEW"
+    )
+    text = text.replace("  page Top", "  colset FEW = int with 1..2;\n  page Top", 1)
+    text += "  page PB\n" + b.replace("say port out : INT", "say port out : FEW")
+    found = said(write(tmp_path, text, toml(["A", "B"], TOOL)))
+    assert found["why"] in ("messages", "infinite")
+    assert found["nodes"] < 100_000
+    channels = next(c for c in found["controller"] if c["check"] == "channels")
+    assert channels["answer"] == "no" and "fromB" in channels["says"]

@@ -187,7 +187,10 @@ def look(
         own_wishes = replace(own_wishes, sizes=sizes) if own_wishes is not None else None
     is_cell = opened.config is not None and bool(checks.controller or checks.medium or asked)
     part = replace(limits, deadline=limits.deadline.share(NET_PART)) if is_cell else limits
-    found = explore(opened.flat, opened.storage, part, d, own_wishes or wishes)
+    of_net = own_wishes or wishes
+    if is_cell and of_net.covering and of_net.sizes is not None:
+        of_net = replace(of_net, heaps=_open_channels(opened, of_net.sizes))
+    found = explore(opened.flat, opened.storage, part, d, of_net)
     if found is None:
         return None
     control: Control | None = None
@@ -205,6 +208,13 @@ def look(
         looked = control if checks.controller else None
         seen = medium.look(opened, found, limits, wishes, d, looked)
     return Looked(found, control, more, seen)
+
+
+def _open_channels(opened: OpenNet, sizes: Sizes) -> frozenset[int]:
+    """The channels in which the structure of the net bounds no messages: a file holds one."""
+    partition = properties.divided(opened, Diagnostics())
+    channels = () if partition is None else (c.place for c in partition.channels)
+    return frozenset(channels) - set(sizes.bounds or ())
 
 
 def conclude(

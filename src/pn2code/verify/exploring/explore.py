@@ -50,6 +50,9 @@ _TABLES = {
     "--dependency": "dependencies",
     "--queries": "questions",
 }
+HEAPED = "messages"
+"""Why an exploration has ended: a place of `ExploreOptions.heaps` holds more than `MOST_HEAPED` tokens."""
+MOST_HEAPED = 64
 INFINITE = "infinite"
 """Why an exploration has ended: a covering run was found, so there is no end of markings."""
 _LIMITS = (*REACHED, INFINITE)
@@ -88,6 +91,7 @@ class ExploreOptions:
         sizes: what the places of the compiled net hold at first; None: what their structure and initial marking say.
         generated: what an exploration of the same net with the same predicates has generated; gets what this one has.
         quick: rather compile quickly than explore quickly.
+        heaps: places that need not be explored with more than `MOST_HEAPED` tokens: what is wrong has been seen then.
         covering: look for a run that shows that a place grows without bound, and end when there is one.
         pace: seconds between two tellings of progress.
         progress, interrupted: how the outside hears and says that it has been enough.
@@ -107,6 +111,7 @@ class ExploreOptions:
     sizes: Sizes | None = None
     generated: Generated | None = None
     quick: bool = False
+    heaps: frozenset[int] = frozenset()
     covering: bool = False
     pace: float = 0.5
     progress: Progress = _nothing
@@ -243,6 +248,12 @@ def _explored(
                 Exploration.of(net, found, compiling), symmetries=chosen.symmetry_names()
             )
         place = net.places[error["place"]] if error["kind"] == "capacity" else None
+        if (
+            place is not None
+            and place.index in wishes.heaps
+            and sizes.held(place.name) >= MOST_HEAPED
+        ):
+            return Exploration.of(net, {**found, "error": None, "why": HEAPED}, compiling)
         larger = sizes.larger(place.name if place else None)
         if larger is None:
             what = f"place `{place.name}`" if place else "one marking's lists and strings"

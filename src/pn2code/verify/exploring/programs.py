@@ -99,6 +99,11 @@ class Sizes:
             bounds={k: b.bound for k, b in bounds.items() if b.bound is not None},
         )
 
+    def held(self, place: str) -> int:
+        """How many tokens of one colour, or (of a place that is not packed) different tokens, it has room for."""
+        width = self.packing.of(place)
+        return (1 << width) - 1 if width > 0 else self.room.get(place, ROOM)
+
     def larger(self, place: str | None) -> Sizes | None:
         """With more for a place, or (None) for lists and strings; None at the end of all sizes."""
         if place is None:
