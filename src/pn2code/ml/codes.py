@@ -201,6 +201,13 @@ DELAY = register(
     "a time inscription does not have the form `@+ delay`",
     "A transition's delay is written `@+ e` with an integer e, or `@++ t` with a time t.",
 )
+DELAY_PARENTHESES = register(
+    "delay-parentheses",
+    "a delay of a transition must be in parentheses",
+    "CPN Tools reads the time inscription of a transition behind a token: 1`1 @+ t + 1 is (1`1 @+ t) + 1, no sum of "
+    "numbers, and it refuses the page (`Error in time region`). The delay is a name, a literal, a call, an operation "
+    "that binds more tightly than `@+`, or in parentheses: `@+(t + 1)`. So it is with the delays of arcs.",
+)
 UNKNOWN_VALUE = register(
     "unknown-value",
     "a value to be replaced is not declared by the net",

@@ -176,7 +176,11 @@ def test_errors_in_guards(text: str, expected: str) -> None:
 
 def test_delays() -> None:
     m = Ml()
-    for text, expected in (("@+5", "5"), ("@+ n * 2", "Int.*(n, 2)"), ("@++time()", "Time.time()")):
+    for text, expected in (
+        ("@+5", "5"),
+        ("@+(n * 2)", "Int.*(n, 2)"),
+        ("@++time()", "Time.time()"),
+    ):
         delay = m.e.delay(source(text, "delay"))
         assert delay is not None and dump_exp(delay) == expected
     assert not m.d.items
@@ -196,6 +200,52 @@ def test_errors_in_delays(text: str, expected: str) -> None:
     m = Ml()
     assert m.e.delay(source(text, "delay")) is None
     assert m.messages() == [expected]
+
+
+@pytest.mark.parametrize(
+    "delay",
+    [
+        "n + 1", "2 * n", "(n) - 1", "~3 + 5", "n div 2", "f (n) + 1", "let val k = 1 in k end + 1", "n pl 1", "n tm 1",
+        "if b then 1 else 2", "case n of 1 => 2 | _ => 3", "raise Empty", "3 : int", "(n) handle _ => 3",
+        "n + 1 before ()", "n rr 1",
+    ],
+)  # fmt: skip
+def test_delays_that_the_engine_cannot_read_behind_a_token(delay: str) -> None:
+    m = delays()
+    assert m.e.delay(source(f"@+ {delay}", "delay")) is None
+    (said,) = m.messages()
+    assert said.startswith("delay-parentheses | ") and said.endswith(f" | {delay}")
+    assert m.d.errors[0].hint == f"write `@+({delay})`"
+    again = delays()
+    assert again.e.delay(source(f"@+({delay})", "delay")) is not None and not again.messages()
+
+
+@pytest.mark.parametrize(
+    "delay",
+    [
+        "abs n", "~n", "~ 3", "!count", "op + (n, 2)", "(op +) (n, 2)", "(fn k => k) 3", "f n", "hd [1 + 2]", "#1 (n, 2)",
+        "let val k = 1 in k end", "(if b then 1 else 2)", "(raise Empty)", "n (* a + b *)", "n before ()", "n hi 1",
+        "n handle Empty => raise Empty", "n r8 1",
+    ],
+)  # fmt: skip
+def test_delays_that_the_engine_reads_behind_a_token(delay: str) -> None:
+    m = delays()
+    assert m.e.delay(source(f"@+ {delay}", "delay")) is not None, m.messages()
+
+
+def delays() -> Ml:
+    """With operators that bind more or less tightly than `@+`, which has 7."""
+    m = Ml()
+    for name, fixity in (
+        ("pl", "infix 6"),
+        ("tm", "infix 7"),
+        ("hi", "infix 8"),
+        ("r8", "infixr 8"),
+        ("rr", "infixr 7"),
+    ):
+        m.ml(f"{fixity} {name}; fun a {name} b = a + b : int;")
+    m.ml("val count = ref 3; fun f x = x + 1")
+    return m
 
 
 def test_priorities() -> None:

@@ -25,6 +25,7 @@ from pn2code.ml.parsing.parser import (
     parse_expression,
     parse_expressions,
 )
+from pn2code.ml.parsing.pasted import is_whole_delay
 from pn2code.ml.typing import type_advice
 from pn2code.ml.typing.context import Context, Draft, conversion, label_notes
 from pn2code.ml.typing.environment import Binding, BrokenEntry, BuiltinEntry, Scope
@@ -435,7 +436,20 @@ class Inscriptions:
         with self._scope(self._variables), self._one_mistake():
             before = self._ctx.errors
             draft = self._expressions.check(exp, from_type(wanted, []), "delay")
-            return self._finish(before, draft.build)
+            built = self._finish(before, draft.build)
+        if built is not None and not is_whole_delay(text, fixities):
+            symbol, start, end = tokens[0].text, tokens[1].start, tokens[-1].end
+            delay = text.text[start:end]
+            self._ctx.error(
+                codes.DELAY_PARENTHESES,
+                "this delay must be in parentheses: CPN Tools refuses the transition (`Error in time region`)",
+                text.span(start, end),
+                hint=f"write `{symbol}({delay})`"
+                if "\n" not in delay and len(delay) <= 60
+                else f"put everything after `{symbol}` in parentheses",
+            )
+            return None
+        return built
 
     def priority(self, text: SourceText, fixities: Fixities) -> int | None:
         """The value."""
