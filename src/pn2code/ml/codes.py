@@ -178,6 +178,13 @@ GUARD_TYPE = register(
     "a guard is not a boolean expression",
     "A guard is a boolean expression or a list of them: `[n > 0, m = 2]`.",
 )
+GUARD_LIST = register(
+    "guard-computed-list",
+    "CPN Tools does not test a guard that computes a list of conditions",
+    "CPN Tools takes a guard apart where it is written as a list of conditions, `[a, b]`. A guard that computes such a "
+    "list, `List.map f l` or `if c then [a] else []`, is accepted and then ignored: the transition occurs whatever "
+    "the conditions are. pn2code tests them.",
+)
 CODE_SEGMENT = register(
     "code-segment",
     "a code segment is not of the form `input (..); output (..); action ..;`",

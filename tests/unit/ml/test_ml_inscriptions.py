@@ -159,6 +159,46 @@ def test_guards(text: str, expected: list[str]) -> None:
 
 
 @pytest.mark.parametrize(
+    "text",
+    [
+        "[[b]]",
+        "[[b], n = 1]",
+        "[[]]",
+        "[nil]",
+        "([[b]])",
+        "[List.map f l]",
+        "[if b then [b] else []]",
+        "[b], [b]",
+    ],
+)
+def test_a_condition_is_no_list(text: str) -> None:
+    m = Ml()
+    m.ml("fun f k = k > 1")
+    assert m.e.guard(source(text, "guard")) is None
+    assert m.messages()[0].startswith("guard-not-boolean | a condition of the guard is a list")
+
+
+@pytest.mark.parametrize(
+    ("text", "is_ignored"),
+    [
+        ("List.map f l", True),
+        ("if b then [b] else []", True),
+        ("hd [[b]]", True),
+        ("([b]) : bool list", True),
+        ("(([b]))", False),
+        ("nil", False),
+        ("([])", False),
+        ("b :: nil", False),
+    ],
+)
+def test_a_whole_guard_may_be_a_list(text: str, is_ignored: bool) -> None:
+    m = Ml()
+    m.ml("fun f k = k > 1")
+    assert m.e.guard(source(text, "guard")) is not None, m.messages()
+    assert [x.code for x in m.d.items] == ["guard-computed-list"] * is_ignored
+
+
+@pytest.mark.parametrize(
     ("text", "expected"),
     [
         ("n", "guard-not-boolean | guard is `int`, but a condition (`bool`) is expected | n"),
