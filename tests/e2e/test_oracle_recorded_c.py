@@ -119,7 +119,7 @@ def test_the_utility_library_is_compiled(fast_workshop: Workshop, tmp_path: Path
         '"q1ab1z2"',
         '"1yz"',
         '"3131.4"',
-        '"Sat Mar 02 01:02:03 202462"',
+        '"Sat Mar  2 01:02:03 202462"',
         '"[1,2,3]"',
         '"a1b2c3"',
     )

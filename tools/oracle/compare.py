@@ -98,6 +98,8 @@ CONFUSED = "InternalError: insert_transvar"
 """Where arcs from one place share variables: nothing is wrong with the net."""
 DECLARES = re.compile(r"InternalError: Illegal \S+Dec")
 """Where an inscription declares something other than a value."""
+REPEATS = "InternalError: fun get_vids"
+"""Where one side of a guard equation has a variable twice."""
 
 
 def differs(note: str) -> Verdict:
@@ -137,6 +139,9 @@ class Seen:
         wrong = [e for e in answer["errors"] if not self._warns(e)]
         if wrong and self.net is not None and all(CONFUSED in e["message"] for e in wrong):
             return ENGINE
+        if wrong and all(e["message"].startswith(REPEATS) for e in wrong):
+            said = "guard-equation-repeats" in self.codes
+            return ENGINE if said else differs("not warned of: " + wrong[0]["message"])
         if wrong and all(DECLARES.match(e["message"]) for e in wrong):
             said = "declaration-in-inscription" in self.codes
             return ENGINE if said else differs("not warned of: " + wrong[0]["message"])

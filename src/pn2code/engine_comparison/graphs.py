@@ -117,7 +117,7 @@ def engine_arcs(net: FlatNet, graph: dict[str, Any]) -> set[Arc]:
 
 
 def _sorted_binding(text: str) -> str:
-    """Bindings by name of variable: `b=2,a={x=1,y=2}` becomes `a={x=1,y=2},b=2`."""
+    """Bindings by name of variable: `b2=3,b=2,a={x=1,y=2}` becomes `a={x=1,y=2},b=2,b2=3`."""
     parts, depth, in_string = [""], 0, False
     for at, sign in enumerate(text):
         in_string ^= sign == '"'
@@ -127,4 +127,4 @@ def _sorted_binding(text: str) -> str:
             parts.append("")
         else:
             parts[-1] += sign
-    return ",".join(sorted(parts))
+    return ",".join(sorted(parts, key=lambda part: part.partition("=")[0]))

@@ -178,6 +178,13 @@ GUARD_TYPE = register(
     "a guard is not a boolean expression",
     "A guard is a boolean expression or a list of them: `[n > 0, m = 2]`.",
 )
+GUARD_LIST = register(
+    "guard-computed-list",
+    "CPN Tools does not test a guard that computes a list of conditions",
+    "CPN Tools takes a guard apart where it is written as a list of conditions, `[a, b]`. A guard that computes such a "
+    "list, `List.map f l` or `if c then [a] else []`, is accepted and then ignored: the transition occurs whatever "
+    "the conditions are. pn2code tests them.",
+)
 CODE_SEGMENT = register(
     "code-segment",
     "a code segment is not of the form `input (..); output (..); action ..;`",
@@ -200,6 +207,13 @@ DELAY = register(
     "delay-form",
     "a time inscription does not have the form `@+ delay`",
     "A transition's delay is written `@+ e` with an integer e, or `@++ t` with a time t.",
+)
+DELAY_PARENTHESES = register(
+    "delay-parentheses",
+    "a delay of a transition must be in parentheses",
+    "CPN Tools reads the time inscription of a transition behind a token: 1`1 @+ t + 1 is (1`1 @+ t) + 1, no sum of "
+    "numbers, and it refuses the page (`Error in time region`). The delay is a name, a literal, a call, an operation "
+    "that binds more tightly than `@+`, or in parentheses: `@+(t + 1)`. So it is with the delays of arcs.",
 )
 UNKNOWN_VALUE = register(
     "unknown-value",

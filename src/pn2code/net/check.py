@@ -19,7 +19,7 @@ from pn2code.ml.core.terms import Exp, Lit
 from pn2code.ml.core.types import INT, Type, list_of, timed_of
 from pn2code.ml.elaborate import ColsetSpec, Elaborator, is_layered
 from pn2code.ml.parsing.parser import declared_names, odd_declaration
-from pn2code.net import initial_effects, reserved_words, space_names
+from pn2code.net import engine_guards, initial_effects, reserved_words, space_names
 from pn2code.net.binding import Parts, Planner
 from pn2code.net.codes import (
     ARC_AS,
@@ -359,7 +359,7 @@ class _Checker:
                 code = CodeSegment(segment.inputs, segment.outputs, segment.action, origin)
         if not complete or guards is None or priority is None or len(self.d.errors) > before:
             return None
-        guards = (*guards, *self.tests)
+        written, guards = guards, (*guards, *self.tests)
         parts = Parts(
             name=t.name,
             origin=t.origin,
@@ -375,6 +375,8 @@ class _Checker:
             return None
         variables, plan = planned
         self.warn_of_groups(t.name, arcs, colsets)
+        if not self.is_pnml:
+            engine_guards.warn(written, self.terms, self.variables, t.name, self.d)
         return TypedTransition(
             id=t.id,
             name=t.name,

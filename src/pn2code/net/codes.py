@@ -185,6 +185,14 @@ LOCAL_NAME = register(
     "transition has as many bindings that do the same, and it refuses a large one (`unbound-variable`). pn2code does "
     "as CPN Tools does.",
 )
+GUARD_REPEATS = register(
+    "guard-equation-repeats",
+    "a guard equation has a variable twice on one side",
+    "CPN Tools looks for a side of a guard equation that binds variables. If neither side is a pattern with variables "
+    "and one of them has a variable twice, as in `[x * x = 4]`, it ends with `InternalError: fun get_vids`, and the "
+    "page cannot be checked. `[x * x = 4 andalso true]`, `[x * x <= 4]` and `[x * x = y]` are accepted. pn2code "
+    "accepts and tests all of them.",
+)
 CODE_OUTPUT_BOUND = register(
     "code-output-bound",
     "an output of a code segment is bound already",

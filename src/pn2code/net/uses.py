@@ -112,13 +112,19 @@ class NetVariables:
     def seen(self, *expressions: Exp | None) -> Uses:
         """Net variables that CPN Tools sees in the expressions of an arc or a guard (None is skipped)."""
         found = self.of(*expressions)
+        for symbol, span in self.sights(*expressions):
+            found.setdefault(symbol, span)
+        return found
+
+    def sights(self, *expressions: Exp | None) -> Iterator[tuple[Symbol, Span]]:
+        """Where CPN Tools sees variables of the net, in order of the text."""
         stack = [(e, _NOTHING) for e in reversed(expressions) if e is not None]
         while stack:
             e, hidden = stack.pop()
             if isinstance(e, Var | Builtin | Con):
                 name = e.span.text.rpartition(".")[2]
                 if name in self.names and name not in hidden:
-                    found.setdefault(self.names[name], e.span)
+                    yield self.names[name], e.span
             elif isinstance(e, Let):
                 own = {s.name for declaration in e.declarations for s in _declared(declaration)}
                 *values, body = children(e)
@@ -126,7 +132,6 @@ class NetVariables:
                 stack += [(value, hidden) for value in reversed(values)]
             else:
                 stack += [(x, hidden) for x in reversed(list(children(e)))]
-        return found
 
     def is_net_variable(self, symbol: Symbol) -> bool:
         """Whether the symbol is a net variable (and not a local or global of that name)."""

@@ -133,19 +133,27 @@ class DeclarationReader:
     def variable(self, node: Node) -> RawVar:
         """A `var`."""
         names = tuple(i.text.strip() for i in node.all("id"))
-        base = self.origin(node, "variable " + ", ".join(f"`{n}`" for n in names), "declaration")
+        base = self.origin(
+            node, " ".join(["variable", ", ".join(f"`{n}`" for n in names)]).strip(), "declaration"
+        )
         type_node = node.child("type")
         type_id = (type_node.child("id") or type_node) if type_node else None
         type_name = type_id.text.strip() if type_id else ""
         first = node.child("id")
         origin = first.source(base).origin if first else base
-        if not names or not type_name:
-            what = "names no variable" if not names else "names no colour set"
+        if not type_name:
             self.d.error(
                 CPN_ELEMENT,
-                f"a variable declaration {what}",
+                "a variable declaration names no colour set",
                 origin,
                 hint="a declaration is written `var x, y : COLSET;`",
+            )
+        elif not names:
+            self.d.warning(
+                CPN_ELEMENT,
+                "a variable declaration names no variable, and has no effect",
+                origin,
+                hint="remove it; a declaration is written `var x, y : COLSET;`",
             )
         for n in names:
             self.check_name(n, origin)

@@ -159,6 +159,46 @@ def test_guards(text: str, expected: list[str]) -> None:
 
 
 @pytest.mark.parametrize(
+    "text",
+    [
+        "[[b]]",
+        "[[b], n = 1]",
+        "[[]]",
+        "[nil]",
+        "([[b]])",
+        "[List.map f l]",
+        "[if b then [b] else []]",
+        "[b], [b]",
+    ],
+)
+def test_a_condition_is_no_list(text: str) -> None:
+    m = Ml()
+    m.ml("fun f k = k > 1")
+    assert m.e.guard(source(text, "guard")) is None
+    assert m.messages()[0].startswith("guard-not-boolean | a condition of the guard is a list")
+
+
+@pytest.mark.parametrize(
+    ("text", "is_ignored"),
+    [
+        ("List.map f l", True),
+        ("if b then [b] else []", True),
+        ("hd [[b]]", True),
+        ("([b]) : bool list", True),
+        ("(([b]))", False),
+        ("nil", False),
+        ("([])", False),
+        ("b :: nil", False),
+    ],
+)
+def test_a_whole_guard_may_be_a_list(text: str, is_ignored: bool) -> None:
+    m = Ml()
+    m.ml("fun f k = k > 1")
+    assert m.e.guard(source(text, "guard")) is not None, m.messages()
+    assert [x.code for x in m.d.items] == ["guard-computed-list"] * is_ignored
+
+
+@pytest.mark.parametrize(
     ("text", "expected"),
     [
         ("n", "guard-not-boolean | guard is `int`, but a condition (`bool`) is expected | n"),
@@ -176,7 +216,11 @@ def test_errors_in_guards(text: str, expected: str) -> None:
 
 def test_delays() -> None:
     m = Ml()
-    for text, expected in (("@+5", "5"), ("@+ n * 2", "Int.*(n, 2)"), ("@++time()", "Time.time()")):
+    for text, expected in (
+        ("@+5", "5"),
+        ("@+(n * 2)", "Int.*(n, 2)"),
+        ("@++time()", "Time.time()"),
+    ):
         delay = m.e.delay(source(text, "delay"))
         assert delay is not None and dump_exp(delay) == expected
     assert not m.d.items
@@ -196,6 +240,52 @@ def test_errors_in_delays(text: str, expected: str) -> None:
     m = Ml()
     assert m.e.delay(source(text, "delay")) is None
     assert m.messages() == [expected]
+
+
+@pytest.mark.parametrize(
+    "delay",
+    [
+        "n + 1", "2 * n", "(n) - 1", "~3 + 5", "n div 2", "f (n) + 1", "let val k = 1 in k end + 1", "n pl 1", "n tm 1",
+        "if b then 1 else 2", "case n of 1 => 2 | _ => 3", "raise Empty", "3 : int", "(n) handle _ => 3",
+        "n + 1 before ()", "n rr 1",
+    ],
+)  # fmt: skip
+def test_delays_that_the_engine_cannot_read_behind_a_token(delay: str) -> None:
+    m = delays()
+    assert m.e.delay(source(f"@+ {delay}", "delay")) is None
+    (said,) = m.messages()
+    assert said.startswith("delay-parentheses | ") and said.endswith(f" | {delay}")
+    assert m.d.errors[0].hint == f"write `@+({delay})`"
+    again = delays()
+    assert again.e.delay(source(f"@+({delay})", "delay")) is not None and not again.messages()
+
+
+@pytest.mark.parametrize(
+    "delay",
+    [
+        "abs n", "~n", "~ 3", "!count", "op + (n, 2)", "(op +) (n, 2)", "(fn k => k) 3", "f n", "hd [1 + 2]", "#1 (n, 2)",
+        "let val k = 1 in k end", "(if b then 1 else 2)", "(raise Empty)", "n (* a + b *)", "n before ()", "n hi 1",
+        "n handle Empty => raise Empty", "n r8 1",
+    ],
+)  # fmt: skip
+def test_delays_that_the_engine_reads_behind_a_token(delay: str) -> None:
+    m = delays()
+    assert m.e.delay(source(f"@+ {delay}", "delay")) is not None, m.messages()
+
+
+def delays() -> Ml:
+    """With operators that bind more or less tightly than `@+`, which has 7."""
+    m = Ml()
+    for name, fixity in (
+        ("pl", "infix 6"),
+        ("tm", "infix 7"),
+        ("hi", "infix 8"),
+        ("r8", "infixr 8"),
+        ("rr", "infixr 7"),
+    ):
+        m.ml(f"{fixity} {name}; fun a {name} b = a + b : int;")
+    m.ml("val count = ref 3; fun f x = x + 1")
+    return m
 
 
 def test_priorities() -> None:

@@ -39,3 +39,12 @@ def test_variables_of_a_binding_are_told_apart() -> None:
     arc = {"from": 1, "to": 1, "transition": "Top'T 1", "binding": binding}
     (found,) = engine_arcs(net, {"nodes": [node], "arcs": [arc]})
     assert found[2] == 'a={x=1,y=2},b=2,c="p,q=3",d=(1,e)'
+
+
+def test_bindings_are_sorted_by_names_of_variables() -> None:
+    """Not by whole texts: `=` comes after the digits."""
+    net = flat("net N\n  standard\n  place A = 1\n")
+    node = {"node": 1, "marking": {"Top'A 1": "1`()"}}
+    arc = {"from": 1, "to": 1, "transition": "Top'T 1", "binding": "bl2=[1],bl'=2,bl=[]"}
+    (found,) = engine_arcs(net, {"nodes": [node], "arcs": [arc]})
+    assert found[2] == "bl=[],bl'=2,bl2=[1]"

@@ -75,18 +75,16 @@ structure Date = struct
     fun weekday_name d = List.nth (weekday_names, weekday_number d)
     fun month_name (DATE d) = List.nth (month_names, #month d - 1)
     fun clock d = digits (hour d) 2 ^ ":" ^ digits (minute d) 2 ^ ":" ^ digits (second d) 2
-    fun toString d =
-        short (weekday_name d) ^ " " ^ short (month_name d) ^ " " ^ digits (day d) 2 ^ " " ^ clock d ^ " "
-        ^ digits (year d) 4
+    fun date_of d =
+        short (weekday_name d) ^ " " ^ short (month_name d) ^ " " ^ StringCvt.padLeft #" " 2 (Int.toString (day d))
+    fun toString d = date_of d ^ " " ^ clock d ^ " " ^ digits (year d) 4
     fun written (c, d as DATE {month = m, ...}) =
         case c of
             #"a" => short (weekday_name d)
           | #"A" => weekday_name d
           | #"b" => short (month_name d)
           | #"B" => month_name d
-          | #"c" =>
-            short (weekday_name d) ^ " " ^ short (month_name d) ^ " " ^ StringCvt.padLeft #" " 2 (Int.toString (day d))
-            ^ " " ^ clock d ^ " " ^ Int.toString (year d)
+          | #"c" => date_of d ^ " " ^ clock d ^ " " ^ Int.toString (year d)
           | #"d" => digits (day d) 2
           | #"H" => digits (hour d) 2
           | #"I" => digits ((hour d + 11) mod 12 + 1) 2

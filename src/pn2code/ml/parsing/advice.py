@@ -7,6 +7,7 @@ the habits that people bring from other languages (`&&`, `!=`, `-1`, 'text'), an
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING
 
@@ -116,6 +117,12 @@ DEFINITIONS: dict[str, str] = {
 
 CLOSE = 0.7
 """How much alike a name and what may have been meant are, at least; see `nearest`."""
+
+
+def behind_slashes(before: str) -> str:
+    """Of an unknown name in a text that may be meant as a comment: what stands before it."""
+    line = re.sub(r'"[^"]*"', "", before.rpartition("\n")[2])
+    return "a comment is written `(* .. *)`; `//` is an operator" if "//" in line else ""
 
 
 def unbound_word(name: str, colsets: Iterable[str]) -> str:

@@ -25,6 +25,7 @@ from pn2code.ml.parsing.parser import (
     parse_expression,
     parse_expressions,
 )
+from pn2code.ml.parsing.pasted import is_whole_delay
 from pn2code.ml.typing import type_advice
 from pn2code.ml.typing.context import Context, Draft, conversion, label_notes
 from pn2code.ml.typing.environment import Binding, BrokenEntry, BuiltinEntry, Scope
@@ -44,6 +45,8 @@ from pn2code.ml.typing.inference import (
 from pn2code.ml.typing.patterns import Bindings, Patterns
 
 T = TypeVar("T")
+
+_ALL_OF_LIST = "write `List.all (fn c => c) (..)`, which is one condition"
 
 _DELAYS = {"Time.@+": "Time.token@+", "Time.@++": "Time.token@++"}
 """How a delay is added to a multi-set, and to one token."""
@@ -367,26 +370,48 @@ class Inscriptions:
         if parsed is None:
             return None
         resolved = [resolve_expression(e, fixities, self._ctx.d) for e in parsed]
+        is_alone = len(resolved) == 1
         if len(resolved) == 1 and isinstance(resolved[0], s.ListExp):
             resolved = list(resolved[0].items)
+            is_alone = False
         with self._scope(self._variables):
             before = self._ctx.errors
             drafts = []
             for e in resolved:
                 if e is not None:
                     with self._one_mistake():
-                        drafts.append(self._conjunct(e))
+                        drafts.append(self._conjunct(e, is_alone))
             if len(drafts) != len(resolved):
                 return None
             return self._finish(before, lambda: tuple(x.build() for x in drafts))
 
-    def _conjunct(self, e: s.Exp) -> Draft:
+    def _conjunct(self, e: s.Exp, is_alone: bool) -> Draft:
+        """A condition; where it is the whole guard, without brackets, also an expression for a list of conditions."""
         draft = self._expressions.infer(e)
         if self._ctx.unifier.attempt(draft.type, I_BOOL):
             return draft
         shown = self._ctx.show(draft.type)
-        if self._ctx.unifier.attempt(draft.type, i_list(I_BOOL)):
+        is_list = self._ctx.unifier.attempt(draft.type, i_list(I_BOOL))
+        if is_list and is_alone:
+            if not _is_written_list(e):
+                self._ctx.d.warning(
+                    codes.GUARD_LIST,
+                    "CPN Tools accepts this guard, but does not test it: it computes a list of conditions",
+                    e.span,
+                    hint=_ALL_OF_LIST,
+                )
             return Draft(I_BOOL, lambda: _all_true(draft.build()))
+        if is_list:
+            self._ctx.error(
+                codes.GUARD_TYPE,
+                "a condition of the guard is a list of conditions, and CPN Tools refuses lists in lists",
+                e.span,
+                label=f"this is `{self._ctx.show(draft.type)}`",
+                hint="write the conditions in one pair of brackets: `[a, b]`"
+                if isinstance(e, s.ListExp)
+                else _ALL_OF_LIST,
+            )
+            return draft
         self._ctx.error(
             codes.GUARD_TYPE,
             f"guard is `{shown}`, but a condition (`bool`) is expected",
@@ -435,7 +460,20 @@ class Inscriptions:
         with self._scope(self._variables), self._one_mistake():
             before = self._ctx.errors
             draft = self._expressions.check(exp, from_type(wanted, []), "delay")
-            return self._finish(before, draft.build)
+            built = self._finish(before, draft.build)
+        if built is not None and not is_whole_delay(text, fixities):
+            symbol, start, end = tokens[0].text, tokens[1].start, tokens[-1].end
+            delay = text.text[start:end]
+            self._ctx.error(
+                codes.DELAY_PARENTHESES,
+                "this delay must be in parentheses: CPN Tools refuses the transition (`Error in time region`)",
+                text.span(start, end),
+                hint=f"write `{symbol}({delay})`"
+                if "\n" not in delay and len(delay) <= 60
+                else f"put everything after `{symbol}` in parentheses",
+            )
+            return None
+        return built
 
     def priority(self, text: SourceText, fixities: Fixities) -> int | None:
         """The value."""
@@ -554,6 +592,13 @@ class Inscriptions:
                 return None
             out.append(entry.symbol)
         return tuple(out)
+
+
+def _is_written_list(e: s.Exp) -> bool:
+    """Whether an expression shows its items: `a :: b :: nil`."""
+    while isinstance(e, s.InfixExp) and e.operator.name == "::":
+        e = e.right
+    return isinstance(e, s.ListExp) or (isinstance(e, s.NameExp) and e.name == "nil")
 
 
 def _all_true(conditions: core.Exp) -> core.Exp:

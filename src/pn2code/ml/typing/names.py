@@ -241,7 +241,8 @@ class Names:
             hint = advice.adjacent_symbols(name, self._ctx.scope.names())
         else:
             hint = (
-                advice.unbound_word(name, self._ctx.colsets)
+                advice.behind_slashes(span.source.text[: span.start])
+                or advice.unbound_word(name, self._ctx.colsets)
                 or self._order_hint(name, span)
                 or suggestion(name, self._ctx.scope.own_names(), self._library_names(name))
             )

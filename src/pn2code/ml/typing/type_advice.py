@@ -177,6 +177,12 @@ def wrong_value(found: Ty, expected: Ty, span_text: str, what: str = "") -> str:
         return "this function takes one argument, not a tuple"
     if kind == "list" and what.startswith("argument of") and name.startswith("["):
         return "brackets make a list; an argument is written in parentheses: `f (x)`"
+    if what == "`else` branch" and wanted != "list" and name == "empty":
+        return "`empty` is a multi-set, so the other branch must be one, too: one token is 1`x"
+    if what == "`else` branch" and wanted == "list" and isinstance(e, ICon) and _is_open(e):
+        return (
+            "the other branch is a multi-set or a list, so this one must be one, too: 1`x, or `[x]`"
+        )
     if what in ("`else` branch", "`then` branch") and wanted != "list":
         return "both branches need the same type; where no token is meant, write `empty`"
     if what.startswith("result of rule"):
@@ -186,6 +192,11 @@ def wrong_value(found: Ty, expected: Ty, span_text: str, what: str = "") -> str:
     if wanted == "list" and kind and isinstance(e, ICon) and base(e.args[0]) == kind:
         return "a multi-set of one token is 1`x, of none `empty`; a list of one element is `[x]`"
     return _general(what, wanted)
+
+
+def _is_open(e: ICon) -> bool:
+    """Whether nothing is known of the items of a list, as of those of `empty`."""
+    return isinstance(prune(e.args[0]), Meta)
 
 
 def _general(what: str, wanted: str) -> str:
