@@ -20,7 +20,7 @@ from pn2code.robot_scripts import codes as codes
 from pn2code.robot_scripts import names as robot_names
 from pn2code.robot_scripts.evaluate import Evaluator
 from pn2code.robot_scripts.ir import Element, place_element
-from pn2code.robot_scripts.machine import Machine, Step, tokens
+from pn2code.robot_scripts.machine import Machine, Step, initial_tokens, unstamped
 from pn2code.robot_scripts.names import Names, identifier
 from pn2code.robot_scripts.values import (
     Shape,
@@ -163,12 +163,13 @@ class Data:
     def _initial(self, place: int) -> bool:
         flat = self.partition.net.places[place]
         assert flat.initial is not None
-        ((_, values),) = tokens(*flat.initial)
+        ((_, values),) = initial_tokens(*flat.initial)
         assert values is not None
+        token, _ = unstamped(values[0])
         try:
             if self.place_names[place]:
-                value = self.pure.evaluate(values[0], {})
-                found = flatten(value, self.shapes[place], values[0].span)
+                value = self.pure.evaluate(token, {})
+                found = flatten(value, self.shapes[place], token.span)
                 for name, leaf in zip(self.place_names[place], found, strict=True):
                     self.names.initialise(name, leaf.exp)
         except UnsupportedError as problem:

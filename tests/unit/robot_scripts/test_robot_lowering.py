@@ -579,6 +579,32 @@ REFUSED = {
         (),
         "error[unsupported-robot-time] place `B` has a timed colour set, but holds data only",
     ),
+    "begins later": (
+        "place A : TUNIT = 1`() @ 5\ntrans T\n  both A : ()",
+        (),
+        "error[unsupported-robot-time] place `A`, where the program begins, has a time stamp in its initial marking",
+    ),
+    "begins with a delay": (
+        "place A : TUNIT = () @+ 5\ntrans T\n  both A : ()",
+        (),
+        "error[unsupported-robot-time] place `A`, where the program begins, has a time stamp in its initial marking",
+    ),
+    "data begin later": (
+        "place A = 1\nplace B : TUNIT = 1`() @ 5\ntrans T\n  both A\n  both B : ()\ntrans U\n  both A",
+        (),
+        "error[unsupported-robot-time] place `B` has a timed colour set, but holds data only",
+    ),
+    "a stamp on an arc": (
+        "place A : TUNIT = 1`()\ntrans T\n  in A : ()\n  out A : 1`() @ 5",
+        (),
+        "error[unsupported-robot-time] transition `T` puts a token with a time stamp (`@`)",
+    ),
+    "a computed stamp on an arc": (
+        "place A : TUNIT = 1`()\nplace B : INT = 1`1\ntrans T\n  in A : ()\n  both B : n\n"
+        "  out A : 1`(if n > 1 then () @ 5 else () @ 6)",
+        (),
+        "error[unsupported-robot-time] transition `T` puts a token with a time stamp (`@`)",
+    ),
     "preemption": (
         "place A : TUNIT = 1`()\ntrans T\n  in A : () @+ 2\n  out A : ()",
         (),
@@ -642,6 +668,15 @@ def test_what_is_no_sequential_program_is_refused_with_its_reason(
     assert cell.ir is None
     assert [m for m in cell.messages if m.startswith("error")] == [expected]
     assert all(x.origin.line for x in cell.d.errors)
+
+
+@pytest.mark.parametrize("marking", ["1`1 @ 0", "1 @ 0", "1`1 @ ~3"])
+def test_a_stamp_that_is_not_after_the_start_changes_nothing(tmp_path: Path, marking: str) -> None:
+    robot = "place A : TINT = {}\ntrans T\n  in A : n\n  out A : n + 1"
+    extra = "colset TINT = int timed;"
+    stamped, plain = (Cell(tmp_path, robot.format(m), extra=extra) for m in (marking, "1`1"))
+    assert stamped.text == plain.text
+    assert "n : int := 1" in plain.text
 
 
 def test_a_primitive_that_gets_no_pose(tmp_path: Path) -> None:
