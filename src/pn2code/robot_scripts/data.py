@@ -22,6 +22,7 @@ from pn2code.robot_scripts.evaluate import Evaluator
 from pn2code.robot_scripts.ir import Element, place_element
 from pn2code.robot_scripts.machine import Machine, Step, initial_tokens, unstamped
 from pn2code.robot_scripts.names import Names, identifier
+from pn2code.robot_scripts.not_a_number import may_be_nan
 from pn2code.robot_scripts.values import (
     Shape,
     UnsupportedError,
@@ -125,6 +126,10 @@ class Data:
             )
             self._hold(p, names)
         return all(self._initial(p) for p in (*self.machine.variables, self.machine.start))
+
+    def may_be_nan(self, e: t.Expression) -> bool:
+        """Whether the value of an expression of the script may be NaN."""
+        return may_be_nan(e, self.names)
 
     def _hold(self, place: int, names: list[str]) -> None:
         self.place_names[place] = names

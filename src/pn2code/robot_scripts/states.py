@@ -94,7 +94,10 @@ class States:
                     )
 
     def _exclude(self, a: t.Expression, b: t.Expression) -> bool:
-        return exclusive(a, b, self._data.names.constant_values)
+        return exclusive(a, b, self._data.names.constant_values, self._data.may_be_nan)
+
+    def _covering(self, conditions: list[t.Expression]) -> bool:
+        return covering(conditions, self._data.names.constant_values, self._data.may_be_nan)
 
     def _known(self, s: Situation, channels: set[int]) -> tuple[t.Expression, t.Expression]:
         """What can be said of a transition's conditions when only these messages have come, and what cannot."""
@@ -228,7 +231,7 @@ class States:
                 Line(t.WaitUntil(condition)),
             )
             tree = Then((Region(flat.name, "place", flat.origins[0], front),), tree)
-            if TRUE not in own and not covering(own, self._data.names.constant_values):
+            if TRUE not in own and not self._covering(own):
                 return Branches(((disjunction(own), tree),), self._stuck(place, own))
         return tree
 
@@ -266,7 +269,7 @@ class States:
                 kept.append((condition, tree))
         if otherwise is None and len(kept) > 1:
             conditions = [c for c, _ in kept]
-            if covering(conditions, self._data.names.constant_values):
+            if self._covering(conditions):
                 otherwise = kept.pop()[1]
         if otherwise is None:
             otherwise = self._stuck(place, [c for c, _ in branches])

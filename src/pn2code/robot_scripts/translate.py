@@ -118,7 +118,7 @@ def _assembled(data: Data, trees: dict[int, Tree], left_out: Sequence[LeftOut]) 
     labels = {p: names.unique(identifier(places[p].short).lower()) for p in machine.control}
     clash = {x for x in labels.values() if list(labels.values()).count(x) > 1}
     unique = {p: f"{x}_{i}" if x in clash else x for i, (p, x) in enumerate(labels.items())}
-    whole = structure(machine.start, trees, lambda p: unique[p])
+    whole = structure(machine.start, trees, lambda p: unique[p], data.may_be_nan)
     used, files = _used(whole)
     taken: set[str] = set()
 

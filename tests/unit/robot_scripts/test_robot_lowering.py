@@ -9,6 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from helpers.robots import Cell, replayed
+from helpers.scripts import run
 from pn2code.tdl.interpret import AwaitFile, Fault, Finished
 
 COMMANDS = """
@@ -744,6 +745,63 @@ def test_guards_that_exclude_each_other_are_recognised(
     """
     cell = Cell(tmp_path, robot)
     assert any("robot-choice" in m for m in cell.messages) == warns
+
+
+REALS = """
+    place A = 1
+    place B
+    place W : REAL = 1`({start})
+    trans T guard [{first}] code action drill ()
+      in A
+      both W : w
+      out {then}
+    trans U guard [{second}] code action moveHome ()
+      in A
+      both W : w
+      out B
+"""
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "covers"),
+    [
+        ("w < 3.0", "w >= 3.0", False),
+        ("w <= 3.0", "w > 3.0", False),
+        ("3.0 < w", "w <= 3.0", False),
+        ("w / 2.0 < 3.0", "w / 2.0 >= 3.0", False),
+        ("not (w < 3.0)", "not (w >= 3.0)", True),
+        ("w < 3.0", "not (w < 3.0)", True),
+        ("not (w < 3.0)", "w < 3.0", True),
+        ("Real.==(w, 3.0)", "Real.!=(w, 3.0)", True),
+        ("real (floor w) < 3.0", "real (floor w) >= 3.0", True),
+    ],
+)
+def test_a_comparison_of_reals_and_its_opposite_cover_nothing_if_one_is_no_number(
+    tmp_path: Path, first: str, second: str, covers: bool
+) -> None:
+    cell = Cell(tmp_path, REALS.format(first=first, second=second, then="B", start="1.0"))
+    assert ("A: nothing can happen" not in cell.body) == covers, cell.body
+    warned = any("robot-choice" in m for m in cell.messages)
+    assert warned == (first.startswith("not") and second.startswith("not"))
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "start", "occurred"),
+    [
+        ("w < 3.0", "w >= 3.0", "0.0 / 0.0", None),
+        ("w < 3.0", "w >= 3.0", "5.0", "U"),
+        ("w < 3.0", "not (w < 3.0)", "0.0 / 0.0", "U"),
+        ("not (w < 3.0)", "w < 3.0", "0.0 / 0.0", "T"),
+        ("Real.==(w, 3.0)", "Real.!=(w, 3.0)", "0.0 / 0.0", "U"),
+    ],
+)
+@pytest.mark.parametrize("then", ["A", "B"])
+def test_a_script_tests_what_is_no_number_as_the_net_does(
+    tmp_path: Path, first: str, second: str, start: str, occurred: str | None, then: str
+) -> None:
+    cell = Cell(tmp_path, REALS.format(first=first, second=second, then=then, start=start))
+    marks = [name for name, _ in run(cell.checked(), requests=2).marks]
+    assert marks[:1] == ([f"Top.Robot.{occurred}"] if occurred else [])
 
 
 def test_priority_comes_before_the_order_in_the_file(tmp_path: Path) -> None:
