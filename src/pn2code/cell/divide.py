@@ -59,7 +59,7 @@ def divide(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> Partition
         if name in net.program.globals
     }
     return Partition(
-        net, owners, transition_owner, place_owner, channels, inputs, final, primitives
+        net, owners, transition_owner, place_owner, channels, inputs, final, primitives, config
     )
 
 

@@ -14,7 +14,7 @@ from pn2code.base.frozen import frozen
 from pn2code.net.flat import FlatNet
 
 if TYPE_CHECKING:
-    from pn2code.cell.config import Primitive
+    from pn2code.cell.config import CellConfig, Primitive
 
 
 class OwnerKind(Enum):
@@ -90,6 +90,7 @@ class Partition:
         channels: data before flags, each in the order of cell.toml.
         final_places: a token in any of them means that the supervisor has finished.
         primitives: the functions that are commands of robots, by the number of their symbol.
+        config: the cell; None: the net was not divided by one.
     """
 
     net: FlatNet
@@ -100,3 +101,4 @@ class Partition:
     inputs: tuple[Input, ...]
     final_places: tuple[int, ...]
     primitives: Mapping[int, Primitive] = field(default_factory=dict, compare=False)
+    config: CellConfig | None = field(default=None, compare=False)

@@ -46,3 +46,10 @@ EVIDENCE = register(
     "property is evaluated on it by definition. If the two do not agree, one of them is wrong: this is a bug in "
     "pn2code, and the answer does not count.",
 )
+UNPLAYED = register(
+    "property-unplayed",
+    "a run could not be played again",
+    "Each run that the explorer gives as a reason for its answer is played again by the reference token game. That is "
+    "slower, and evaluates an expression only up to a limit of steps, depth and memory. A run beyond these limits is "
+    "not looked at again: the answer is that of the explorer alone.",
+)

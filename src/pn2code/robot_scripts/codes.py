@@ -21,7 +21,8 @@ UNSUPPORTED_TIME = register(
     "unsupported-robot-time",
     "a robot page uses model time in a way that scripts cannot",
     "A delay on the control token, which represents the position in the program, becomes a `wait`. Other tokens of a "
-    "robot cannot wait: data have no time stamps, nothing is taken before its time (`@+` on an input arc), and a "
+    "robot cannot wait: data have no time stamps, the program begins at the start (no `@` in its initial marking), "
+    "arcs have delays (`@+`) but no stamps (`@`), nothing is taken before its time (`@+` on an input arc), and a "
     "transition with commands has no delay as well, because the commands take their own time: let one transition "
     "carry them out and another one wait.",
 )

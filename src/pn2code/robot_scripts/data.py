@@ -20,8 +20,9 @@ from pn2code.robot_scripts import codes as codes
 from pn2code.robot_scripts import names as robot_names
 from pn2code.robot_scripts.evaluate import Evaluator
 from pn2code.robot_scripts.ir import Element, place_element
-from pn2code.robot_scripts.machine import Machine, Step, tokens
+from pn2code.robot_scripts.machine import Machine, Step, initial_tokens, unstamped
 from pn2code.robot_scripts.names import Names, identifier
+from pn2code.robot_scripts.not_a_number import may_be_nan
 from pn2code.robot_scripts.values import (
     Shape,
     UnsupportedError,
@@ -126,6 +127,10 @@ class Data:
             self._hold(p, names)
         return all(self._initial(p) for p in (*self.machine.variables, self.machine.start))
 
+    def may_be_nan(self, e: t.Expression) -> bool:
+        """Whether the value of an expression of the script may be NaN."""
+        return may_be_nan(e, self.names)
+
     def _hold(self, place: int, names: list[str]) -> None:
         self.place_names[place] = names
         self.place_values[place] = make(self.shapes[place], iter(names))
@@ -163,12 +168,13 @@ class Data:
     def _initial(self, place: int) -> bool:
         flat = self.partition.net.places[place]
         assert flat.initial is not None
-        ((_, values),) = tokens(*flat.initial)
+        ((_, values),) = initial_tokens(*flat.initial)
         assert values is not None
+        token, _ = unstamped(values[0])
         try:
             if self.place_names[place]:
-                value = self.pure.evaluate(values[0], {})
-                found = flatten(value, self.shapes[place], values[0].span)
+                value = self.pure.evaluate(token, {})
+                found = flatten(value, self.shapes[place], token.span)
                 for name, leaf in zip(self.place_names[place], found, strict=True):
                     self.names.initialise(name, leaf.exp)
         except UnsupportedError as problem:

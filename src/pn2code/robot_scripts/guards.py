@@ -2,6 +2,7 @@
 
 k = 1        and  k = 2        exclude each other
 n < 3        and  n >= 3       exclude each other and cover everything
+x < 3.0      and  x >= 3.0     exclude each other: of a real that is no number (NaN) both are false
 """
 
 from __future__ import annotations
@@ -9,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
+from pn2code.robot_scripts.not_a_number import MayBeNan
 from pn2code.robot_scripts.values import FALSE, TRUE
 from pn2code.tdl import tree as t
 from pn2code.tdl.pretty import expression
@@ -18,11 +20,21 @@ Constant = int | float | str | bool
 
 @dataclass(frozen=True, slots=True)
 class Fact:
-    """`subject operator value`; the value is a constant, or the text of another expression."""
+    """`subject operator value`; the value is a constant, or the text of another expression.
+
+    Args:
+        of_nan: whether it also holds if one of the two is NaN; None: neither can be.
+    """
 
     subject: str
     operator: str
     value: Constant | t.Expression
+    of_nan: bool | None = None
+
+    def opposite(self) -> Fact:
+        """What holds exactly when this does not."""
+        of_nan = None if self.of_nan is None else not self.of_nan
+        return Fact(self.subject, _OPPOSITE[self.operator], self.value, of_nan)
 
 
 _MIRROR = {"<": ">", "<=": ">=", ">": "<", ">=": "<=", "=": "=", "<>": "<>"}
@@ -40,21 +52,23 @@ def conjuncts(e: t.Expression) -> list[t.Expression]:
             return [e]
 
 
-def fact(e: t.Expression, constants: Mapping[str, Constant]) -> Fact:
+def fact(e: t.Expression, constants: Mapping[str, Constant], may_be_nan: MayBeNan) -> Fact:
     """What an expression of type bool says. `constants`: values of the script's named constants."""
     match e:
         case t.Unary("not", operand):
-            inner = fact(operand, constants)
-            return Fact(inner.subject, _OPPOSITE[inner.operator], inner.value)
+            return fact(operand, constants, may_be_nan).opposite()
         case t.Binary(operator, left, right) if operator in _MIRROR:
+            of_nan = operator == "<>" if may_be_nan(left) or may_be_nan(right) else None
             a, b = _value(left, constants), _value(right, constants)
             if a is not None and b is None:
-                return Fact(expression(right), _MIRROR[operator], a)
+                return Fact(expression(right), _MIRROR[operator], a, of_nan)
             if b is not None:
-                return Fact(expression(left), operator, b)
+                return Fact(expression(left), operator, b, of_nan)
             x, y = expression(left), expression(right)
             # One order for both `a < b` and `b > a`.
-            return Fact(x, operator, right) if x <= y else Fact(y, _MIRROR[operator], left)
+            if x <= y:
+                return Fact(x, operator, right, of_nan)
+            return Fact(y, _MIRROR[operator], left, of_nan)
         case _:
             return Fact(expression(e), "=", True)
 
@@ -73,17 +87,22 @@ def _value(e: t.Expression, constants: Mapping[str, Constant]) -> Constant | Non
             return None
 
 
-def exclusive(a: t.Expression, b: t.Expression, constants: Mapping[str, Constant]) -> bool:
+def exclusive(
+    a: t.Expression,
+    b: t.Expression,
+    constants: Mapping[str, Constant],
+    may_be_nan: MayBeNan,
+) -> bool:
     """Whether it is certain that not both hold."""
     if FALSE in (a, b):
         return True
-    first = [fact(e, constants) for e in conjuncts(a)]
-    second = [fact(e, constants) for e in conjuncts(b)]
+    first = [fact(e, constants, may_be_nan) for e in conjuncts(a)]
+    second = [fact(e, constants, may_be_nan) for e in conjuncts(b)]
     return any(_contradict(x, y) for x in first for y in second)
 
 
 def _contradict(x: Fact, y: Fact) -> bool:
-    if x.subject != y.subject:
+    if x.subject != y.subject or (x.of_nan and y.of_nan):
         return False
     if isinstance(x.value, Constant) and isinstance(y.value, Constant):
         return _no_common_value(x, y)
@@ -133,11 +152,15 @@ def _holds(a: float, operator: str, b: float) -> bool:
     }[operator]  # fmt: skip
 
 
-def covering(conditions: Iterable[t.Expression], constants: Mapping[str, Constant]) -> bool:
+def covering(
+    conditions: Iterable[t.Expression],
+    constants: Mapping[str, Constant],
+    may_be_nan: MayBeNan,
+) -> bool:
     """Whether it is certain that one of the conditions holds.
 
-    Only complements count (`n < 3` and `n >= 3`). That a colour set has no other value is not used: what comes
-    from a file is worth a last `else` that stops.
+    Only complements count (`n < 3` and `n >= 3`; of reals, `x < 3.0` and `not (x < 3.0)`). That a colour set has no
+    other value is not used: what comes from a file is worth a last `else` that stops.
     """
     alone = []
     for c in conditions:
@@ -145,13 +168,18 @@ def covering(conditions: Iterable[t.Expression], constants: Mapping[str, Constan
             return True
         parts = conjuncts(c)
         if len(parts) == 1:
-            alone.append(fact(parts[0], constants))
+            alone.append(fact(parts[0], constants, may_be_nan))
     for i, x in enumerate(alone):
-        opposite = Fact(x.subject, _OPPOSITE[x.operator], x.value)
         for y in alone[i + 1 :]:
-            if y == opposite or (
+            if _are_opposite(x, y) or (
                 isinstance(x.value, bool) and isinstance(y.value, bool) and x.subject == y.subject
                 and (x.operator == y.operator) == (x.value != y.value)
             ):  # fmt: skip
                 return True
     return False
+
+
+def _are_opposite(x: Fact, y: Fact) -> bool:
+    """Whether one of the two holds in any case."""
+    same = (x.subject, _OPPOSITE[x.operator], x.value) == (y.subject, y.operator, y.value)
+    return same and (x.of_nan is None or x.of_nan or y.of_nan is True)

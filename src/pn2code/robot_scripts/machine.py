@@ -17,6 +17,7 @@ from pn2code.base.frozen import frozen
 from pn2code.cell.partition import Channel, Owner, Partition
 from pn2code.diagnostics import Diagnostics, Note
 from pn2code.ml.core import terms as core
+from pn2code.ml.core.types import TCon
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatPlace, FlatTransition, Form, Term
 from pn2code.robot_scripts import codes as codes
 
@@ -316,7 +317,7 @@ class _Analyser:
         initial = self.partition.net.places[place].initial
         if initial is None:
             return 0
-        found = list(tokens(*initial))
+        found = list(initial_tokens(*initial))
         if len(found) != 1 or found[0][1] is None:
             return None
         return len(found[0][1])
@@ -337,7 +338,9 @@ class _Analyser:
             self.explain(steps, self.nearly(steps, fixed, exchanged))
             return None
         control = sorted(chosen)
-        if not self.initial_control(control):
+        if not self.begins_at_once(control) or not self.initial_control(control):
+            return None
+        if not self.puts_without_stamps(steps, {*control, *self.channels}):
             return None
         for p in exchanged:
             if p not in chosen and net.places[p].colset.timed:
@@ -452,6 +455,35 @@ class _Analyser:
             ],
         )
 
+    def begins_at_once(self, control: list[int]) -> bool:
+        """Whether the first token is there when the script starts; its stamp would be lost in the script."""
+        for place in (self.partition.net.places[p] for p in control):
+            if place.initial is not None and not _at_once(*place.initial):
+                self.d.error(
+                    codes.UNSUPPORTED_TIME,
+                    f"place `{place.short}`, where the program begins, has a time stamp in its initial marking",
+                    place.origins[0],
+                    notes=[f"the script of {self.owner.phrase} begins at the start"],
+                    hint="leave the time stamp out, and let a first transition that has the delay move the token on",
+                )
+                return False
+        return True
+
+    def puts_without_stamps(self, steps: list[Step], places: set[int]) -> bool:
+        """Whether what is put on these places has no time stamps of its own: scripts know delays only."""
+        for s in steps:
+            for place, value in (x for o in s.outcomes for x in o.puts):
+                if place in places and unstamped(value)[1] is not None:
+                    self.d.error(
+                        codes.UNSUPPORTED_TIME,
+                        f"transition `{s.transition.short}` puts a token with a time stamp (`@`)",
+                        next(a.origin for a in s.transition.arcs if a.place == place),
+                        notes=[Note(f"transition `{s.transition.short}`", s.transition.origin)],
+                        hint="write a delay: `@+`",
+                    )
+                    return False
+        return True
+
     def initial_control(self, control: list[int]) -> bool:
         places = self.partition.net.places
         counts = {p: self.initial_count(p) for p in control}
@@ -472,6 +504,39 @@ class _Analyser:
             hint="put exactly one token on the place where the program begins",
         )
         return False
+
+
+def initial_tokens(
+    e: core.Exp, form: Form
+) -> Iterator[tuple[tuple[tuple[core.Exp, bool], ...], list[core.Exp] | None]]:
+    """As `tokens`, of an initial marking, in which tokens may have time stamps."""
+    return tokens(e, Form.TOKEN if form is Form.TIMED_TOKEN else form)
+
+
+def unstamped(token: core.Exp) -> tuple[core.Exp, core.Exp | None]:
+    """A token without its time stamp, and what says the stamp (`@`)."""
+    match token:
+        case core.Apply(core.Builtin("Time.@"), core.RecordExp(((_, value), (_, stamp)))):
+            return value, stamp
+        case _:
+            is_stamped = isinstance(token.type, TCon) and token.type.name == "timed"
+            return token, token if is_stamped else None
+
+
+def _at_once(e: core.Exp, form: Form) -> bool:
+    """Whether all tokens of an initial marking are available at the start, which is at 0."""
+    if form in (Form.TOKEN, Form.MULTISET):
+        return True
+    for _, found in initial_tokens(e, form):
+        if found is None:
+            return False
+        for token in found:
+            match unstamped(token)[1]:
+                case core.Lit(int() | float() as stamp) if stamp <= 0:
+                    pass
+                case _:
+                    return False
+    return True
 
 
 def _taken(s: Step, place: int) -> int:

@@ -6,7 +6,7 @@ trees[3]                    # Branches(((condition, Then(...)),), otherwise)
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Sequence, Set
 
 from pn2code.diagnostics import Note
 from pn2code.net.flat import FlatTransition
@@ -48,17 +48,30 @@ class States:
         """For each control place the decision what happens there."""
         return {p: self._state(p) for p in self._data.machine.control}
 
+    def awaited_first(self, place: int) -> frozenset[int]:
+        """The channels of the messages that must be there before the script asks anything at a control place."""
+        situations = self._situations(place, self._data.machine.steps_from(place))
+        return self._common(situations) if situations else frozenset()
+
     def _state(self, place: int) -> Tree:
         steps = self._data.machine.steps_from(place)
         if not steps:
             return Halt(over=True)
+        situations = self._situations(place, steps)
+        if situations is None:
+            return Halt()
+        self._warn_of_choices(situations)
+        return self._decide(place, situations)
+
+    def _situations(self, place: int, steps: Sequence[Step]) -> list[Situation] | None:
+        """The transitions of a state; None after a report."""
         try:
             messages = self._data.messages(place, steps)
         except UnsupportedError as problem:
             self._data.report(
                 problem, f"transition `{steps[0].transition.short}`", steps[0].transition.origin
             )
-            return Halt()
+            return None
         situations: list[Situation] = []
         for s in steps:
             try:
@@ -67,10 +80,7 @@ class States:
                 self._data.report(
                     problem, f"transition `{s.transition.short}`", s.transition.origin
                 )
-        if len(situations) != len(steps):
-            return Halt()
-        self._warn_of_choices(situations)
-        return self._decide(place, situations)
+        return situations if len(situations) == len(steps) else None
 
     def _warn_of_choices(self, situations: list[Situation]) -> None:
         for i, a in enumerate(situations):
@@ -94,9 +104,12 @@ class States:
                     )
 
     def _exclude(self, a: t.Expression, b: t.Expression) -> bool:
-        return exclusive(a, b, self._data.names.constant_values)
+        return exclusive(a, b, self._data.names.constant_values, self._data.may_be_nan)
 
-    def _known(self, s: Situation, channels: set[int]) -> tuple[t.Expression, t.Expression]:
+    def _covering(self, conditions: list[t.Expression]) -> bool:
+        return covering(conditions, self._data.names.constant_values, self._data.may_be_nan)
+
+    def _known(self, s: Situation, channels: Set[int]) -> tuple[t.Expression, t.Expression]:
         """What can be said of a transition's conditions when only these messages have come, and what cannot."""
         others = {n for c in s.channels if c not in channels for n in self._data.message_names[c]}
         early = [c for c in s.remote if not all_names([c]) & others]
@@ -105,17 +118,10 @@ class States:
 
     def _decide(self, place: int, situations: list[Situation]) -> Tree:
         """The tree of a state, by what its transitions wait for (docs/tdl.md, "Translation")."""
-        if len(situations) == 1 or len({frozenset(s.channels) for s in situations}) == 1:
+        if _take_the_same(situations):
             return self._together(place, situations)
-        units = self._units(situations)
-        apart = all(
-            self._exclude(a.own_condition, b.own_condition)
-            for i, u in enumerate(units)
-            for v in units[i + 1 :]
-            for a in u
-            for b in v
-        )
-        if apart:
+        if self._are_apart(situations):
+            units = self._units(situations)
             branches = [
                 (
                     disjunction([s.own_condition for s in u]),
@@ -124,12 +130,8 @@ class States:
                 for u in units
             ]
             return self._chain(place, branches, [u[0].step for u in units])
-        common = set.intersection(*(set(s.channels) for s in situations))
-        if common and all(
-            self._exclude(self._known(a, common)[0], self._known(b, common)[0])
-            for i, a in enumerate(situations)
-            for b in situations[i + 1 :]
-        ):
+        common = self._common(situations)
+        if common:
             return self._by_common(place, situations, common)
         if all(not s.remote for s in situations):
             return self._race(place, situations)
@@ -144,6 +146,29 @@ class States:
             hint="take the message first, then decide in a further place",
         )
         return Halt()
+
+    def _are_apart(self, situations: list[Situation]) -> bool:
+        """Whether the program's own data decide which messages the script waits for."""
+        units = self._units(situations)
+        return all(
+            self._exclude(a.own_condition, b.own_condition)
+            for i, u in enumerate(units)
+            for v in units[i + 1 :]
+            for a in u
+            for b in v
+        )
+
+    def _common(self, situations: list[Situation]) -> frozenset[int]:
+        """The messages that are waited for before anything is asked (`verify` counts on this)."""
+        common = frozenset.intersection(*(frozenset(s.channels) for s in situations))
+        if _take_the_same(situations):
+            return common
+        tells_apart = all(
+            self._exclude(self._known(a, common)[0], self._known(b, common)[0])
+            for i, a in enumerate(situations)
+            for b in situations[i + 1 :]
+        )
+        return common if tells_apart and not self._are_apart(situations) else frozenset()
 
     def _units(self, situations: list[Situation]) -> list[list[Situation]]:
         """Transitions grouped: those that wait for the same messages and are told apart only by them."""
@@ -185,7 +210,7 @@ class States:
         comment = Comment(f"{flat.short}: take a message, then decide")
         return Then((Region(flat.name, "place", flat.origins[0], (comment, *front)),), tree)
 
-    def _by_common(self, place: int, situations: list[Situation], common: set[int]) -> Tree:
+    def _by_common(self, place: int, situations: list[Situation], common: Set[int]) -> Tree:
         """Transitions that a message they all take tells apart: take it, decide, then wait for the rest."""
         branches = []
         for s in situations:
@@ -228,7 +253,7 @@ class States:
                 Line(t.WaitUntil(condition)),
             )
             tree = Then((Region(flat.name, "place", flat.origins[0], front),), tree)
-            if TRUE not in own and not covering(own, self._data.names.constant_values):
+            if TRUE not in own and not self._covering(own):
                 return Branches(((disjunction(own), tree),), self._stuck(place, own))
         return tree
 
@@ -266,7 +291,7 @@ class States:
                 kept.append((condition, tree))
         if otherwise is None and len(kept) > 1:
             conditions = [c for c, _ in kept]
-            if covering(conditions, self._data.names.constant_values):
+            if self._covering(conditions):
                 otherwise = kept.pop()[1]
         if otherwise is None:
             otherwise = self._stuck(place, [c for c, _ in branches])
@@ -332,6 +357,11 @@ class States:
     def _region(self, s: Situation, nodes: list[Node]) -> Region:
         transition = s.step.transition
         return Region(transition.name, "transition", transition.origin, tuple(nodes))
+
+
+def _take_the_same(situations: Sequence[Situation]) -> bool:
+    """Whether all transitions take the same messages."""
+    return len({frozenset(s.channels) for s in situations}) == 1
 
 
 def _without_own(s: Situation) -> Situation:

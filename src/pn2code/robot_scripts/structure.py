@@ -16,6 +16,7 @@ from dataclasses import dataclass, field
 
 from pn2code.base.frozen import frozen
 from pn2code.robot_scripts.ir import Chain, Comment, Line, Node, Region, Repeat
+from pn2code.robot_scripts.not_a_number import MayBeNan
 from pn2code.tdl import tree as t
 
 State = int
@@ -71,7 +72,10 @@ def leaves(tree: Tree) -> Iterator[State]:
 
 
 def structure(
-    start: State, trees: Mapping[State, Tree], label: Callable[[State], str]
+    start: State,
+    trees: Mapping[State, Tree],
+    label: Callable[[State], str],
+    may_be_nan: MayBeNan,
 ) -> tuple[Node, ...]:
     """Structured statements with the same behaviour as the graph, begun at `start`."""
     graph = _Graph(start, trees)
@@ -79,7 +83,7 @@ def structure(
     nodes = first.whole()
     if first.jumped:  # now it is known which labels are needed
         nodes = _Structurer(graph, trees, label, frozenset(first.jumped)).whole()
-    return simplify(nodes)
+    return simplify(nodes, may_be_nan)
 
 
 class _Graph:
@@ -277,25 +281,27 @@ class _Structurer:
 # --- making it pleasant ------------------------------------------------------------------------
 
 
-def simplify(nodes: Iterable[Node]) -> tuple[Node, ...]:
+def simplify(nodes: Iterable[Node], may_be_nan: MayBeNan) -> tuple[Node, ...]:
     """`loop if c then exit ...` -> `exit when`, `while`; empty `else` branches are dropped."""
     out: list[Node] = []
     for node in nodes:
         match node:
             case Region():
-                out.append(Region(node.element, node.kind, node.origin, simplify(node.body)))
+                out.append(
+                    Region(node.element, node.kind, node.origin, simplify(node.body, may_be_nan))
+                )
             case Chain():
-                out.extend(_chain(node))
+                out.extend(_chain(node, may_be_nan))
             case Repeat(condition, body):
-                out.extend(_repeat(condition, simplify(body)))
+                out.extend(_repeat(condition, simplify(body, may_be_nan), may_be_nan))
             case _:
                 out.append(node)
     return tuple(out)
 
 
-def _chain(node: Chain) -> list[Node]:
-    branches = tuple((c, simplify(b)) for c, b in node.branches)
-    otherwise = simplify(node.otherwise or ()) or None
+def _chain(node: Chain, may_be_nan: MayBeNan) -> list[Node]:
+    branches = tuple((c, simplify(b, may_be_nan)) for c, b in node.branches)
+    otherwise = simplify(node.otherwise or (), may_be_nan) or None
     if branches[0][1] == (Line(t.Exit()),):
         leave = Line(t.Exit(branches[0][0]))
         if len(branches) > 1:
@@ -303,26 +309,28 @@ def _chain(node: Chain) -> list[Node]:
         return [leave, *(otherwise or ())]
     if otherwise == (Line(t.Exit()),) and len(branches) == 1:
         condition, body = branches[0]
-        return [Line(t.Exit(negated(condition))), *body]
+        return [Line(t.Exit(negated(condition, may_be_nan))), *body]
     return [Chain(branches, otherwise)]
 
 
-def _repeat(condition: t.Expression | None, body: tuple[Node, ...]) -> list[Node]:
+def _repeat(
+    condition: t.Expression | None, body: tuple[Node, ...], may_be_nan: MayBeNan
+) -> list[Node]:
     lead = [n for n in body if isinstance(n, Comment)]
     if condition is not None or len(lead) == len(body):
         return [Repeat(condition, body)]
     if body[: len(lead)] == tuple(lead):
-        found = _while(body[len(lead) :])
+        found = _while(body[len(lead) :], may_be_nan)
         if found is not None:
             return [*lead, *found]
     return [Repeat(None, body)]
 
 
-def _while(body: tuple[Node, ...]) -> list[Node] | None:
+def _while(body: tuple[Node, ...], may_be_nan: MayBeNan) -> list[Node] | None:
     """A `while` and what stands behind it, when the first thing a loop does is to decide about its end."""
     match body[0]:
         case Line(t.Exit(first)) if first is not None and not _leaves(body[1:]):
-            return [Repeat(negated(first), body[1:])]
+            return [Repeat(negated(first, may_be_nan), body[1:])]
         case Chain(((test, inner), *others), otherwise) if len(body) == 1 and not _leaves(inner):
             # The other branches all leave the loop: they stand behind it.
             behind = [(c, _without_exit(b)) for c, b in others]
@@ -370,12 +378,14 @@ _OPPOSITE: dict[str, t.Operator] = {
 }  # fmt: skip
 
 
-def negated(e: t.Expression) -> t.Expression:
-    """`not e`, as a person would write it (values are never NaN in scripts)."""
+def negated(e: t.Expression, may_be_nan: MayBeNan) -> t.Expression:
+    """`not e`, as a person would write it."""
     match e:
         case t.Unary("not", operand):
             return operand
-        case t.Binary(operator, left, right) if operator in _OPPOSITE:
+        case t.Binary(operator, left, right) if operator in _OPPOSITE and (
+            operator in ("=", "<>") or not (may_be_nan(left) or may_be_nan(right))
+        ):
             return t.Binary(_OPPOSITE[operator], left, right)
         case t.Value(bool() as value):
             return t.Value(not value)

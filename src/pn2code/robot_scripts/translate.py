@@ -32,7 +32,7 @@ from pn2code.robot_scripts.ir import (
     statements,
     transition_element,
 )
-from pn2code.robot_scripts.machine import analyse
+from pn2code.robot_scripts.machine import Machine, analyse
 from pn2code.robot_scripts.names import Names, identifier
 from pn2code.robot_scripts.procedures import extract
 from pn2code.robot_scripts.states import States
@@ -61,6 +61,23 @@ def lower_robots(
                     d.items.append(x)
     _unasked(out, partition, config, d, all_made=len(d.errors) == before)
     return tuple(out) if len(d.errors) == before else None
+
+
+def awaited_first(partition: Partition, machine: Machine, place: int) -> frozenset[int]:
+    """The channels of the messages that a script waits for at a control place before it asks any condition.
+
+    Where they are the same for all transitions, the net says so; else whether their conditions exclude each other
+    decides, as it does for the script (`States`).
+    """
+    taken = [
+        frozenset(p for p, *_ in s.takes if p in machine.channels)
+        for s in machine.steps_from(place)
+    ]
+    common = frozenset.intersection(*taken) if taken else frozenset()
+    if not common or len(set(taken)) == 1 or partition.config is None:
+        return common
+    data = Data(partition, machine, partition.config, Diagnostics())
+    return States(data).awaited_first(place) if data.declare() else frozenset()
 
 
 def _unasked(
@@ -131,7 +148,7 @@ def _assembled(data: Data, trees: dict[int, Tree], left_out: Sequence[LeftOut]) 
     labels = {p: names.unique(identifier(places[p].short).lower()) for p in machine.control}
     clash = {x for x in labels.values() if list(labels.values()).count(x) > 1}
     unique = {p: f"{x}_{i}" if x in clash else x for i, (p, x) in enumerate(labels.items())}
-    whole = structure(machine.start, trees, lambda p: unique[p])
+    whole = structure(machine.start, trees, lambda p: unique[p], data.may_be_nan)
     used, files = _used(whole)
     taken: set[str] = set()
 

@@ -19,6 +19,7 @@ from pn2code.net.flat import FlatNet
 from pn2code.properties import codes
 from pn2code.properties import meaning as m
 from pn2code.properties.split import Split, is_about_bindings
+from pn2code.semantics.game.enabling import GivenUpError
 from pn2code.semantics.game.token_game import GameError
 from pn2code.semantics.values.data import MlException, MlLimit
 from pn2code.trace.script import TraceRefusedError
@@ -300,7 +301,17 @@ def _confirmed(
             )
     except TimeIsOverError:
         return answer
-    except (TraceRefusedError, GameError, OSError, ValueError, MlException, MlLimit) as error:
+    except (GivenUpError, MlLimit) as limit:
+        d.warning(
+            codes.UNPLAYED,
+            f"the run that shows why `{answer.about.name}` is {_CALLED[answer.answer]} could not be played again: "
+            f"{limit}",
+            answer.about.origin,
+            notes=["the token game, which plays it, evaluates an expression only up to a limit"],
+            hint="the answer is that of the explorer, which has no such limit",
+        )
+        return answer
+    except (TraceRefusedError, GameError, OSError, ValueError, MlException) as error:
         problem = str(error)
     if problem is not None:
         d.error(

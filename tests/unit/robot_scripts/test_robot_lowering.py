@@ -9,6 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from helpers.robots import Cell, replayed
+from helpers.scripts import run
 from pn2code.tdl.interpret import AwaitFile, Fault, Finished
 
 COMMANDS = """
@@ -579,6 +580,32 @@ REFUSED = {
         (),
         "error[unsupported-robot-time] place `B` has a timed colour set, but holds data only",
     ),
+    "begins later": (
+        "place A : TUNIT = 1`() @ 5\ntrans T\n  both A : ()",
+        (),
+        "error[unsupported-robot-time] place `A`, where the program begins, has a time stamp in its initial marking",
+    ),
+    "begins with a delay": (
+        "place A : TUNIT = () @+ 5\ntrans T\n  both A : ()",
+        (),
+        "error[unsupported-robot-time] place `A`, where the program begins, has a time stamp in its initial marking",
+    ),
+    "data begin later": (
+        "place A = 1\nplace B : TUNIT = 1`() @ 5\ntrans T\n  both A\n  both B : ()\ntrans U\n  both A",
+        (),
+        "error[unsupported-robot-time] place `B` has a timed colour set, but holds data only",
+    ),
+    "a stamp on an arc": (
+        "place A : TUNIT = 1`()\ntrans T\n  in A : ()\n  out A : 1`() @ 5",
+        (),
+        "error[unsupported-robot-time] transition `T` puts a token with a time stamp (`@`)",
+    ),
+    "a computed stamp on an arc": (
+        "place A : TUNIT = 1`()\nplace B : INT = 1`1\ntrans T\n  in A : ()\n  both B : n\n"
+        "  out A : 1`(if n > 1 then () @ 5 else () @ 6)",
+        (),
+        "error[unsupported-robot-time] transition `T` puts a token with a time stamp (`@`)",
+    ),
     "preemption": (
         "place A : TUNIT = 1`()\ntrans T\n  in A : () @+ 2\n  out A : ()",
         (),
@@ -642,6 +669,15 @@ def test_what_is_no_sequential_program_is_refused_with_its_reason(
     assert cell.ir is None
     assert [m for m in cell.messages if m.startswith("error")] == [expected]
     assert all(x.origin.line for x in cell.d.errors)
+
+
+@pytest.mark.parametrize("marking", ["1`1 @ 0", "1 @ 0", "1`1 @ ~3"])
+def test_a_stamp_that_is_not_after_the_start_changes_nothing(tmp_path: Path, marking: str) -> None:
+    robot = "place A : TINT = {}\ntrans T\n  in A : n\n  out A : n + 1"
+    extra = "colset TINT = int timed;"
+    stamped, plain = (Cell(tmp_path, robot.format(m), extra=extra) for m in (marking, "1`1"))
+    assert stamped.text == plain.text
+    assert "n : int := 1" in plain.text
 
 
 def test_a_primitive_that_gets_no_pose(tmp_path: Path) -> None:
@@ -709,6 +745,63 @@ def test_guards_that_exclude_each_other_are_recognised(
     """
     cell = Cell(tmp_path, robot)
     assert any("robot-choice" in m for m in cell.messages) == warns
+
+
+REALS = """
+    place A = 1
+    place B
+    place W : REAL = 1`({start})
+    trans T guard [{first}] code action drill ()
+      in A
+      both W : w
+      out {then}
+    trans U guard [{second}] code action moveHome ()
+      in A
+      both W : w
+      out B
+"""
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "covers"),
+    [
+        ("w < 3.0", "w >= 3.0", False),
+        ("w <= 3.0", "w > 3.0", False),
+        ("3.0 < w", "w <= 3.0", False),
+        ("w / 2.0 < 3.0", "w / 2.0 >= 3.0", False),
+        ("not (w < 3.0)", "not (w >= 3.0)", True),
+        ("w < 3.0", "not (w < 3.0)", True),
+        ("not (w < 3.0)", "w < 3.0", True),
+        ("Real.==(w, 3.0)", "Real.!=(w, 3.0)", True),
+        ("real (floor w) < 3.0", "real (floor w) >= 3.0", True),
+    ],
+)
+def test_a_comparison_of_reals_and_its_opposite_cover_nothing_if_one_is_no_number(
+    tmp_path: Path, first: str, second: str, covers: bool
+) -> None:
+    cell = Cell(tmp_path, REALS.format(first=first, second=second, then="B", start="1.0"))
+    assert ("A: nothing can happen" not in cell.body) == covers, cell.body
+    warned = any("robot-choice" in m for m in cell.messages)
+    assert warned == (first.startswith("not") and second.startswith("not"))
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "start", "occurred"),
+    [
+        ("w < 3.0", "w >= 3.0", "0.0 / 0.0", None),
+        ("w < 3.0", "w >= 3.0", "5.0", "U"),
+        ("w < 3.0", "not (w < 3.0)", "0.0 / 0.0", "U"),
+        ("not (w < 3.0)", "w < 3.0", "0.0 / 0.0", "T"),
+        ("Real.==(w, 3.0)", "Real.!=(w, 3.0)", "0.0 / 0.0", "U"),
+    ],
+)
+@pytest.mark.parametrize("then", ["A", "B"])
+def test_a_script_tests_what_is_no_number_as_the_net_does(
+    tmp_path: Path, first: str, second: str, start: str, occurred: str | None, then: str
+) -> None:
+    cell = Cell(tmp_path, REALS.format(first=first, second=second, then=then, start=start))
+    marks = [name for name, _ in run(cell.checked(), requests=2).marks]
+    assert marks[:1] == ([f"Top.Robot.{occurred}"] if occurred else [])
 
 
 def test_priority_comes_before_the_order_in_the_file(tmp_path: Path) -> None:

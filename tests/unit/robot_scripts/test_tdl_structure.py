@@ -48,11 +48,11 @@ def ask(i: int) -> t.Expression:
 
 
 def shape(start: int, trees: dict[int, Tree]) -> str:
-    return "\n".join(lines(statements(structure(start, trees, lambda s: f"s{s}"))))
+    return "\n".join(lines(statements(structure(start, trees, lambda s: f"s{s}", lambda _: False))))
 
 
 def gotos(start: int, trees: dict[int, Tree]) -> int:
-    body = statements(structure(start, trees, lambda s: f"s{s}"))
+    body = statements(structure(start, trees, lambda s: f"s{s}", lambda _: False))
     return sum(isinstance(s, t.Goto) for s in walk(body))
 
 
@@ -255,7 +255,7 @@ TURN = Line(
 
 
 def script(start: int, trees: dict[int, Tree], value: int) -> str:
-    body = statements(structure(start, trees, lambda s: f"s{s}"))
+    body = statements(structure(start, trees, lambda s: f"s{s}", lambda _: False))
     variable = t.Variable("feed", t.TypeName(Type.INT), t.Value(value))
     return printed(t.Program("graph", (variable,), (), body))
 
@@ -336,7 +336,7 @@ def test_every_state_that_can_be_reached_is_there_once(trees: dict[int, Tree]) -
             case _:
                 return []
 
-    body = statements(structure(1, trees, lambda s: f"s{s}"))
+    body = statements(structure(1, trees, lambda s: f"s{s}", lambda _: False))
     found = sorted(s.transition for s in walk(body) if isinstance(s, t.Mark))
     assert found == sorted(m for s in reached for m in marks(trees[s]))
 
@@ -355,5 +355,5 @@ def test_simplify_knows_exits(text: str) -> None:
     assert isinstance(loop, t.Loop)
     from pn2code.robot_scripts.ir import Repeat
 
-    (node,) = simplify([Repeat(None, tuple(Line(s) for s in loop.body))])  # type: ignore[arg-type]
+    (node,) = simplify([Repeat(None, tuple(Line(s) for s in loop.body))], lambda _: False)  # type: ignore[arg-type]
     assert isinstance(node, Repeat) and node.condition == t.Unary("not", t.Name("a"))

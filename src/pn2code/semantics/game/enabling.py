@@ -68,6 +68,10 @@ class GameError(Exception):
         return [Note(f"raised by `{_one_line(self.span.text)}`", self.span.origin)]
 
 
+class GivenUpError(GameError):
+    """The token game gives up before it knows: it does not evaluate for longer, or with more memory."""
+
+
 class running:  # noqa: N801 - a context manager reads as a word
     """What CPN ML raises while we do something becomes a GameError that names the element.
 
@@ -98,10 +102,10 @@ class running:  # noqa: N801 - a context manager reads as a word
         if isinstance(raised, MlUnavailable):
             raise GameError(f"{self.doing} cannot go on: {raised}", origin) from None
         if isinstance(raised, MlLimit | RecursionError):
-            raise GameError(f"{self.doing} was given up: {raised}", origin) from None
+            raise GivenUpError(f"{self.doing} was given up: {raised}", origin) from None
         if isinstance(raised, MemoryError):
             why = "it needs more memory than there is"
-            raise GameError(f"{self.doing} was given up: {why}", origin) from None
+            raise GivenUpError(f"{self.doing} was given up: {why}", origin) from None
 
 
 @dataclass(frozen=True, slots=True)

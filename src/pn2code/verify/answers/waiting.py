@@ -18,7 +18,7 @@ from pn2code.emission.output import OutputFile
 from pn2code.ml.core import terms as core
 from pn2code.net.builder import Builder
 from pn2code.net.flat import ArcKind, FlatTransition
-from pn2code.robot_scripts.machine import Machine
+from pn2code.robot_scripts.machine import Machine, Step
 from pn2code.robot_scripts.translate import lower_robots
 from pn2code.semantics.game.enabling import Enabling
 from pn2code.semantics.game.token_game import Game
@@ -83,16 +83,17 @@ class Scripts:
         at = next((p for p in made.control if any(True for _ in marking.places[p])), None)
         if at is None:
             return
-        steps = [s.transition for s in made.steps_from(at)]
+        steps = made.steps_from(at)
         if not steps:
             yield f"{script.phrase} has come to the end of {script.text.path}."
             return
-        if any(_is_enabled(game, t) for t in steps):
+        if any(_is_enabled(game, s.transition) for s in steps):
             return
         awaited: dict[int | None, list[str]] = {}
-        for t in steps:
-            for missing in self._missing(game, t):
-                line, names = _line(script, at, t, [script.files[p] for p in missing])
+        for s in steps:
+            missing = self._missing(game, made, s)
+            if missing:
+                line, names = _line(script, at, s.transition, [script.files[p] for p in missing])
                 awaited.setdefault(line, []).extend(names)
         ways = []
         for line, names in awaited.items():
@@ -107,20 +108,24 @@ class Scripts:
             "there."
         )
 
-    def _missing(self, game: Game, t: FlatTransition) -> Iterator[list[int]]:
-        """The places of the messages that the transition lacks, if it is they alone that hold it back."""
+    def _missing(self, game: Game, program: Machine, step: Step) -> list[int]:
+        """The places of the messages that the transition lacks, if it is they that hold it back."""
         b = Builder(self.partition.net)
 
         def token(place: int, name: str) -> core.Exp:
             return b.var(name, self.partition.net.places[place].colset)
 
-        for arcs, guards in waits(self.partition, t, lambda _: [], b.absent, token):
-            b.transition("waits", arcs, priority=t.priority, guards=guards)
+        for arcs, guards in waits(self.partition, program, step, lambda _: [], b.absent, token):
+            b.transition("waits", arcs, priority=step.transition.priority, guards=guards)
         net = b.net()
         enabling = Enabling(net, game.evaluator)
-        for probe in net.transitions[len(self.partition.net.transitions) :]:
-            if next(enabling.enabled(probe, game.marking), None) is not None:
-                yield [a.place for a in probe.arcs if a.kind is ArcKind.INHIBITOR]
+        return [
+            a.place
+            for probe in net.transitions[len(self.partition.net.transitions) :]
+            if next(enabling.enabled(probe, game.marking), None) is not None
+            for a in probe.arcs
+            if a.kind is ArcKind.INHIBITOR
+        ]
 
 
 def _is_enabled(game: Game, t: FlatTransition) -> bool:

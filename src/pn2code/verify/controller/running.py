@@ -49,7 +49,7 @@ from pn2code.trace.parties import VERIFY
 from pn2code.verify.controller.moments import Moments
 from pn2code.verify.controller.poses import Bad
 from pn2code.verify.controller.refusals import refusing
-from pn2code.verify.controller.stops import MOST_MESSAGES, NoProgramError, machine, waits
+from pn2code.verify.controller.stops import NoProgramError, machine, waits
 from pn2code.verify.controller.unanswered import unanswered
 from pn2code.verify.controller.unsure import Conditions
 from pn2code.verify.exploring import time_reduction
@@ -478,10 +478,8 @@ class _Composer:
         name = self.partition.owners[owner].name
         for step in program.steps:
             t = step.transition
-            if sum(p in program.channels for p, *_ in step.takes) > MOST_MESSAGES:
-                raise NotModelledError(f"`{t.name}` takes more than {MOST_MESSAGES} messages")
             for arcs, guards in waits(
-                self.partition, t, self._is_there, self._is_missing, self._token
+                self.partition, program, step, self._is_there, self._is_missing, self._token
             ):
                 binding = {x.guard for x in t.plan if isinstance(x, BindEquation)}
                 bound = [t.guards[i] for i in binding]
