@@ -14,8 +14,7 @@ from helpers.small_cell import NET, TOML, write
 from pn2code.diagnostics import Diagnostics
 from pn2code.pipeline import generate
 from pn2code.semantics.game.marking import place_to_json
-from pn2code.verdict.input_files import with_inputs
-from pn2code.verdict.opened import OpenNet, read
+from pn2code.verdict.opened import OpenNet, read, with_inputs
 
 pytestmark = pytest.mark.cc
 

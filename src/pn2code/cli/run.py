@@ -97,13 +97,13 @@ def run(
     # PyBullet, SciPy and the like take half a second to load: only this verb needs them.
     from rich.console import Console
 
+    from pn2code.input_files import tokens
     from pn2code.report import summary as summaries
     from pn2code.report.album import Album
     from pn2code.robot.backend import BackendUnavailableError
     from pn2code.run.cell import RunOptions, run_cell
     from pn2code.run.engine import Observer
     from pn2code.run.progress import Progress
-    from pn2code.verdict.input_files import tokens
 
     d = Diagnostics()
     console = Console(highlight=False)

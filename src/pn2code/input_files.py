@@ -1,8 +1,8 @@
 """The net of a cell as a run begins it: places of `[[input]]` hold what their files bring.
 
-    begun = with_inputs(opened, d)
-    begun.flat                       # the places' initial markings are the tokens of the files
-    begun.given[0].says              # "`Pieces` begins with 1`2, from `pieces.txt`"
+    begun = begin(net, config, d)
+    begun.net                        # the places' initial markings are the tokens of the files
+    begun.given[0].says              # "`Pieces` begins with the token of `pieces.txt`: 2"
 
 A file is read as the supervisor reads it when it starts (`channels.inputs`), and its token is checked as the supervisor
 checks it. A file that is not there yet may be made by another program before the run: then nothing is known of it.
@@ -32,7 +32,6 @@ from pn2code.semantics.game.enabling import running
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.colour_json import from_json
 from pn2code.semantics.values.colours import NotFinite
-from pn2code.verdict.opened import Given, OpenNet
 
 _SHOWN = 200
 """Characters of a token in a sentence."""
@@ -55,16 +54,45 @@ class Token:
     text: str
 
 
-def with_inputs(opened: OpenNet, d: Diagnostics) -> OpenNet:
+@frozen
+class Given:
+    """The marking that a file gives a place at the start of a run.
+
+    Args:
+        place, name: index and name of the place.
+        marking: in the form of traces, as JSON.
+        says: a clause for people, with the file and the token.
+    """
+
+    place: int
+    name: str
+    marking: str
+    says: str
+
+
+@frozen
+class Begun:
+    """A net as a run of its cell begins it.
+
+    Args:
+        net: with the tokens of the files as initial markings.
+        given: these.
+    """
+
+    net: FlatNet
+    given: tuple[Given, ...] = ()
+
+
+def begin(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> Begun:
     """The net as a run of its cell begins it; the same net where there are no input files.
 
     Args:
-        opened: the net.
+        net: the net.
+        config: the cell; None: a net that is one program.
         d: gets an error for each file that the supervisor would refuse, and a warning for each that is not there.
     """
-    config = opened.config
     if config is None or not config.inputs:
-        return opened
+        return Begun(net)
     for entry in config.inputs:
         if not (config.folder / entry.file).is_file():
             d.warning(
@@ -74,16 +102,12 @@ def with_inputs(opened: OpenNet, d: Diagnostics) -> OpenNet:
                 entry.origin,
                 hint="write it first, or correct `file`; the supervisor reads it when it starts",
             )
-    found = tuple(tokens(opened.flat, config, d))
-    places = list(opened.flat.places)
+    found = tuple(tokens(net, config, d))
+    places = list(net.places)
     for token in found:
-        exp = _expression(opened.flat, token.place.colset, token.data, token.text)
+        exp = _expression(net, token.place.colset, token.data, token.text)
         places[token.place.index] = replace(token.place, initial=(exp, Form.TOKEN))
-    return replace(
-        opened,
-        flat=replace(opened.flat, places=tuple(places)),
-        given=tuple(_given(token) for token in found),
-    )
+    return Begun(replace(net, places=tuple(places)), tuple(_given(token) for token in found))
 
 
 def _given(token: Token) -> Given:
