@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import subprocess
 from pathlib import Path
 
@@ -177,3 +178,18 @@ def test_a_token_cannot_end_the_comment_that_names_it(tmp_path: Path) -> None:
     (folder / "name.in").write_text('"a */ b /* \\"c"\n')
     program = made(folder, tmp_path / "out")
     assert dry_run(program, folder).returncode == 0
+
+
+def test_the_arena_has_room_for_what_the_file_needs(tmp_path: Path) -> None:
+    net = STOCK.replace("guard [n > 0]", "guard [n > 99]").replace(
+        "guard [n = 0]", "guard [n < 100]"
+    )
+    net = net.replace("n - 1", "n - length (up n)")
+    net = net.replace("  var k", "  fun up n = if n = 0 then [] else n :: up (n - 1);\n  var k")
+    folder = cell(tmp_path / "cell", "90000\n", net)
+    done = pn2code("verify", folder, "--no-medium", "--json")
+    (check,) = (c for c in json.loads(done.stdout)["controller"] if c["check"] == "memory")
+    assert check["answer"] == "yes" and 2 * check["value"] > 1 << 22, check
+    assert check["assumes"] == ["`Pieces` begins with the token of `s.in`: 90000"]
+    ran = dry_run(made(folder, tmp_path / "out"), folder)
+    assert ran.returncode == 0, ran.stderr

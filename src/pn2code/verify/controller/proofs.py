@@ -24,14 +24,13 @@ from pn2code.toolchain.build import TOOL_MISSING
 from pn2code.verify.answers.reasons import clause
 from pn2code.verify.codes import BEYOND_ROOM, CONTROL_FAILED, CONTROL_OPEN
 from pn2code.verify.controller import arena, control, control_types
-from pn2code.verify.controller.control_types import Check, Control, Plan
+from pn2code.verify.controller.control_types import MOST_STATES, Check, Control, Plan
 from pn2code.verify.controller.poses import Arms, Poses
 from pn2code.verify.controller.premises import NOTHING_GIVEN, Premises
 from pn2code.verify.exploring import place_capacity as rooms
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits, cores
 
-MOST_STATES = 3_000_000
 MOST_SECONDS = 60.0
 """A supervisor of a larger space is generated with a warning; `verify` takes as long as it takes."""
 _WIDTH = 136
@@ -131,7 +130,7 @@ def prove(
     rooms.refuse_large(net, found, d)
     if d.has_errors:
         return None
-    return Proofs(found, tuple(_verdicts(looked)), looked, None if given else arena.size(space))
+    return Proofs(found, tuple(_verdicts(looked)), looked, arena.size(space))
 
 
 def _given(partition: Partition, storage: Mapping[str, str]) -> tuple[str, ...]:
