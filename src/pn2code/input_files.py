@@ -20,7 +20,7 @@ from pn2code.base.os_reason import os_reason
 from pn2code.cell.codes import CELL_FILE, CELL_MISSING, CELL_VALUE
 from pn2code.cell.config import CellConfig, InputConfig
 from pn2code.cell.divide import PlaceFinder
-from pn2code.cell.scalars import lines_of, scalars_of
+from pn2code.cell.scalars import Scalar, ScalarKind, lines_of, scalars_of
 from pn2code.channels import inputs
 from pn2code.channels.scalars import ScalarValue
 from pn2code.diagnostics import Diagnostics, Note, Origin, SourceText, Span
@@ -173,9 +173,33 @@ def _token(
         read.what,
         Origin(str(path), read.line, read.column),
         notes=[Note(f"the marking of `{entry.place}` comes from this file", entry.origin)],
-        hint=f"write one token of colour set `{colset.name}`",
+        hint=f"write one token of colour set `{colset.name}`{_form(colset)}",
     )
     return None
+
+
+def _form(c: Colset) -> str:
+    """How a token is written: how many lines there are, with an example that has them."""
+    lines = [" ".join(map(_example, line)) for line in lines_of(c)]
+    if sum(map(len, lines)) > _SHOWN:
+        return f" in {len(lines)} lines (docs/cell.md)" if len(lines) > 1 else " in one line"
+    if len(lines) == 1:
+        return f" in one line, for example `{lines[0]}`"
+    return f" in {len(lines)} lines, for example {', then '.join(f'`{x}`' for x in lines)}"
+
+
+def _example(scalar: Scalar) -> str:
+    match scalar.kind:
+        case ScalarKind.STRING:
+            return '"text"'
+        case ScalarKind.ENUM if scalar.names:
+            return scalar.names[0]
+        case ScalarKind.INT | ScalarKind.INDEX | ScalarKind.REAL:
+            number = 1 if scalar.low is None else max(scalar.low, 1)
+            number = number if scalar.high is None else min(scalar.high, number)
+            return str(float(number) if scalar.kind is ScalarKind.REAL else int(number))
+        case _:
+            return "1"
 
 
 def _data(c: Colset, values: Iterator[ScalarValue]) -> Any:
