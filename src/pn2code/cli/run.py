@@ -149,6 +149,8 @@ def run(
         stop(d, form)
     print_but_known(d, cell, form)
     console.print(summaries.page(result.summary))
+    if album.is_empty:
+        console.print("No pictures of the cell were made, because it has no arms.")
     console.print(f"results in {out}/", style="dim")
     if result.record.verdict != "finished":
         raise typer.Exit(Exit.MODEL)
