@@ -17,7 +17,8 @@
  * ownership: yes; all 255 arcs keep to places of their owner and channels in their direction
  * Assumed:
  * a measurement gives the result of `measure` in the net
- * `coordenadas` begins with the tokens of the net, not with those of its file
+ * `coordenadas` begins with the token of `coordenadas.robcad`:
+ * (5,{x=5750.0,y=5898.8,z=2135.05,rx=~105.0,ry=0.0,rz=0.0},{x=6750.0,y=5898.8,z=2135.05,rx=~105.0,ry=0.0,rz=0.0})
  * nobody owes an answer for longer than `reply_timeout_s`, 120 s (tools, waits and delays take at most 3 s; how long moves and
  * measurements take is not known)
  * each possible value of a sensor occurs from time to time

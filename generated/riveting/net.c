@@ -6,7 +6,7 @@
  *
  * The most tokens that each place can hold, under what proves it:
  *
- *   the state space, all 3,345 states of the cell as it runs
+ *   a channel holds one message: a second one stops the supervisor (docs/protocol.md, I3)
  *     Cell.dadosrobo1: 1, Cell.dadosrobo2: 1
  *   sub-invariant flag1_interno + flag1_externo + coordenadas + planned + approached + verified + corrected + ended +
  *   Cell.Supervisor.Approach.order + Cell.Supervisor.Approach.done + Cell.Supervisor.Approach.Move both.there 1 + offset +

@@ -27,6 +27,7 @@ from pn2code.emission import c as emit_c
 from pn2code.emission import supervisor as emit_supervisor
 from pn2code.emission import tdl as emit_tdl
 from pn2code.emission.output import OutputFile
+from pn2code.input_files import Begun, begin
 from pn2code.lowering.nets import net as lower_net
 from pn2code.net import front
 from pn2code.net.flat import FlatNet
@@ -77,8 +78,9 @@ def generate(
 
     `values` replaces `val`s of the net (over those of cell.toml).
 
-    The supervisor of a cell is checked (docs/execution.md), and its places get room for what is proven to come; without
-    `checked` nothing is refused for that.
+    The supervisor of a cell is checked (docs/execution.md) with the tokens of its input files, and its places get room
+    for what is proven to come, with more room where other files may lead to more; without `checked` nothing is refused
+    for that.
 
     `examine` looks at net and cell before anything that takes long; nothing is done after an error of it.
 
@@ -106,7 +108,17 @@ def generate(
     robots = lower_robot.lower_robots(partition, config, d) if config else ()
     if ir is None or robots is None or d.has_errors:
         return None
-    proofs = prove(partition, config, d, checked=checked, arms=_arms(config, d))
+    begun = begin(net, config, d) if checked else Begun(net)
+    if d.has_errors:
+        return None
+    proofs = prove(
+        replace(partition, net=begun.net),
+        config,
+        d,
+        checked=checked,
+        arms=_arms(config, d),
+        tokens={g.place: g.says for g in begun.given},
+    )
     if proofs is None or d.has_errors:
         return None
 

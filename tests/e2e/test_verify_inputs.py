@@ -14,8 +14,7 @@ from helpers.small_cell import NET, TOML, write
 from pn2code.diagnostics import Diagnostics
 from pn2code.pipeline import generate
 from pn2code.semantics.game.marking import place_to_json
-from pn2code.verdict.input_files import with_inputs
-from pn2code.verdict.opened import OpenNet, read
+from pn2code.verdict.opened import OpenNet, read, with_inputs
 
 pytestmark = pytest.mark.cc
 
@@ -179,3 +178,54 @@ def test_values_that_the_place_does_not_take(
     opened(rich(tmp_path, LINES.replace(old, new, 1)), d)
     (error,) = d.errors
     assert error.code == "cell-value" and words in error.message, str(error)
+
+
+@pytest.mark.parametrize(
+    ("colset", "text", "value", "example"),
+    [
+        ("COUNT", "3\n", 3, "in one line, for example `1`"),
+        ("product COUNT * SLOT", "3 1\n", [3, 1], "in one line, for example `1 1`"),
+        (
+            "record n : COUNT * at : SLOT",
+            "3 1\n",
+            {"n": 3, "at": 1},
+            "in one line, for example `1 1`",
+        ),
+        (
+            "product COUNT * PAIR",
+            "3\n1 2.5\n",
+            [3, {"a": 1, "b": 2.5}],
+            "in 2 lines, for example `1`, then `1 1.0`",
+        ),
+    ],
+    ids=["scalar", "product", "record", "parts"],
+)
+def test_how_many_lines_a_token_has(
+    colset: str, text: str, value: object, example: str, tmp_path: Path
+) -> None:
+    """As docs/cell.md says, *Input files*."""
+    head = (
+        "colset COUNT = int; colset SLOT = int with 1..4; colset PAIR = record a : SLOT * b : REAL;"
+    )
+    net = NET.replace("  val MOVE", f"  {head}\n  colset PLAN = {colset};\n  val MOVE", 1)
+    net = net.replace("    place Ready = 1\n", "    place Ready = 1\n    place Plan : PLAN\n", 1)
+    toml = TOML + '[[input]]\nplace = "Plan"\nfile = "plan.txt"\n'
+    folder = write(tmp_path / "cell", net, toml)
+    (folder / "plan.txt").write_text(text)
+    d = Diagnostics()
+    begun = opened(folder, d)
+    assert json.loads(begun.given[0].marking) == [[1, value]], [str(e) for e in d]
+    (folder / "plan.txt").write_text("\n".join(text.split()) + "\n9 9 9\n")
+    opened(folder, d)
+    (error,) = d.errors
+    assert error.hint == f"write one token of colour set `PLAN` {example}"
+
+
+def test_a_list_is_no_token_of_an_input_file(tmp_path: Path) -> None:
+    net = NET.replace("  val MOVE", "  colset PLAN = list INT;\n  val MOVE", 1)
+    net = net.replace("    place Ready = 1\n", "    place Ready = 1\n    place Plan : PLAN\n", 1)
+    toml = TOML + '[[input]]\nplace = "Plan"\nfile = "plan.txt"\n'
+    done = pn2code("check", write(tmp_path / "cell", net, toml))
+    assert done.returncode == 1 and "which has no fixed number of scalars" in " ".join(
+        done.stderr.split()
+    )

@@ -15,12 +15,12 @@ from typer.testing import CliRunner
 
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
+from pn2code.input_files import tokens
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.marking import BindingElement, PlaceMarking, place_of
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.colour_json import from_json
-from pn2code.verdict.input_files import tokens
 
 
 @dataclass(frozen=True)

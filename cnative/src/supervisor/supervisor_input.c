@@ -1,8 +1,9 @@
 /* SPDX-License-Identifier: MIT
  * supervisor_input.c - markings that come from files (cell.toml, `[[input]]`).
  *
- * A file holds one token: one line for each top-level component of its colour set, values separated by blanks. Empty
- * lines and lines that begin with `#` are passed over. Mistakes are reported as file:line:column.
+ * A file holds one token: one line for each top-level component of its colour set, or a single line where all of these
+ * are scalars, values separated by blanks. Empty lines and lines that begin with `#` are passed over. Mistakes are
+ * reported as file:line:column.
  */
 #include "supervisor_impl.h"
 

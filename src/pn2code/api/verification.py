@@ -13,8 +13,7 @@ from pn2code.api.errors import playing, refuse
 from pn2code.base.deadline import Deadline
 from pn2code.diagnostics import Diagnostics
 from pn2code.verdict import properties as own
-from pn2code.verdict.input_files import with_inputs
-from pn2code.verdict.opened import OpenNet
+from pn2code.verdict.opened import OpenNet, with_inputs
 from pn2code.verdict.whole import MOST_COLOURS, Said, conclude, look, question, stem, trace_folder
 from pn2code.verify.answers.properties import Answer, Verdict
 from pn2code.verify.exploring.explore import ExploreOptions

@@ -97,13 +97,13 @@ def run(
     # PyBullet, SciPy and the like take half a second to load: only this verb needs them.
     from rich.console import Console
 
+    from pn2code.input_files import tokens
     from pn2code.report import summary as summaries
     from pn2code.report.album import Album
     from pn2code.robot.backend import BackendUnavailableError
     from pn2code.run.cell import RunOptions, run_cell
     from pn2code.run.engine import Observer
     from pn2code.run.progress import Progress
-    from pn2code.verdict.input_files import tokens
 
     if speed != 1.0 and not realtime:
         raise typer.BadParameter("it has a meaning only with `--realtime`", param_hint="--speed")
@@ -151,6 +151,8 @@ def run(
         stop(d, form)
     print_but_known(d, cell, form)
     console.print(summaries.page(result.summary))
+    if album.is_empty:
+        console.print("No pictures of the cell were made, because it has no arms.")
     console.print(f"results in {out}/", style="dim")
     if result.record.verdict != "finished":
         raise typer.Exit(Exit.MODEL)

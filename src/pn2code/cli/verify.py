@@ -36,8 +36,7 @@ from pn2code.cli.verify_screen import closing, full, screen
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.verdict import channel_model, properties
 from pn2code.verdict.asked import files as asked_files
-from pn2code.verdict.input_files import with_inputs
-from pn2code.verdict.opened import OpenNet
+from pn2code.verdict.opened import OpenNet, with_inputs
 from pn2code.verdict.whole import (
     MOST_COLOURS,
     Checks,

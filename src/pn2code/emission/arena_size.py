@@ -8,7 +8,8 @@ proof is for nets that make no value which refers into the arena (`cnative/inclu
 union, reference or unlimited integer, and no call of a function that makes one. What is left are the moves of one
 firing, which are forgotten before the next, those of the initial marking, which stay for some time, and one arriving
 token. All other nets get what the state space shows, if it is known, but not less than `DEFAULT`: the explored program
-has its places packed otherwise than the deployed one, and files and robots may bring longer values than the net's own.
+has its places packed otherwise than the deployed one, and robots and other files may bring longer values than those
+that were explored.
 """
 
 from __future__ import annotations

@@ -30,7 +30,8 @@ class Album:
         out: folder for `picture-NN-<moment>.png` and `cell.mp4`.
         pictures, video: what to make.
 
-    What looks like an earlier picture is not written again; the record says which moments a picture shows.
+    What looks like an earlier picture is not written again; the record says which moments a picture shows. Of a cell
+    without arms there is nothing to show: `is_empty` says so from its start on.
     """
 
     def __init__(self, out: Path, *, pictures: bool = True, video: bool = False) -> None:
@@ -43,11 +44,15 @@ class Album:
         self._actions: set[str] = set()
         self._number = 0
         self._taken: dict[bytes, str] = {}
+        self.is_empty = False
 
     def begun(self, engine: Engine) -> None:
         """The arms stand at HOME."""
         for old in self._out.glob("picture-*.png"):
             old.unlink()
+        if not engine.cell.robots:
+            self.is_empty = self._pictures or self._video
+            self._pictures = self._video = False
         self._take(engine, "start", "overview")
         if self._video:
             camera = cameras(engine.cell, engine.backend)[0]

@@ -13,6 +13,7 @@ from pn2code.cell.config import CellConfig
 from pn2code.cell.load import load as load_cell
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.input_files import tokens
 from pn2code.robot import codes, scene
 from pn2code.robot.backend import BackendUnavailableError
 from pn2code.robot.choose_backend import open_backend
@@ -25,7 +26,6 @@ from pn2code.run.sensors import load as load_sensors
 from pn2code.tdl import tree as t
 from pn2code.tdl.evaluate import ScriptError, ScriptPose, ScriptValue, evaluate
 from pn2code.tdl.interpret import to_si
-from pn2code.verdict.input_files import tokens
 
 
 def look_ahead(

@@ -4,33 +4,19 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
 from pn2code.cell.locate import locate
 from pn2code.diagnostics import Diagnostics
+from pn2code.input_files import Given, begin
 from pn2code.net import emptiness, front
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.evaluation.constants import compute
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.token_game import Game
-
-
-@frozen
-class Given:
-    """The marking that a file gives a place at the start of a run (`verdict.input_files`).
-
-    Args:
-        place, name: index and name of the place.
-        marking: in the form of traces, as JSON.
-        says: a clause for people, with the file and the token.
-    """
-
-    place: int
-    name: str
-    marking: str
-    says: str
 
 
 @frozen
@@ -86,3 +72,9 @@ def read(
         return None
     emptiness.warn(examined.flat, d)
     return OpenNet(examined.flat, config, examined)
+
+
+def with_inputs(opened: OpenNet, d: Diagnostics) -> OpenNet:
+    """The net as a run of its cell begins it (`input_files`); `d` gets what is wrong with the files."""
+    begun = begin(opened.flat, opened.config, d)
+    return replace(opened, flat=begun.net, given=begun.given)

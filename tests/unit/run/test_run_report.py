@@ -116,8 +116,12 @@ def test_no_two_pictures_are_equal(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     monkeypatch.setattr(album, "picture", lambda _backend, camera, *_: seen[camera.name])
     made = RunRecord("cell", "", "bullet", verdict="finished")
     engine: Any = SimpleNamespace(
-        record=made, cell=None, backend=None, activity="", robots=[SimpleNamespace(tool_action=lambda: "drill")]
-    )  # fmt: skip
+        record=made,
+        cell=SimpleNamespace(robots=("arm",)),
+        backend=None,
+        activity="",
+        robots=[SimpleNamespace(tool_action=lambda: "drill")],
+    )
     pictures = Album(tmp_path)
     pictures.begun(engine)
     pictures.sampled(engine, 0.0, {})
@@ -133,3 +137,18 @@ def test_no_two_pictures_are_equal(tmp_path: Path, monkeypatch: pytest.MonkeyPat
         "picture-03-load.png": ["Load", "end"],
     }
     assert sorted(p.name for p in tmp_path.iterdir()) == sorted(made.pictures)
+
+
+def test_a_cell_without_arms_has_no_pictures(tmp_path: Path) -> None:
+    made = RunRecord("cell", "", "bullet", verdict="finished")
+    engine: Any = SimpleNamespace(
+        record=made, cell=SimpleNamespace(robots=()), backend=None, activity="", robots=[]
+    )
+    pictures = Album(tmp_path, video=True)
+    pictures.begun(engine)
+    pictures.sampled(engine, 0.0, {})
+    pictures.ended(engine)
+    assert pictures.is_empty and made.pictures == {} and not list(tmp_path.iterdir())
+    unwanted = Album(tmp_path, pictures=False)
+    unwanted.begun(engine)
+    assert not unwanted.is_empty, "nobody asked for any"

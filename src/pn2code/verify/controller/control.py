@@ -323,6 +323,6 @@ def not_looked(
         checks.append(capacities_check(partition, declared, rows[len(partition.channels) :], keep))
     seen = closed if closed is not None and can_more(partition) else None
     checks += formats(partition, seen, Plan(), Diagnostics(), why)
-    checks.append(memory(seen, why))
+    checks.append(memory(seen, why, of_cell=False))
     checks += reach(tell(poses, seen, NEVER), partition, seen, None, keep, why)
     return Control((*checks, ownership(partition)), None, why=why)

@@ -8,9 +8,17 @@ from pathlib import Path
 
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics
+from pn2code.emission import arena_size
 from pn2code.verify.controller import arena, messages
 from pn2code.verify.controller.control_answers import unknown
-from pn2code.verify.controller.control_types import MEMORY, MESSAGES, Check, Evidence, Plan
+from pn2code.verify.controller.control_types import (
+    MEMORY,
+    MESSAGES,
+    MOST_STATES,
+    Check,
+    Evidence,
+    Plan,
+)
 from pn2code.verify.controller.running import chunks
 from pn2code.verify.exploring.result import Exploration
 from pn2code.verify.exploring.token_run import token_run
@@ -47,10 +55,18 @@ def own_priorities(partition: Partition) -> Iterator[str]:
     yield "priorities own"
 
 
-def memory(found: Exploration | None, why: str = "") -> Check:
-    """Whether the supervisor's lists and strings have room; its arena is made as large as the state space says."""
-    size = arena.size(found)
-    if found is None or size is None or found.arena is None:
+def memory(found: Exploration | None, why: str = "", *, of_cell: bool = True) -> Check:
+    """Whether the supervisor's lists and strings have room.
+
+    Its arena is made as large as the state space says, if `generate` sees that, and has the usual size otherwise.
+
+    Args:
+        found: the state space.
+        why: why there is none.
+        of_cell: it is that of the cell as it runs, at which `generate` looks; else of the closed net.
+    """
+    size, least = arena.size(found), arena.need(found)
+    if found is None or size is None or least is None or found.arena is None:
         return unknown(MEMORY, {"why": why if found is None else found.why})
     firing, marking = found.arena["firing"], found.arena["marking"]
     held = f"lists and strings take at most {marking:,} bytes in a marking"
@@ -60,6 +76,13 @@ def memory(found: Exploration | None, why: str = "") -> Check:
     if size > arena.MOST:
         return Check(MEMORY, "no", f"{needs}, which is too much", firing)
     says = f"{needs}; the supervisor has room for more than twice that"
+    if size > arena_size.DEFAULT and not (of_cell and found.nodes <= MOST_STATES):
+        says = f"{needs}; the supervisor needs {least:,} bytes for both, and has the usual {arena_size.DEFAULT:,}"
+        blind = "the cell cannot be modelled"
+        if of_cell:
+            blind = f"there are more than the {MOST_STATES:,} states at which it looks"
+        says += f", because `generate` does not know that ({blind})"
+        return Check(MEMORY, "no" if least > arena_size.DEFAULT else "yes", says, firing)
     if firing == marking == 0:
         says = "no list or string needs memory while the supervisor runs"
     return Check(MEMORY, "yes", says, firing)

@@ -61,6 +61,9 @@ STOPPING = (FINITE, BOUNDED, CHANNELS, CAPACITY, MESSAGES, MEMORY, REACH)
 MAX_FIRINGS = 100_000
 """What `./supervisor` permits in one cycle unless it is told another number."""
 
+MOST_STATES = 3_000_000
+"""That `generate` looks at; `verify` looks at as many as its limits say."""
+
 
 @frozen
 class Evidence:

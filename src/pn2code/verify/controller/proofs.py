@@ -24,14 +24,13 @@ from pn2code.toolchain.build import TOOL_MISSING
 from pn2code.verify.answers.reasons import clause
 from pn2code.verify.codes import BEYOND_ROOM, CONTROL_FAILED, CONTROL_OPEN
 from pn2code.verify.controller import arena, control, control_types
-from pn2code.verify.controller.control_types import Check, Control, Plan
+from pn2code.verify.controller.control_types import MOST_STATES, Check, Control, Plan
 from pn2code.verify.controller.poses import Arms, Poses
-from pn2code.verify.controller.premises import Premises
+from pn2code.verify.controller.premises import NOTHING_GIVEN, Premises
 from pn2code.verify.exploring import place_capacity as rooms
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits, cores
 
-MOST_STATES = 3_000_000
 MOST_SECONDS = 60.0
 """A supervisor of a larger space is generated with a warning; `verify` takes as long as it takes."""
 _WIDTH = 136
@@ -63,15 +62,17 @@ def prove(
     *,
     checked: bool = True,
     arms: Arms | None = None,
+    tokens: Mapping[int, str] = NOTHING_GIVEN,
 ) -> Proofs | None:
     """Checks the supervisor of a cell, and finds the bounds of all places; None when an error was reported.
 
     Args:
-        partition: the net and its owners.
+        partition: the net as a run begins it (`input_files`), and its owners.
         config: the cell; None: a net that is one program, which is only warned about.
         d: gets the errors.
         checked: without, nothing is refused and the state space is not explored.
         arms: of its robots; None: nothing is known of them.
+        tokens: by place, a clause that says which token a file gave it.
     """
     net = partition.net
     storage = config.storage if config else {}
@@ -96,7 +97,7 @@ def prove(
         storage=storage,
         order_decides=config.supervisor.order_decides,
         capacities=capacities,
-        premises=Premises.of(partition, config),
+        premises=Premises.of(partition, config, tokens),
         bounds={k: b.bound for k, b in structural.items() if b.bound is not None},
         primitives=config.primitives,
         arms=arms,
@@ -116,7 +117,10 @@ def prove(
         rooms.warn_assumed(net, found, d)
     else:
         other = (
-            f"the file of `{given[0]}` brings a token that the net does not have" if given else ""
+            f"`{given[0]}` has another number of tokens in the net than the one that its file brings, and the "
+            "file is not there"
+            if given
+            else ""
         )
         if not any(
             c.why == "stopped" for c in looked.failed
@@ -126,11 +130,11 @@ def prove(
     rooms.refuse_large(net, found, d)
     if d.has_errors:
         return None
-    return Proofs(found, tuple(_verdicts(looked)), looked, None if given else arena.size(space))
+    return Proofs(found, tuple(_verdicts(looked)), looked, arena.size(space))
 
 
 def _given(partition: Partition, storage: Mapping[str, str]) -> tuple[str, ...]:
-    """Places that do not begin with as many tokens as the net says: a file gives one token."""
+    """Places that do not begin with as many tokens as the net says: a file that is not there yet gives one token."""
     names = [partition.net.places[i.place].name for i in partition.inputs]
     if not names:
         return ()

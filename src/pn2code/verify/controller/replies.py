@@ -1,7 +1,8 @@
 """Whether a robot answers before `reply_timeout_s` is over (I8 of docs/protocol.md), as far as durations are known.
 
 A robot that owes an answer for longer stops the cell. What its tools, waits and delays take is written in cell.toml and
-in the net; how long it moves and measures is not (layouts decide that), nor how long somebody else lets it wait.
+in the net, or computed there from what has few values (`durations`); how long it moves and measures is not known
+(layouts decide that), nor how long somebody else lets it wait.
 
 replies = Replies.of(partition, config)
 replies.late      # "device `press` may need 4 s ...": that the cell ends is no certainty then; "": it is not known
@@ -11,7 +12,7 @@ replies.premise   # what a "yes" rests on otherwise
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 
 from pn2code.base.frozen import frozen
@@ -20,8 +21,10 @@ from pn2code.cell.partition import ChannelKind, Partition
 from pn2code.cell.reach import Reach
 from pn2code.lowering.expressions.values import children
 from pn2code.ml.core import terms as core
+from pn2code.net.dump import text_of
 from pn2code.robot_scripts.machine import Machine
-from pn2code.verify.controller.commands import lasts, seconds
+from pn2code.verify.controller.commands import lasts
+from pn2code.verify.controller.durations import MOST_VALUES, NOTHING, Durations, Known
 from pn2code.verify.controller.stops import NoProgramError, machine
 from pn2code.verify.controller.unanswered import ADVICE, unanswered
 
@@ -30,20 +33,35 @@ _ENDLESS = math.inf
 
 @frozen
 class Time:
-    """Seconds that are known, and whether there are further ones."""
+    """Seconds that are known, and whether there are further ones.
+
+    Args:
+        seconds: known ones.
+        is_open: moves or measurements take further ones.
+        computed: a wait or a delay that takes further ones, which nobody knows; "": there is none.
+    """
 
     seconds: float = 0.0
     is_open: bool = False
+    computed: str = ""
 
     def __add__(self, other: Time) -> Time:
         """One after the other."""
-        return Time(self.seconds + other.seconds, self.is_open or other.is_open)
+        return Time(
+            self.seconds + other.seconds,
+            self.is_open or other.is_open,
+            self.computed or other.computed,
+        )
 
     @staticmethod
     def longest(times: Iterable[Time]) -> Time:
         """Of several, one of which is taken."""
         known = list(times)
-        return Time(max((t.seconds for t in known), default=0.0), any(t.is_open for t in known))
+        return Time(
+            max((t.seconds for t in known), default=0.0),
+            any(t.is_open for t in known),
+            next((t.computed for t in known if t.computed), ""),
+        )
 
 
 OPEN = Time(0.0, True)
@@ -67,12 +85,13 @@ class Replies:
         limit = config.supervisor.reply_timeout_s
         asked = {c.reader for c in partition.channels if c.kind is ChannelKind.FLAG} - {0}
         most = Time()
+        durations = Durations(partition.net, config.storage)
         for owner in sorted(asked):
             try:
                 program = machine(partition, owner)
             except NoProgramError:
                 return Replies()
-            time = _Silence(program, config).longest()
+            time = _Silence(program, config, durations).longest()
             who = partition.owners[owner].phrase
             # An answer takes a little longer than its commands: with as much time as there is, it is late.
             if time.seconds >= limit:
@@ -84,6 +103,12 @@ class Replies:
                     f"{who} may need {needs} for an answer, by its tools, waits and delays alone, and "
                     f"`reply_timeout_s` is {limit:g}: whoever owes an answer for that long stops the cell "
                     f"(make it longer, or {ADVICE})"
+                )
+            if time.computed:
+                return Replies(
+                    f"how long {who} takes for an answer is not known, because {time.computed} is computed, and "
+                    f"whoever owes an answer for longer than `reply_timeout_s`, {limit:g} s, stops the cell "
+                    f"(a colour set of at most {MOST_VALUES:,} values would tell)"
                 )
             most = Time.longest((most, time))
         if not asked:
@@ -102,11 +127,12 @@ class _Silence:
 
     program: Machine
     config: CellConfig
+    durations: Durations
 
     def longest(self) -> Time:
         """From the start, or from one message on, until the next one; unbounded if it may go round meanwhile."""
         net, channels = self.program.net, self.program.channels
-        spent = _Commands(net.program, self.config)
+        spent = _Commands(net.program, self.config, self.durations)
         quiet: list[tuple[int, int, Time]] = []
         begins: dict[int, Time] = {self.program.start: Time()}
         last: list[tuple[int, Time]] = []
@@ -118,7 +144,7 @@ class _Silence:
                 there = self.program.target(outcome)
                 delays = [e for p, e in outcome.delays if p == there]
                 delays += [] if t.delay is None else [t.delay]
-                after = sum((_time(seconds(e)) for e in delays), Time())
+                after = sum((self._delay(e, t.short) for e in delays), Time())
                 if any(p in channels and channels[p].reader == 0 for p, _ in outcome.puts):
                     last.append((here, acts))  # commands, then the message, then the delay
                     begins[there] = Time.longest((begins.get(there, Time()), after))
@@ -138,11 +164,18 @@ class _Silence:
                 return Time(_ENDLESS, True)
         return Time.longest([*at.values(), *(at[p] + acts for p, acts in last if p in at)])
 
+    def _delay(self, e: core.Exp, transition: str) -> Time:
+        found = self.durations.seconds(e)
+        if found is None:
+            return Time(computed=f"the delay of `{transition}`, `{text_of(e)}`,")
+        return Time(max(found, 0.0))
+
 
 class _Commands:
     """The commands that an expression gives."""
 
-    def __init__(self, program: core.Program, config: CellConfig) -> None:
+    def __init__(self, program: core.Program, config: CellConfig, durations: Durations) -> None:
+        self._durations = durations
         self._reach = Reach(program)
         self._primitives: Mapping[int, Primitive] = {
             program.globals[name].uid: p
@@ -153,42 +186,67 @@ class _Commands:
     def of(self, e: core.Exp) -> Time:
         """What its commands take, at most."""
         self._reach.add_locals(e)
-        return self._of(e, frozenset())
+        return self._of(e, frozenset(), NOTHING)
 
-    def _of(self, e: core.Exp, inside: frozenset[int]) -> Time:
+    def _of(self, e: core.Exp, inside: frozenset[int], known: Known) -> Time:
         match e:
             case core.Apply(core.Var(symbol=symbol), argument) if symbol.uid in self._primitives:
-                return self._of(argument, inside) + self._command(symbol.uid, argument)
+                spent = self._of(argument, inside, known)
+                return spent + self._command(symbol, argument, known)
+            case core.Apply(core.Var(symbol=symbol), argument):
+                spent = self._of(argument, inside, known)
+                return spent + self._function(symbol, argument, inside, known)
             case core.Var(symbol=symbol) if symbol.uid in self._primitives:
-                return self._command(symbol.uid, None)
+                return self._command(symbol, None, known)
             case core.Var(symbol=symbol):
-                body = self._reach.body(symbol)
-                if not isinstance(body, core.Lambda) or symbol.uid in inside:
-                    return Time()
-                return self._of(body, inside | {symbol.uid})
+                return self._function(symbol, None, inside, known)
             case core.If(condition, then, otherwise):
-                chosen = Time.longest((self._of(then, inside), self._of(otherwise, inside)))
-                return self._of(condition, inside) + chosen
+                chosen = Time.longest(
+                    (self._of(then, inside, known), self._of(otherwise, inside, known))
+                )
+                return self._of(condition, inside, known) + chosen
             case core.Case(scrutinee, rules):
-                chosen = Time.longest(self._of(r.body, inside) for r in rules)
-                return self._of(scrutinee, inside) + chosen
+                chosen = Time.longest(
+                    self._of(r.body, inside, self._durations.bind(r.pattern, scrutinee, known))
+                    for r in rules
+                )
+                return self._of(scrutinee, inside, known) + chosen
             case core.Let(declarations, body):
-                return self._all(_values(declarations), inside) + self._of(body, inside)
-        return self._all(children(e), inside)
+                spent = Time()
+                for declaration in declarations:
+                    # Functions are counted where they are mentioned.
+                    if isinstance(declaration, core.ValBind):
+                        spent += self._of(declaration.value, inside, known)
+                        known = self._durations.bind(declaration.pattern, declaration.value, known)
+                return spent + self._of(body, inside, known)
+        return sum((self._of(part, inside, known) for part in children(e)), Time())
 
-    def _all(self, parts: Iterable[core.Exp], inside: frozenset[int]) -> Time:
-        return sum((self._of(part, inside) for part in parts), Time())
+    def _function(
+        self,
+        symbol: core.Symbol,
+        argument: core.Exp | None,
+        inside: frozenset[int],
+        known: Known,
+    ) -> Time:
+        """A function that is called; `argument` None: nobody knows with what."""
+        body = self._reach.body(symbol)
+        if not isinstance(body, core.Lambda) or symbol.uid in inside:
+            return Time()
+        around = inside | {symbol.uid}
+        if argument is None:
+            return self._of(body, around, known)
+        return Time.longest(
+            self._of(rule.body, around, self._durations.bind(rule.pattern, argument, known))
+            for rule in body.rules
+        )
 
-    def _command(self, uid: int, argument: core.Exp | None) -> Time:
-        return _time(lasts(self._primitives[uid], argument))
-
-
-def _values(declarations: Iterable[core.Dec]) -> Iterator[core.Exp]:
-    """What is evaluated where it is declared: functions are counted where they are mentioned."""
-    for declaration in declarations:
-        if isinstance(declaration, core.ValBind):
-            yield declaration.value
-
-
-def _time(seconds: float | None) -> Time:
-    return OPEN if seconds is None else Time(seconds)
+    def _command(self, symbol: core.Symbol, argument: core.Exp | None, known: Known) -> Time:
+        primitive = self._primitives[symbol.uid]
+        found = lasts(primitive, argument)
+        if found is None and primitive.command == "wait":
+            if argument is not None:
+                found = self._durations.seconds(argument, known)
+            if found is None:
+                shown = "" if argument is None else f" `{text_of(argument)}`"
+                return Time(computed=f"the time{shown} of `{symbol.name}`")
+        return OPEN if found is None else Time(max(found, 0.0))

@@ -4,7 +4,10 @@
     found[0]            # Room(bound=1, kind="invariant", proof="Waiting + Moving = 1")
 
 The structure of the net comes first (it needs no state space, and holds whatever the input files say), then the
-complete state space of the closed net, unless cell.toml declares the bound. A room without a bound is *assumed*.
+complete state space of the cell, unless cell.toml declares the bound. A room without a bound is *assumed*.
+
+What the state space says of a cell with input files is said of the tokens that these hold now, and the program is for
+any: its places get room for twice as many tokens, and no less than a place of which nothing is known.
 """
 
 from __future__ import annotations
@@ -27,13 +30,21 @@ from pn2code.verify.exploring.covering import Covering, Search
 from pn2code.verify.exploring.result import Exploration
 
 DECLARED = "declared"
+CHANNEL = "channel"
 SPACE = "state space"
+INPUTS = "state space with input files"
 ASSUMED = "assumed"
 _LISTED = 5
 SEARCH_SECONDS = 5.0
 """Of the search for a run that shows that a place grows without bound."""
 MOST_TOKENS = 1 << 20
 """Of a place: for more, no program is generated."""
+MOST_DOUBLED = 1 << 16
+"""Entries of a place: where input files lead to more, there is no room to spare."""
+_ONE_MESSAGE = (
+    "a channel holds one message: a second one stops the supervisor (docs/protocol.md, I3)"
+)
+_ROOM = "other files may lead to more tokens, so there is room for more (the supervisor stops where it is used up)"
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,13 +53,16 @@ class PlaceCapacity:
 
     Args:
         bound: most tokens at a time; None: nothing is proven or declared.
-        kind: "invariant", "sub-invariant", "constant", "never marked", `SPACE`, `DECLARED` or `ASSUMED`.
+        kind: "invariant", "sub-invariant", "constant", "never marked", `CHANNEL`, `SPACE`, `INPUTS`, `DECLARED` or
+            `ASSUMED`.
         proof: for the head of the generated file.
+        seen: of `INPUTS`, most tokens at a time with the input files as they are.
     """
 
     bound: int | None
     kind: str
     proof: str
+    seen: int = 0
 
 
 def rooms(
@@ -63,10 +77,11 @@ def rooms(
         partition: the net and its owners.
         declared: place index -> what cell.toml says.
         structural: what the structure of the net proves.
-        found: the state space of the cell as it runs, if it was explored.
+        found: the state space of the cell as it runs, if it was explored, with the input files as they are.
     """
     net = partition.net
     names = Names(net)
+    channels = {c.place for c in partition.channels}
     counts = found.bounds if found is not None and found.complete else None
     result = []
     for place in net.places:
@@ -81,6 +96,13 @@ def rooms(
             terms = weighted((names.place(p), w) for p, w in sorted(weights.items()))
             text = f"{kind} {terms} {relation} {own.proof.initial}" if weights else kind
             result.append(PlaceCapacity(own.bound, kind, text))
+        elif counts is not None and partition.inputs and place.index in channels:
+            result.append(PlaceCapacity(1, CHANNEL, _ONE_MESSAGE))
+        elif counts is not None and partition.inputs:
+            assert found is not None
+            text = f"the state space of the cell with the input files as they are, all {found.nodes:,} states: {_ROOM}"
+            seen = counts[place.index].upper
+            result.append(PlaceCapacity(None, INPUTS, text, seen))
         elif counts is not None:
             assert found is not None
             text = f"the state space, all {found.nodes:,} states of the cell as it runs"
@@ -99,9 +121,11 @@ def with_rooms(net: ir.NetIR, found: Sequence[PlaceCapacity]) -> ir.NetIR:
     descriptors = {d.name: d for d in net.descriptors}
     places = []
     for place, room in zip(net.places, found, strict=True):
-        capacity = place.capacity
-        if room.bound is not None:
-            few = 0 if place.timed else colours(descriptors, place.table)
+        few = 0 if place.timed else colours(descriptors, place.table)
+        if room.bound is None:
+            most = max(room.seen, min(2 * room.seen, MOST_DOUBLED))
+            capacity = max(place.capacity, min(most, few) if few else most)
+        else:
             capacity = max(min(room.bound, few) if few else room.bound, 1)
         places.append(replace(place, capacity=capacity, bound=room.bound, proof=room.proof))
     return bounded(replace(net, places=tuple(places)))
@@ -115,7 +139,7 @@ def growing(
 ) -> Covering | None:
     """A run that shows that places without a bound grow for ever in the closed net; None: none was come upon."""
     among = {
-        place.index for place, room in zip(net.places, found, strict=True) if room.bound is None
+        place.index for place, room in zip(net.places, found, strict=True) if room.kind == ASSUMED
     }
     if not among:
         return None
@@ -152,7 +176,7 @@ def refuse(
         run: what `growing` has found.
     """
     for place, room in zip(net.places, found, strict=True):
-        if room.bound is None:
+        if room.kind == ASSUMED:
             grows = _grows(net, run, place.index) if run is not None else ""
             if grows:
                 d.error(
@@ -177,10 +201,11 @@ def refuse(
 def refuse_large(net: FlatNet, found: Sequence[PlaceCapacity], d: Diagnostics) -> None:
     """Reports each place that can hold more tokens than a program has arrays for."""
     for place, room in zip(net.places, found, strict=True):
-        if room.bound is not None and room.bound > MOST_TOKENS:
+        most = room.seen if room.bound is None else room.bound
+        if most > MOST_TOKENS:
             d.error(
                 CAPACITY_LARGE,
-                f"place `{place.name}` can hold {room.bound:,} tokens, and a program has room for {MOST_TOKENS:,}",
+                f"place `{place.name}` can hold {most:,} tokens, and a program has room for {MOST_TOKENS:,}",
                 place.origins[0],
                 notes=[f"what proves it: {room.proof}"],
                 hint="limit the place in the net, or declare in cell.toml what it really holds: "
@@ -200,7 +225,7 @@ def warn_assumed(
             place.origins[0],
             hint="look at the arcs of this place: is one drawn the wrong way round, or missing?",
         )
-    assumed = [p.name for p, room in zip(net.places, found, strict=True) if room.bound is None]
+    assumed = [p.name for p, room in zip(net.places, found, strict=True) if room.kind == ASSUMED]
     if assumed:
         some = ", ".join(f"`{name}`" for name in assumed[:_LISTED])
         more = ", ..." if len(assumed) > _LISTED else ""

@@ -1,8 +1,8 @@
 """The net of a cell as a run begins it: places of `[[input]]` hold what their files bring.
 
-    begun = with_inputs(opened, d)
-    begun.flat                       # the places' initial markings are the tokens of the files
-    begun.given[0].says              # "`Pieces` begins with 1`2, from `pieces.txt`"
+    begun = begin(net, config, d)
+    begun.net                        # the places' initial markings are the tokens of the files
+    begun.given[0].says              # "`Pieces` begins with the token of `pieces.txt`: 2"
 
 A file is read as the supervisor reads it when it starts (`channels.inputs`), and its token is checked as the supervisor
 checks it. A file that is not there yet may be made by another program before the run: then nothing is known of it.
@@ -20,7 +20,7 @@ from pn2code.base.os_reason import os_reason
 from pn2code.cell.codes import CELL_FILE, CELL_MISSING, CELL_VALUE
 from pn2code.cell.config import CellConfig, InputConfig
 from pn2code.cell.divide import PlaceFinder
-from pn2code.cell.scalars import lines_of, scalars_of
+from pn2code.cell.scalars import Scalar, ScalarKind, lines_of, scalars_of
 from pn2code.channels import inputs
 from pn2code.channels.scalars import ScalarValue
 from pn2code.diagnostics import Diagnostics, Note, Origin, SourceText, Span
@@ -32,7 +32,6 @@ from pn2code.semantics.game.enabling import running
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.colour_json import from_json
 from pn2code.semantics.values.colours import NotFinite
-from pn2code.verdict.opened import Given, OpenNet
 
 _SHOWN = 200
 """Characters of a token in a sentence."""
@@ -55,16 +54,45 @@ class Token:
     text: str
 
 
-def with_inputs(opened: OpenNet, d: Diagnostics) -> OpenNet:
+@frozen
+class Given:
+    """The marking that a file gives a place at the start of a run.
+
+    Args:
+        place, name: index and name of the place.
+        marking: in the form of traces, as JSON.
+        says: a clause for people, with the file and the token.
+    """
+
+    place: int
+    name: str
+    marking: str
+    says: str
+
+
+@frozen
+class Begun:
+    """A net as a run of its cell begins it.
+
+    Args:
+        net: with the tokens of the files as initial markings.
+        given: these.
+    """
+
+    net: FlatNet
+    given: tuple[Given, ...] = ()
+
+
+def begin(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> Begun:
     """The net as a run of its cell begins it; the same net where there are no input files.
 
     Args:
-        opened: the net.
+        net: the net.
+        config: the cell; None: a net that is one program.
         d: gets an error for each file that the supervisor would refuse, and a warning for each that is not there.
     """
-    config = opened.config
     if config is None or not config.inputs:
-        return opened
+        return Begun(net)
     for entry in config.inputs:
         if not (config.folder / entry.file).is_file():
             d.warning(
@@ -74,16 +102,12 @@ def with_inputs(opened: OpenNet, d: Diagnostics) -> OpenNet:
                 entry.origin,
                 hint="write it first, or correct `file`; the supervisor reads it when it starts",
             )
-    found = tuple(tokens(opened.flat, config, d))
-    places = list(opened.flat.places)
+    found = tuple(tokens(net, config, d))
+    places = list(net.places)
     for token in found:
-        exp = _expression(opened.flat, token.place.colset, token.data, token.text)
+        exp = _expression(net, token.place.colset, token.data, token.text)
         places[token.place.index] = replace(token.place, initial=(exp, Form.TOKEN))
-    return replace(
-        opened,
-        flat=replace(opened.flat, places=tuple(places)),
-        given=tuple(_given(token) for token in found),
-    )
+    return Begun(replace(net, places=tuple(places)), tuple(_given(token) for token in found))
 
 
 def _given(token: Token) -> Given:
@@ -149,9 +173,33 @@ def _token(
         read.what,
         Origin(str(path), read.line, read.column),
         notes=[Note(f"the marking of `{entry.place}` comes from this file", entry.origin)],
-        hint=f"write one token of colour set `{colset.name}`",
+        hint=f"write one token of colour set `{colset.name}`{_form(colset)}",
     )
     return None
+
+
+def _form(c: Colset) -> str:
+    """How a token is written: how many lines there are, with an example that has them."""
+    lines = [" ".join(map(_example, line)) for line in lines_of(c)]
+    if sum(map(len, lines)) > _SHOWN:
+        return f" in {len(lines)} lines (docs/cell.md)" if len(lines) > 1 else " in one line"
+    if len(lines) == 1:
+        return f" in one line, for example `{lines[0]}`"
+    return f" in {len(lines)} lines, for example {', then '.join(f'`{x}`' for x in lines)}"
+
+
+def _example(scalar: Scalar) -> str:
+    match scalar.kind:
+        case ScalarKind.STRING:
+            return '"text"'
+        case ScalarKind.ENUM if scalar.names:
+            return scalar.names[0]
+        case ScalarKind.INT | ScalarKind.INDEX | ScalarKind.REAL:
+            number = 1 if scalar.low is None else max(scalar.low, 1)
+            number = number if scalar.high is None else min(scalar.high, number)
+            return str(float(number) if scalar.kind is ScalarKind.REAL else int(number))
+        case _:
+            return "1"
 
 
 def _data(c: Colset, values: Iterator[ScalarValue]) -> Any:
