@@ -162,6 +162,7 @@ def said(folder: Path, *options: str, holds: tuple[str, ...] = ()) -> dict[str, 
         app, ["verify", str(folder), "--json", "--traces", str(folder), *options, *asked]
     )
     assert done.exception is None or isinstance(done.exception, SystemExit), done.exception
+    assert done.stdout and "bug in pn2code" not in done.stderr, done.stderr
     found: dict[str, Any] = json.loads(done.stdout)
     return found
 

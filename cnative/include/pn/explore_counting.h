@@ -53,6 +53,6 @@ bool pn_counting_words(pn_words_t *words, uint32_t self);
         .count = (n), .row = (rows), .key = (bits)                                                     \
     }
 #define PN_COUNT(place, at, bits, needed, taken, added) \
-    { .bag = &(place), .bit = (at), .width = (bits), .needs = (needed), .takes = (taken), .puts = (added) }
+    { .bag = (place), .bit = (at), .width = (bits), .needs = (needed), .takes = (taken), .puts = (added) }
 
 #endif /* EXPLORE_COUNTING_H */

@@ -114,16 +114,14 @@ def counts(
         name: of the constant.
         t: the transition.
         places: of the net.
-        bags: the constants of the places, with `&`.
+        bags: by place, where its bag is: "&s_at_P".
     """
     rows = []
     for c in t.counts or ():
         kept = places[c.place].packed
         assert kept is not None, c
         values = (kept.bit, kept.width, c.needs, c.takes, c.puts)
-        rows.append(
-            f"    PN_COUNT({bags[c.place].lstrip('&')}, {', '.join(f'{v}U' for v in values)}),"
-        )
+        rows.append(f"    PN_COUNT({bags[c.place]}, {', '.join(f'{v}U' for v in values)}),")
     return [f"static const pn_count_t {name}[] = {{", *rows, "};"] if rows else []
 
 

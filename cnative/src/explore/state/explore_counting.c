@@ -4,6 +4,7 @@
 #include <string.h>
 
 #include "pn/explore_counting.h"
+#include "pn/pn_marking.h"
 #include "pn/pn_packed.h"
 
 const pn_type_t pn_counting_type = { .kind = PN_KIND_RECORD,
@@ -57,9 +58,7 @@ static bool occur(pn_ctx_t *cx, const pn_counting_t *t, uint64_t *word)
 
 static void begin(pn_ctx_t *cx, const void *marking, uint32_t self)
 {
-    pn_time_t now;
-    (void)memcpy(&now, (const unsigned char *)marking + pn_net.now_at, sizeof now);
-    pn_begin(cx, pn_net.transition[self].origin, now);
+    pn_begin(cx, pn_net.transition[self].origin, pn_now(&pn_net, marking));
 }
 
 bool pn_counting_enumerate(pn_ctx_t *cx, const void *marking, uint32_t self, pn_binding_sink_t sink, void *user)

@@ -68,6 +68,20 @@ def is_about_all(asked: m.Asked) -> bool:
             return _is_universal(formula, True)
 
 
+def _is_shown(answer: Answer) -> bool:
+    """Whether the run that goes with "yes" is all that it says: that a marking can be reached."""
+    asked = answer.about.asked
+    if answer.evidence is None:
+        return False
+    match asked:
+        case m.Invariant():
+            return True
+        case m.Branching(m.Op("EF", (part,))):
+            return _is_universal(part, True) and _is_universal(part, False)
+        case _:
+            return False
+
+
 def _is_universal(f: m.Formula, positive: bool) -> bool:
     if isinstance(f, m.Atom):
         return f.kind in ("true", "pred", "initial")
@@ -172,7 +186,7 @@ def _certain(
     if not open_ and answer.answer == "yes" and not (is_kept(answer.about) or is_possible):
         open_ = control.stops
     if not open_ and answer.answer == "yes" and running is not None and running.meek:
-        open_ = "" if is_about_all(asked) or answer.evidence is not None else _ORDERS
+        open_ = "" if is_about_all(asked) or _is_shown(answer) else _ORDERS
     if not open_ and drawn and answer.evidence is None:
         open_ = clause("chance")
     if open_:
@@ -185,9 +199,9 @@ def _can_be_done(answer: Answer, control: Control, storage: Mapping[str, str]) -
     e, running = answer.evidence, control.running
     if e is None or running is None or not running.meek:
         return True
-    if nondeterminism.draws(running.partition.net):
-        return True  # it cannot be played with other numbers
-    return is_in_order(running, storage, e.trace) is not False
+    found = is_in_order(running, storage, e.trace)
+    # What cannot be played is no proof that something can happen.
+    return found is True or (found is None and answer.answer == "no")
 
 
 def _projected(answer: Answer, control: Control) -> Answer:

@@ -14,8 +14,9 @@ from pathlib import Path
 from pn2code.net.flat import FlatTransition
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.marking import BindingElement, Marking
-from pn2code.semantics.game.token_game import Game
-from pn2code.trace.script import Trace
+from pn2code.semantics.game.token_game import Game, GameError
+from pn2code.semantics.values.data import MlException, MlLimit
+from pn2code.trace.script import Trace, TraceRefusedError
 from pn2code.verify.controller.running import Running
 
 MOST_STEPS = 3_000
@@ -31,14 +32,23 @@ def is_in_order(running: Running, storage: Mapping[str, str], trace: Path) -> bo
         trace: a run of its net, with the steps of programs.
 
     Returns:
-        None: the run is too long to say.
-
-    Raises:
-        TraceRefusedError, GameError, OSError: it cannot be played.
+        None: that is not known, since the run is too long, or the token game cannot play it.
     """
     earlier = _earlier(running)
     if not earlier:
         return True
+    try:
+        return _played(running, storage, trace, earlier)
+    except (TraceRefusedError, GameError, OSError, ValueError, MlException, MlLimit):
+        return None
+
+
+def _played(
+    running: Running,
+    storage: Mapping[str, str],
+    trace: Path,
+    earlier: Mapping[int, Sequence[FlatTransition]],
+) -> bool | None:
     opened = Trace.open(trace, running.net, is_shown=True)
     header = opened.header
     game = Game(

@@ -215,10 +215,8 @@ def program(
             return
         made.files = emit_c.emit(lowered, pn2code.__version__)
         made.host, made.sizes = _host(lowered), sizes
-    is_kept = programs.is_kept(made.host, made.files)
-    made.is_quick = (
-        quick and not is_kept and not (made.host == HOST and len(net.transitions) > MANY)
-    )
+    is_soon = made.host == HOST and len(net.transitions) > MANY
+    made.is_quick = quick and not is_soon and not programs.is_kept(made.host, made.files)
     host = QUICK if made.is_quick else made.host
     with programs.program(host, made.files, d, interrupted=interrupted) as found:
         yield found
