@@ -153,8 +153,15 @@ static void test_numbers(void)
         double value;
         const char *sml;
     } reals[] = {
-        { 1.0 / 3.0, "0.333333333333" },      { 1e-5, "1E~05" }, { -1.5, "~1.5" }, { 2.0, "2.0" },
-        { 123456789012.0, "123456789012.0" }, { 1e12, "1E12" },  { 0.0, "0.0" },   { 0.001, "0.001" },
+        { 1.0 / 3.0, "0.333333333333" },
+        { 1e-5, "1E~05" },
+        { -1.5, "~1.5" },
+        { 2.0, "2.0" },
+        { 123456789012.0, "123456789012.0" },
+        { 1e12, "1E12" },
+        { 0.0, "0.0" },
+        { -0.0, "~0.0" },
+        { 0.001, "0.001" },
     };
     for (size_t i = 0U; i < (sizeof reals / sizeof reals[0]); i++) {
         (void)pn_real_sml(text, sizeof text, reals[i].value);
@@ -318,10 +325,7 @@ static void test_bytes(void)
         const size_t length = put_real(bytes, sizeof bytes, 0U, reals[i]);
         double back = 77.0;
         size_t at = 0U;
-        CHECK(
-            get_real(bytes, length, &at, &back)
-            && ((memcmp(&back, &reals[i], sizeof back) == 0) || ((back == 0.0) && (reals[i] == 0.0) && !signbit(back)))
-            && (at == length));
+        CHECK(get_real(bytes, length, &at, &back) && (memcmp(&back, &reals[i], sizeof back) == 0) && (at == length));
         at = 0U;
         CHECK(!get_real(bytes, length - 1U, &at, &back));
     }

@@ -44,11 +44,9 @@ def reason_of(text: str, ours: Said, theirs: Said) -> str:
         return "the engine has lost a structure of the library, as it does after some errors"
     if ours.kind in ("limit", "unavailable") and theirs.kind in ("timeout", "crash", "raised"):
         return "given up by both, or for lack of something"
-    if ours.kind == theirs.kind == "value" and ours.type == theirs.type:
-        if ours.detail == re.sub(r"~(0\.0+)", r"\1", theirs.detail):
-            return "a negative zero is printed as `0.0`, not as `~0.0`"
-        if _near(ours.detail, theirs.detail):
-            return "the last digits of a function of the processor"
+    same = ours.kind == theirs.kind == "value" and ours.type == theirs.type
+    if same and _near(ours.detail, theirs.detail):
+        return "the last digits of a function of the processor"
     words = f"{text} {ours.detail} {theirs.detail}"
     for here, there, pattern, why in _RULES:
         fits = here in ("*", ours.kind) and there in ("*", theirs.kind)

@@ -191,7 +191,9 @@ int64_t pn_wide_ceil(pn_ctx_t *cx, double x);
 int64_t pn_wide_round(pn_ctx_t *cx, double x);
 int64_t pn_wide_trunc(pn_ctx_t *cx, double x);
 
-/* Real.min and Real.max: the other argument if one is nan. */
+double pn_real_rem(double a, double b);
+
+/* Real.min and Real.max: the other argument if one is nan, the second if they are equal. */
 double pn_real_min(double a, double b);
 double pn_real_max(double a, double b);
 /* -1, 0, 1; Unordered for nan. */

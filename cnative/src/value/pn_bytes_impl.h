@@ -46,13 +46,15 @@ static inline size_t put_integer(uint8_t *out, size_t room, size_t at, int64_t v
     return put_number(out, room, at, ((uint64_t)value << 1U) ^ sign);
 }
 
-/* Equal reals have the same bytes: both zeros, and all that are not a number. */
+/*
+ * Reals that no expression can tell apart have the same bytes: all that are not a number. The two zeros are equal, but
+ * have their own: a net may see the sign (`Real.signBit`, `1.0 / x`), and two markings that it can tell apart are two.
+ */
 static inline size_t put_real(uint8_t *out, size_t room, size_t at, double value)
 {
     const double known = isnan(value) ? (double)NAN : value;
-    const double one = (fpclassify(known) == FP_ZERO) ? 0.0 : known;
     uint64_t bits = 0U;
-    (void)memcpy(&bits, &one, sizeof bits);
+    (void)memcpy(&bits, &known, sizeof bits);
     uint8_t bytes[1U + sizeof bits] = { 0U };
     for (; (bits != 0U) && ((bits & 0xffU) == 0U); bits >>= 8U) {
         bytes[0]++; /* those that are left out */

@@ -115,7 +115,7 @@ pn_string_t pn_real_styled(pn_ctx_t *cx, int64_t style, int64_t digits, double x
     }
     const int64_t places = (digits > most) ? most : digits;
     size_t length = 0U;
-    if (x < 0.0) { /* zero has no sign */
+    if (signbit(x) != 0) {
         text[length++] = '~';
     }
     if (style == 0) {

@@ -11,7 +11,9 @@ Inscriptions and expressions also differ in the following, each on purpose:
 * **A priority below zero** is accepted by the engine's check, but its simulator cannot start; here it is accepted, with a warning.
 * **`intinf with 1..3`** is refused by the engine, which expects bounds of type `int`; here it is accepted, with a warning.
 * **An `ml` declaration that is empty, or only a comment**, is refused by the engine; here it gives a warning.
-* **A negative zero** is printed as `0.0`, by the engine as `~0.0`: both are one token, and one state.
+* **A negative zero** makes a state of its own: the two zeros are equal, and one token of a place, but an inscription can tell them apart
+  (`1.0 / x`, `Real.toString x`), so that markings which differ in the sign are two nodes. The engine has one for both. `Math.atan2` heeds the signs
+  of zeros, in the engine it does not.
 * **`Math.pow`, `exp`, `sinh`, `cosh`, `tanh`** are exact to some ten digits in SML/NJ (`Math.pow (3.0, ~1.0)` is 0.333333333353), and are not numbers
   outside the range of the processor (`Math.tanh 1E10`, `Math.sin 1E300`); here they are those of C. So are `Real.rem` of numbers of very different size,
   `Real.toManExp` and `fromManExp` of zero and of non-finite numbers, and `Real.toLargeInt` of zero.

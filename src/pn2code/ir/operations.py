@@ -76,7 +76,7 @@ OPS: dict[str, Form] = {
     "Real.compare": Call("pn_real_compare", context=True, order=True),
     "Real.==": Call("pn_real_equal"),
     "Real.!=": Call("!pn_real_equal"),
-    "Real.rem": Call("fmod"),
+    "Real.rem": Call("pn_real_rem"),
     "Real.fromInt": Call("pn_int_to_real"),
     "Real.fromLargeInt": Call("pn_big_to_real"),
     "Real.realFloor": Call("floor"),

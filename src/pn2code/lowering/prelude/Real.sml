@@ -30,8 +30,8 @@ fun Real_checkFloat x =
 
 fun Real_split x =
     if Real.isFinite x then
-        let val whole = Real.realTrunc x
-        in {whole = whole, frac = prim_real_copy_sign (x - whole, x)} end
+        let val whole = if Real.== (x, 0.0) then x else Real.realTrunc x
+        in {whole = whole, frac = x - whole} end
     else if Real.isNan x then {whole = x, frac = x}
     else {whole = x, frac = x - x}
 

@@ -10,7 +10,16 @@ from pn2code.ml.core import terms as core
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.evaluation.effects import Effect, Effects
 from pn2code.semantics.evaluation.evaluate import Evaluator
-from pn2code.semantics.values.data import Array, Closure, Data, Native, Ref, Timed, Value
+from pn2code.semantics.values.data import (
+    Array,
+    Closure,
+    Data,
+    Native,
+    Ref,
+    Timed,
+    Value,
+    is_negative_zero,
+)
 
 _CREATING = ("Ref.ref", "Array.array", "Array.fromList", "Array.tabulate")
 
@@ -57,6 +66,8 @@ class Held:
                     return "fn", id(rules), tuple((uid, plain(environment[uid])) for uid in used)
                 case Native(name=name, arguments=arguments):
                     return "builtin", name, plain(arguments)
+                case float() if is_negative_zero(value):
+                    return "zero", "~"
             return value  # type: ignore[no-any-return]
 
         found = []

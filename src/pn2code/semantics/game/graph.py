@@ -1,15 +1,20 @@
 """Complete state spaces of small nets, for comparison with other engines. Breadth first, bounded.
 
 A node is a marking together with its model time; from a node in which nothing is enabled the time moves on before
-the next occurrence, as in CPN Tools.
+the next occurrence, as in CPN Tools. Markings that differ in the sign of a zero are two nodes: they are equal, but an
+inscription may tell them apart (`Real.signBit`, `1.0 / x`).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache
 
+from pn2code.ml.core.colsets import Colset, Kind
+from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.marking import BindingElement, Marking
 from pn2code.semantics.game.token_game import Game
+from pn2code.semantics.values.data import Data, Timed, Value, is_negative_zero
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +55,8 @@ def state_space(game: Game, *, max_nodes: int = 10_000, max_arcs: int | None = N
     Raises:
         GameError: an inscription raises an exception somewhere on the way.
     """
-    index: dict[Marking, int] = {game.marking: 0}
+    node = _Nodes(game.net)
+    index = {node.key(game.marking): 0}
     nodes = [game.marking]
     arcs: dict[StateArc, None] = {}
     dead: list[int] = []
@@ -63,16 +69,56 @@ def state_space(game: Game, *, max_nodes: int = 10_000, max_arcs: int | None = N
             dead.append(at)
         for element in elements:
             successor, occurred = game.occur(marking, element)
-            if successor not in index:
+            key = node.key(successor)
+            if key not in index:
                 if len(nodes) >= max_nodes:
                     if max_arcs is not None:
                         return StateSpace(tuple(nodes), tuple(arcs), False, ())
                     complete = False
                     continue
-                index[successor] = len(nodes)
+                index[key] = len(nodes)
                 nodes.append(successor)
-            arcs[StateArc(at, occurred, index[successor])] = None
+            arcs[StateArc(at, occurred, index[key])] = None
             if max_arcs is not None and len(arcs) > max_arcs:
                 return StateSpace(tuple(nodes), tuple(arcs), False, ())
         at += 1
     return StateSpace(tuple(nodes), tuple(arcs), complete, tuple(dead))
+
+
+_Key = tuple[Marking, frozenset[tuple[int, str]]]
+
+
+class _Nodes:
+    """Tells the markings of a net apart: by what they hold, and by the signs of zeros in it."""
+
+    def __init__(self, net: FlatNet) -> None:
+        has_reals = cache(_has_reals)
+        self._places = [p.index for p in net.places if has_reals(p.colset)]
+
+    def key(self, marking: Marking) -> _Key:
+        """Equal for the markings that no inscription can tell apart."""
+        return marking, frozenset(
+            (place, repr(token))
+            for place in self._places
+            for token in marking.places[place]
+            if _has_negative_zero(token)
+        )
+
+
+def _has_reals(c: Colset) -> bool:
+    return c.kind is Kind.REAL or any(
+        part is not None and _has_reals(part) for part in c.components
+    )
+
+
+def _has_negative_zero(value: Value) -> bool:
+    match value:
+        case float():
+            return is_negative_zero(value)
+        case tuple():
+            return any(map(_has_negative_zero, value))
+        case Data(argument=argument):
+            return argument is not None and _has_negative_zero(argument)
+        case Timed(value=inner, stamp=stamp):
+            return _has_negative_zero(inner) or _has_negative_zero(stamp)
+    return False

@@ -295,17 +295,18 @@ def _sign_of_real(e: Evaluator, x: float) -> int:
 
 
 def _smaller(p: tuple[float, float]) -> float:
-    return p[1] if math.isnan(p[0]) or p[1] < p[0] else p[0]
+    return p[0] if p[0] < p[1] or math.isnan(p[1]) else p[1]
 
 
 def _larger(p: tuple[float, float]) -> float:
-    return p[1] if math.isnan(p[0]) or p[1] > p[0] else p[0]
+    return p[0] if p[0] > p[1] or math.isnan(p[1]) else p[1]
 
 
 def _remainder(a: float, b: float) -> float:
     if math.isinf(a) or b == 0:
         return math.nan
-    return math.fmod(a, b)
+    # Where nothing remains, the zero has the sign of the divisor.
+    return math.fmod(a, b) or math.copysign(0.0, b)
 
 
 _BLANKS_AND_SIGN = r"[ \t\n\v\f\r]*([~+-]?)"
@@ -357,7 +358,7 @@ def format_real(e: Evaluator, how: Data, x: float) -> str:
     if not math.isfinite(x) or how.name == "GEN":
         return real_text(x, 12 if digits is None else digits)
     places = 6 if digits is None else digits
-    sign = "~" if x < 0 else ""
+    sign = "~" if _is_negative(x) else ""
     return sign + (_fixed if how.name == "FIX" else _scientific)(e, abs(x), places)
 
 
@@ -416,7 +417,10 @@ def _parts(x: float) -> tuple[float, float]:
     """`Real.split`, a record in the order frac, whole."""
     if math.isinf(x):
         return math.nan, x  # the engine takes the one from the other
-    return math.modf(x)
+    if math.isnan(x):
+        return x, x
+    whole = x if x == 0.0 else math.trunc(x) + 0.0
+    return x - whole, whole
 
 
 def _check_float(x: float) -> float:
@@ -457,7 +461,7 @@ REALS: dict[str, Function] = {
     "realFloor": _rounded_real(math.floor),
     "realCeil": _rounded_real(math.ceil),
     "realRound": _rounded_real(round),
-    "realTrunc": _rounded_real(math.trunc),
+    "realTrunc": lambda e, x: math.trunc(x) + 0.0 if math.isfinite(x) else x,
     "isNan": lambda e, a: math.isnan(a),
     "isFinite": lambda e, a: math.isfinite(a),
     "toString": lambda e, a: real_text(a),

@@ -40,6 +40,11 @@ MAX_INT = 2**30 - 1
 MIN_INT = -(2**30)
 
 
+def is_negative_zero(value: float) -> bool:
+    """Whether it is the zero that equals 0.0, but of which `Real.signBit` is true."""
+    return value == 0.0 and math.copysign(1.0, value) < 0.0
+
+
 @frozen
 class Data:
     """A value made by a constructor: enumerations, unions, `SOME x`, user data types, exceptions.
@@ -314,9 +319,9 @@ def real_text(x: float, precision: int = 12) -> str:
         return "nan"
     if math.isinf(x):
         return "inf" if x > 0 else "~inf"
+    sign = "~" if x < 0 or is_negative_zero(x) else ""
     if x == 0:
-        return "0.0"  # also of minus zero
-    sign = "~" if x < 0 else ""
+        return f"{sign}0.0"
     digits, exponent = real_digits(abs(x), precision)
     digits = digits.rstrip("0")
     if exponent < -4 or exponent >= precision:

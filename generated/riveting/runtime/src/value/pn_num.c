@@ -233,9 +233,17 @@ double pn_ceil(double x)
     return unsigned_zero(x, ceil(x));
 }
 
+/* A zero, too, loses its sign there. */
 double pn_trunc(double x)
 {
-    return unsigned_zero(x, trunc(x));
+    return trunc(x) + 0.0;
+}
+
+/* Where nothing remains, the zero has the sign of the divisor. */
+double pn_real_rem(double a, double b)
+{
+    const double rest = fmod(a, b);
+    return (fpclassify(rest) == FP_ZERO) ? copysign(0.0, b) : rest;
 }
 
 static int64_t to_integer(pn_ctx_t *cx, double x)
@@ -292,12 +300,12 @@ int64_t pn_real_trunc(pn_ctx_t *cx, double x)
 
 double pn_real_min(double a, double b)
 {
-    return fmin(a, b);
+    return ((a < b) || isnan(b)) ? a : b;
 }
 
 double pn_real_max(double a, double b)
 {
-    return fmax(a, b);
+    return ((a > b) || isnan(b)) ? a : b;
 }
 
 int64_t pn_real_sign(pn_ctx_t *cx, double x)

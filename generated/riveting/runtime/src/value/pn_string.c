@@ -209,7 +209,7 @@ int pn_real_digits(double value, int64_t wanted, bool behind, char *digit, int *
 
 size_t pn_real_general(char *out, size_t capacity, double value, int64_t digits)
 {
-    const char *sign = (value < 0.0) ? "~" : ""; /* zero has none */
+    const char *sign = (signbit(value) != 0) ? "~" : "";
     if (isnan(value)) {
         return (size_t)snprintf(out, capacity, "nan");
     }
