@@ -60,9 +60,8 @@ class _Emitter(Transitions):
         s.self_parameters, s.self_call, s.is_void = f.parameters, name, is_void
         s.is_looping = f.loops
         zero = "" if is_void else self._types.zero(f.result)
-        for p in f.parameters:
-            if p.uid not in s.used:
-                s.line(f"(void){x.local(p)};")
+        for p in f.unread:
+            s.line(f"(void){x.local(p)};")
         if f.recursive:
             s.result = "" if is_void else scope.name("result", "result")
             if not is_void:

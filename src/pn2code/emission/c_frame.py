@@ -5,7 +5,6 @@ from __future__ import annotations
 from pn2code.diagnostics import Origin
 from pn2code.emission import c_orders, c_packed
 from pn2code.emission.c_expressions import Expressions, Types
-from pn2code.emission.c_needs import used_locals
 from pn2code.emission.c_own import OwnPlaces
 from pn2code.emission.c_shared import share, tables
 from pn2code.emission.c_statements import Statements
@@ -102,7 +101,6 @@ class Frame:
         x.slots = self._slots
         x.global_hints = {g.name: g.hint for g in self._net.globals}
         s = Statements(self._types, x, scope, self._net.real_time)
-        s.used = used_locals(statements)
         s.bags = self._bags
         s.timed = self._timed
         s.slots = self._slots

@@ -142,11 +142,13 @@ class Branching(Block):
             then = self.ir(e.then, env)
         with self.block() as second:
             otherwise = self.ir(e.otherwise, env)
-        if not first and not second:
-            return self.choice(condition, then, otherwise)
-        if then.type == ir.UNIT:
+        if (
+            then.type == ir.UNIT
+        ):  # also where neither way does anything: the condition may raise an exception
             self.emit(ir.If(condition, tuple(first), tuple(second)))
             return _UNIT
+        if not first and not second:
+            return self._choice(condition, then, otherwise)
         result = self.local("result", then.type)
         self.emit(ir.Declare(result))
         first.append(ir.Assign(result, then))
@@ -155,10 +157,8 @@ class Branching(Block):
         return ir.Use(result)
 
     @staticmethod
-    def choice(condition: Ir, then: Ir, otherwise: Ir) -> Ir:
+    def _choice(condition: Ir, then: Ir, otherwise: Ir) -> Ir:
         """`if` as an expression."""
-        if then.type == ir.UNIT:
-            return _UNIT
         if isinstance(otherwise, ir.Const) and otherwise.value is False:
             return ir.Op("andalso", (condition, then), ir.BOOL)
         if isinstance(then, ir.Const) and then.value is True:
