@@ -51,6 +51,8 @@ LEAST_WAY = 10
 MOST_ITEMS = 8
 """Failures and open questions that have lines of their own on one screen."""
 MOST_NAMES = 6
+MOST_NAMES_LINES = 4
+"""Lines with the names of failures of which there is no room to say more."""
 MOST_DIFFERENCES = 4
 """Of the cell as it runs from the closed net, on one screen."""
 _WIDTH = 110
@@ -376,7 +378,7 @@ def _rest(rests: Sequence[str | None]) -> str:
 
 
 def _wrong(wrong: Sequence[_Item], room: int) -> list[str]:
-    """Failures, then open questions: as many as there is room for, the first in any case."""
+    """Failures, then open questions: as many as there is room for, the first in any case; of the others the names."""
     lines: list[str] = []
     for number, item in enumerate(wrong):
         mark = {"bad": "NO", "open": "?"}[item.kind]
@@ -388,11 +390,27 @@ def _wrong(wrong: Sequence[_Item], room: int) -> list[str]:
             break_long_words=False,
             break_on_hyphens=False,
         )[:3]
-        is_last = number == len(wrong) - 1
-        is_full = len(lines) + len(wrapped) + (not is_last) > room
+        is_full = len(lines) + len(wrapped) + len(_names_of(wrong[number + 1 :])) > room
         if number and (number == MOST_ITEMS or is_full):
-            return [*lines, f"   and {len(wrong) - number} more"]
+            return [*lines, *_names_of(wrong[number:])]
         lines += wrapped
+    return lines
+
+
+def _names_of(wrong: Sequence[_Item]) -> list[str]:
+    """What failed and what is open, by name."""
+    lines: list[str] = []
+    for kind, title in (("bad", "also NO"), ("open", "also not known")):
+        names = [item.name for item in wrong if item.kind == kind]
+        if names:
+            lines += textwrap.wrap(
+                f"{title} ({len(names)}): {', '.join(names)}",
+                _WIDTH,
+                initial_indent="   ",
+                subsequent_indent="     ",
+                max_lines=MOST_NAMES_LINES,
+                placeholder=" ...",
+            )
     return lines
 
 
