@@ -158,7 +158,7 @@ def test_a_trace_that_is_no_run_is_refused(tmp_path: Path) -> None:
         assert (found["why"], found["replayed"], found["steps"]) == ("replay", 3, 3)
         assert "not enabled" in found["refusal"]
     trace.write_text('{"trace": 1, "by": "supervisor"}\n')
-    assert "only runs of `simulate`" in simulate(net, "--replay", trace, code=2).stderr
+    assert "only traces of `simulate`" in simulate(net, "--replay", trace, code=2).stderr
     trace.write_text("nonsense\n")
     for engine in ("compiled", "reference"):
         done = simulate(net, "--replay", trace, "--engine", engine, code=2)
