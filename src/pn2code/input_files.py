@@ -83,18 +83,23 @@ class Begun:
     given: tuple[Given, ...] = ()
 
 
-def begin(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> Begun:
+def begin(
+    net: FlatNet, config: CellConfig | None, d: Diagnostics, *, is_started: bool = False
+) -> Begun:
     """The net as a run of its cell begins it; the same net where there are no input files.
 
     Args:
         net: the net.
         config: the cell; None: a net that is one program.
         d: gets an error for each file that the supervisor would refuse, and a warning for each that is not there.
+        is_started: the supervisor is started with these files, so a file that is not there is an error, too.
     """
     if config is None or not config.inputs:
         return Begun(net)
     for entry in config.inputs:
-        if not (config.folder / entry.file).is_file():
+        if is_started:
+            _expect(config, entry, d)
+        elif not (config.folder / entry.file).is_file():
             d.warning(
                 CELL_MISSING,
                 f"input: there is no file `{entry.file}` beside {config.path.name}, so the answers are about the "
@@ -108,6 +113,16 @@ def begin(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> Begun:
         exp = _expression(net, token.place.colset, token.data, token.text)
         places[token.place.index] = replace(token.place, initial=(exp, Form.TOKEN))
     return Begun(replace(net, places=tuple(places)), tuple(_given(token) for token in found))
+
+
+def _expect(config: CellConfig, entry: InputConfig, d: Diagnostics) -> None:
+    if not (config.folder / entry.file).is_file():
+        d.error(
+            CELL_MISSING,
+            f"input: there is no file `{entry.file}` beside {config.path.name}",
+            entry.origin,
+            hint="write it, or correct `file`; the supervisor reads it when it starts",
+        )
 
 
 def _given(token: Token) -> Given:
