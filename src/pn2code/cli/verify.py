@@ -290,7 +290,12 @@ def verify(
     ):
         for path, option in ((draw_to, "--draw"), (plot_to, "--plot"), (report_to, "--report")):
             check_writable(path, option)  # perhaps in the folder that was just made
-        with Interrupts() as interrupts, ProgressLine(shown=not (as_json or quiet)) as progress:
+        line = ProgressLine(
+            shown=not (as_json or quiet),
+            is_limited=max_states is not None or max_seconds is not None,
+            is_timed=opened.flat.timed and Reduction.TIME not in limits.reductions,
+        )
+        with Interrupts() as interrupts, line as progress:
             wishes = ExploreOptions(
                 traces=folder if most_traces else None,
                 stem=stem(opened),
