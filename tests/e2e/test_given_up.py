@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from e2e.test_input_sizes import STOCK, cell
 from helpers.netbuilder import write
 from helpers.processes import pn2code
 
@@ -51,3 +52,21 @@ def test_a_step_that_is_not_possible_is_refused(tmp_path: Path) -> None:
     trace.write_text(trace.read_text().replace('"n": 3', '"n": 4'))
     done = pn2code("replay", trace, net, "--json")
     assert done.returncode == 1 and not json.loads(done.stdout)["given_up"]
+
+
+def test_a_net_that_takes_too_long_is_compared_in_part(tmp_path: Path) -> None:
+    done = pn2code("conform", write(LONG, tmp_path / "long.cpn"))
+    assert done.returncode == 3, done.stdout + done.stderr
+    said = "net.c         not compared to the end, because the token game gives up: "
+    assert said in done.stdout and "DIFFERS" not in done.stdout
+
+
+def test_a_cell_that_takes_too_long_is_compared_in_part(tmp_path: Path) -> None:
+    net = STOCK.replace("  page Top\n", LOOP + "  page Top\n", 1)
+    net = net.replace("guard [n > 0]", "guard [n > 0 andalso loop (3000000, 0) > 1]", 1)
+    done = pn2code("conform", cell(tmp_path / "cell", "1\n", net), "--json")
+    assert done.returncode == 3, done.stdout + done.stderr
+    found = json.loads(done.stdout)
+    assert found["ok"] and not found["complete"]
+    for part in (found["core"]["given_up"], found["supervisor"]["why"], found["robots"][0]["why"]):
+        assert "was given up: no end after 1000000 steps" in part
