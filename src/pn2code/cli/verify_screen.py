@@ -245,10 +245,20 @@ def _growing(net: FlatNet, found: Exploration) -> Iterator[str]:
     """What may be the reason that there is no end of markings."""
     growing = found.growing()
     if growing is not None:
-        place, count = net.places[growing[0]].name, growing[1]
+        place, count = net.places[growing[0]], growing[1]
+        what = "a number, text or list in a token may grow for ever"
+        so = "so that there is no end of markings; is there a guard that limits it?"
+        if place.colset.timed and "time" in found.reductions:
+            what += ", or long delays are gone through in small steps"
+            so = "so that there are very many markings, or no end of them"
+        elif place.colset.timed:
+            what += ", or the time of a token does"
+            so = (
+                "so that there is no end of markings (`--reduce time` counts those that differ in the time alone as "
+                "one)"
+            )
         yield (
-            f"place `{place}` has held {count:,} different multi-sets of tokens: a number, text or list in a token may "
-            "grow for ever, so that there is no end of markings; is there a guard that limits it?"
+            f"place `{place.name}` has held {count:,} different multi-sets of tokens: {what}, {so}"
         )
 
 
