@@ -173,7 +173,7 @@ def play() -> NoReturn:
     if signal.getsignal(signal.SIGHUP) == signal.SIG_DFL:  # else: `nohup`
         signal.signal(signal.SIGHUP, _interrupt)
     # Nets are trees: the search for cycles finds nothing, and took a third of the time of checking a large one.
-    gc.set_threshold(50_000, 20, 20)
+    gc.set_threshold(500_000, 20, 20)
     # Accepted expressions nest up to some 250 levels, each worth several Python frames.
     sys.setrecursionlimit(max(20_000, sys.getrecursionlimit()))
     try:

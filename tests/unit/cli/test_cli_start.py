@@ -43,6 +43,12 @@ def test_check_of_a_net_loads_no_generator_and_no_simulator(root: Path, tmp_path
     assert not [m for m in modules if m.startswith(("pn2code.lowering", "pn2code.emission"))]
 
 
+def test_check_of_a_cell_loads_nothing_that_only_moving_arms_need(root: Path) -> None:
+    modules = loaded_by("check", str(root / "examples" / "riveting"))
+    assert "numpy" in modules
+    assert not {"ruckig", "numpy.ma", "scipy", "jinja2"} & modules
+
+
 @pytest.mark.parametrize("option", ["--version", "--help"])
 def test_version_and_the_list_of_verbs_load_no_verb(option: str) -> None:
     modules = loaded_by(option)

@@ -140,3 +140,25 @@ def test_a_large_net_is_compiled_quickly(tmp_path: Path, monkeypatch: pytest.Mon
     assert [[f for f in c_flags.QUICKER if f in c] for c in of_net] == [[], [*c_flags.QUICKER]]
     for flag in programs.FLAGS:  # what comes later counts; and a host may have its own word
         assert of_net[1].index(flag) < of_net[1].index("-O1") < of_net[1].index("-DFOR_THE_NET")
+
+
+@pytest.mark.cc
+def test_a_compiler_says_once_what_it_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = tmp_path / "asked"
+    compiler = tmp_path / "cc"
+    compiler.write_text(
+        f'#!/bin/sh\n[ "$1" = --version ] && echo >> {asked}\n[ -e {tmp_path}/broken ] && exit 1\nexec cc "$@"\n'
+    )
+    compiler.chmod(0o755)
+    monkeypatch.setenv("CC", str(compiler))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    (tmp_path / "broken").touch()
+    for _ in range(2):
+        assert programs.Compiler.find(HOST, Diagnostics()) is None
+    assert asked.read_text() == "\n\n", "one that says nothing is asked again"
+    (tmp_path / "broken").unlink()
+    for number in range(2):
+        text = MAIN.text.replace("0", str(number))
+        with program(HOST, [OutputFile("main.c", text, ())], Diagnostics()) as found:
+            assert found is not None and subprocess.run([found], check=False).returncode == number
+    assert asked.read_text() == "\n\n\n"

@@ -32,7 +32,7 @@ from itertools import islice
 from pathlib import Path
 
 from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
-from pn2code.semantics.evaluation.effects import Effects
+from pn2code.semantics.evaluation.effects import Effects, effects_of
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.enabling import GameError
 from pn2code.semantics.game.marking import BindingElement, Marking, PlaceMarking
@@ -114,7 +114,7 @@ class Search:
         self.net = net
         self.game = Game(net, storage, files=Files(None))
         self._among = None if among is None else frozenset(among)
-        effects = Effects(net.program)
+        effects = effects_of(net.program)
         self._pure = frozenset(t.index for t in net.transitions if _is_pure(t, net, effects))
         self._takes = {
             t.index: frozenset(a.place for a in t.arcs if a.kind in _TAKING)

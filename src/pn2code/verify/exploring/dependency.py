@@ -60,7 +60,7 @@ from pn2code.net.flat import (
     FlatNet,
     FlatTransition,
 )
-from pn2code.semantics.evaluation.effects import Effect, Effects
+from pn2code.semantics.evaluation.effects import Effect, Effects, effects_of
 from pn2code.semantics.evaluation.references import occurring
 from pn2code.verify.controller.unsure import is_total
 from pn2code.verify.exploring.elements import NotPossibleError, colours
@@ -195,7 +195,7 @@ def dependency(net: FlatNet) -> Dependency:
     Raises:
         NotPossibleError: something stands in the way.
     """
-    effects = Effects(net.program)
+    effects = effects_of(net.program)
     check(net, effects)
     found = _Relation(net, effects)
     return Dependency(len(net.places), tuple(map(found.member, net.transitions)))
