@@ -116,7 +116,7 @@ class Compiler:
         """The compiler that is there; None after a diagnostic."""
         name = find_compiler()
         if name is not None:
-            command = tuple(shlex.split(name))
+            command = (*shlex.split(name), *c_flags.for_compiler(name))
             said = _run([*command, "--version"])
             if said is not None and said.returncode == 0:
                 return Compiler(command, said.stdout)
