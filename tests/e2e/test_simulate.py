@@ -379,7 +379,8 @@ def test_many_at_the_same_time(tmp_path: Path) -> None:
     assert len(list((tmp_path / "cache" / "pn2code" / "programs").iterdir())) == 2
 
 
-def test_without_a_compiler(tmp_path: Path) -> None:
+def test_without_a_compiler(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "ziglang", None)  # not installed
     net = write(COUNTER, tmp_path / "cell.cpn")
     environment = _environment(tmp_path, PATH=str(tmp_path), CC="")
     done = simulate(net, "--engine", "compiled", env=environment, code=2)

@@ -117,7 +117,7 @@ class Compiler:
         """The compiler that is there; None after a diagnostic."""
         name = find_compiler()
         if name is not None:
-            command = tuple(shlex.split(name))
+            command = (*shlex.split(name), *c_flags.for_compiler(name))
             with suppress(OSError):
                 return Compiler(command, _version(command, os.environ.get("PATH", "")))
         d.error(

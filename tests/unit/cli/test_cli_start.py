@@ -111,6 +111,35 @@ def test_with_closed_streams(closed: str) -> None:
     assert (done.stdout == "") == (">&- " in f"{closed} ".replace("2>&-", ""))
 
 
+@pytest.mark.parametrize(
+    "words",
+    ["--version", "--help", "explain", "check examples/philosophers", "marking examples/riveting"],
+)
+def test_a_reader_that_has_gone(words: str, root: Path) -> None:
+    """This is neither success, since not all was said, nor a wrong model."""
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = subprocess.run(
+        [sys.executable, "-m", "pn2code", *words.split()],
+        cwd=root, stdout=writing, stderr=subprocess.PIPE, text=True, check=False,
+    )  # fmt: skip
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (141, "")
+
+
+@pytest.mark.parametrize(("code", "left"), [(0, 141), (1, 1), (3, 3)])
+def test_a_verdict_is_kept_when_its_last_words_are_not_read(code: int, left: int) -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    program = f"from pn2code.cli.main import _leave; print('no'); _leave({code})"
+    buffered = {k: v for k, v in os.environ.items() if k != "PYTHONUNBUFFERED"}
+    done = subprocess.run(
+        [sys.executable, "-c", program], stdout=writing, env=buffered, check=False
+    )
+    os.close(writing)
+    assert done.returncode == left
+
+
 def test_a_misspelt_verb_gets_a_suggestion(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit) as left:
         main.app(["generat"])
