@@ -111,8 +111,8 @@ static int report(ex_t *ex)
         tried += ex->outcome[i];
     }
     (void)printf("exercise: %llu firings in %llu runs; %u of %u transitions tried with success, in %llu situations\n",
-                 (unsigned long long)ex->firings, (unsigned long long)ex->options.runs, fired,
-                 pn_net.transition_count, (unsigned long long)ex->situations);
+                 (unsigned long long)ex->firings, (unsigned long long)ex->options.runs, fired, pn_net.transition_count,
+                 (unsigned long long)ex->situations);
     (void)printf("exercise: of %llu firings %llu were accepted; refused: %llu no room, %llu not in the colour set, "
                  "%llu no token, %llu no memory, %llu an exception\n",
                  (unsigned long long)tried, (unsigned long long)ex->outcome[EX_ACCEPTED],

@@ -36,19 +36,19 @@ typedef struct ex_need {
 typedef struct exercise {
     ex_options_t options;
     pn_ctx_t cx;
-    uint64_t random; /* state of the generator of what is drawn here */
-    void *marking;   /* of the run */
-    void *situation; /* in which a transition is tried */
-    void *result;    /* after it has fired there */
-    void *changed;   /* the situation, one thing being different */
-    void *after;     /* a firing that is tried */
+    uint64_t random;      /* state of the generator of what is drawn here */
+    void *marking;        /* of the run */
+    void *situation;      /* in which a transition is tried */
+    void *result;         /* after it has fired there */
+    void *changed;        /* the situation, one thing being different */
+    void *after;          /* a firing that is tried */
     unsigned char *kept;  /* bindings that the last search has found */
     unsigned char *tried; /* those of the situation */
     void *binding;        /* that is being tried; firing may write into it */
     const char *said;     /* where the last refused firing says that the error is */
     ex_need_t **need;     /* for each transition and each of its touched places */
     bool *has_fired;      /* for each transition, in any marking */
-    uint64_t firings;    /* of the runs */
+    uint64_t firings;     /* of the runs */
     uint64_t situations;
     uint64_t outcome[EX_OUTCOMES];
     uint64_t taken;    /* tokens that were taken away */

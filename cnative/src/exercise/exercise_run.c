@@ -11,12 +11,12 @@
 #include "pn/pn_random.h"
 
 enum {
-    EX_OF_RUNS = 12,    /* situations of a transition that are tried, of those that the runs come to */
-    EX_COMPOSED = 12,   /* and of those that are put together */
-    EX_ATTEMPTS = 400,  /* at putting one together in which the transition is enabled, */
+    EX_OF_RUNS = 12,     /* situations of a transition that are tried, of those that the runs come to */
+    EX_COMPOSED = 12,    /* and of those that are put together */
+    EX_ATTEMPTS = 400,   /* at putting one together in which the transition is enabled, */
     EX_PATIENCE = 20000, /* and as long as it has never been */
-    EX_BYTES = 1 << 14, /* of the places that a transition reads */
-    EX_LARGE = 1 << 16  /* bytes of a marking from which on fewer are tried */
+    EX_BYTES = 1 << 14,  /* of the places that a transition reads */
+    EX_LARGE = 1 << 16   /* bytes of a marking from which on fewer are tried */
 };
 
 /* The situations in which a transition has been tried, by their hashes. */

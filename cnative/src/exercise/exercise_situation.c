@@ -217,8 +217,9 @@ static ex_outcome_t fire(ex_t *ex, uint32_t transition, const void *before, cons
     ex->said = ex->cx.error_origin;
     ex->outcome[outcome]++;
     if (is_accepted != pn_ok(&ex->cx)) {
-        ex_complain(ex, transition, -1, is_accepted ? "a firing was accepted, with an error"
-                                                    : "a firing was refused, and does not say why");
+        ex_complain(ex, transition, -1,
+                    is_accepted ? "a firing was accepted, with an error"
+                                : "a firing was refused, and does not say why");
     }
     forget_error(ex);
     if (is_accepted) {

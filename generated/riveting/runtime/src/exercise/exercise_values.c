@@ -112,7 +112,12 @@ static void change_int(const pn_type_t *type, uint32_t how, int64_t *value)
 
 static void change_real(const pn_type_t *type, uint32_t how, double *value)
 {
-    const double changes[EX_CHANGES] = { 0.0, *value + 1.0, -*value, 1e300, (double)NAN, (double)INFINITY,
+    const double changes[EX_CHANGES] = { 0.0,
+                                         *value + 1.0,
+                                         -*value,
+                                         1e300,
+                                         (double)NAN,
+                                         (double)INFINITY,
                                          type->has_range ? (type->real_high + 1.0) : -1.0 };
     *value = changes[how];
 }
@@ -171,8 +176,7 @@ uint32_t ex_values_count(const pn_type_t *type)
 static bool get_seen(ex_t *ex, const pool_t *pool, uint32_t k, void *out)
 {
     (void)memset(out, 0, pool->type->size);
-    return (k < pool->count)
-           && (pn_decode(&ex->cx, pool->type, out, pool->bytes[k], pool->length[k]) != SIZE_MAX);
+    return (k < pool->count) && (pn_decode(&ex->cx, pool->type, out, pool->bytes[k], pool->length[k]) != SIZE_MAX);
 }
 
 bool ex_values_get(ex_t *ex, const pn_type_t *type, const void *value, uint32_t k, void *out)
