@@ -145,7 +145,7 @@ def generate(
             net_size=len(net_files[0].text),
         ),
         *emit_tdl.emit(robots, source=Path(net.file).name, digest=digest, version=version),
-        *runtime.emit("supervisor", "simulate"),
+        *runtime.emit("supervisor", "simulate", "exercise"),
         *_inputs(config, inputs),
     ]
     files.append(manifest.emit(partition, files, digest=digest, version=version))

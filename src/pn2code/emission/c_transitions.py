@@ -259,6 +259,7 @@ class Transitions(Frame):
             direct.token_types = printer.token_types
             direct.slots = self._slots
             direct.references = frozenset(g.name for g in self._net.globals if g.is_reference)
+            direct.constants = self._constants
             direct.sums = self._sums(t)
             direct.otherwise = f"{name}_fire_lists(cx, m, self, b)"
             direct.variable_types = tuple(v.type for v in t.variables)

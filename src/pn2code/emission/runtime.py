@@ -8,7 +8,16 @@ from pathlib import Path
 from pn2code.base.resources import cnative_folder
 from pn2code.emission.output import OutputFile
 
-HOSTS = ("simulate", "supervisor", "explore", "conform", "messages", "tables", "symbolic")
+HOSTS = (
+    "simulate",
+    "supervisor",
+    "explore",
+    "conform",
+    "messages",
+    "tables",
+    "symbolic",
+    "exercise",
+)
 """What a net can be linked with: the sources of a host begin with its name; all others are common to them."""
 
 

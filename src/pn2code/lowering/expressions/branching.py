@@ -100,6 +100,9 @@ class Branching(Block):
             if known is not None:
                 return known
         if isinstance(e, core.If):
+            known_truth = self.program.truth(e.condition)
+            if known_truth is not None:
+                return self.exp(e.then if known_truth else e.otherwise, env)
             simple = self._simple_if(e, env)
             if simple is not None:
                 return simple
@@ -168,6 +171,8 @@ class Branching(Block):
     def into(self, e: core.Exp, env: Env, target: Local | None) -> None:
         """Evaluate into a local (None: a unit, nothing to keep)."""
         match e:
+            case core.If() if self.program.truth(e.condition) is not None:
+                self.into(e.then if self.program.truth(e.condition) else e.otherwise, env, target)
             case core.If() if not (is_simple(e.then) and is_simple(e.otherwise)):
                 condition = self.ir(e.condition, env)
                 with self.block() as then:
