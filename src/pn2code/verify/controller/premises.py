@@ -18,7 +18,8 @@ from pn2code.tdl.interpret import MOST_AT_ONCE
 from pn2code.verify.controller.replies import Replies
 
 _DURATIONS = (
-    "it can happen for some durations of commands; known durations are not compared with timers"
+    "it can happen for some durations of commands; known durations are compared neither with timers nor with those of "
+    "other commands"
 )
 
 NOTHING_GIVEN: Mapping[int, str] = MappingProxyType({})
@@ -44,7 +45,7 @@ class Premises:
     Args:
         replies: what is known of answers that are owed.
         states: premises of whatever rests on the states of the cell.
-        durations: whether timers and what programs do go on side by side.
+        durations: whether timers and commands go on side by side: what comes first depends on how long they take.
         sensors: whether programs ask sensors.
         moving: whether a run in lock-step might do too much in one moment if moves took no time.
         moves: whether programs move arms: a move that is not possible stops its program.
@@ -77,7 +78,7 @@ class Premises:
         return Premises(
             replies,
             tuple(states),
-            partition.net.timed,
+            partition.net.timed or bool(used),
             bool(config.sensors),
             moves=not _MOTIONS.isdisjoint(used.values()),
         )
@@ -122,7 +123,7 @@ def _is_possibility(asked: m.Asked) -> bool:
 
 
 def _used(partition: Partition, config: CellConfig) -> dict[str, str]:
-    """The functions by which robots do something, each with its command."""
+    """The functions by which robots and devices do something, each with its command."""
     program = partition.net.program
     known = {
         program.globals[name].uid: name for name in config.primitives if name in program.globals
@@ -130,7 +131,7 @@ def _used(partition: Partition, config: CellConfig) -> dict[str, str]:
     reach = Reach(program)
     found: set[str] = set()
     for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True):
-        if t.code is not None and partition.owners[owner].kind is OwnerKind.ROBOT:
+        if t.code is not None and partition.owners[owner].kind is not OwnerKind.SUPERVISOR:
             reach.add_locals(t.code.action)
             found |= {known[uid] for uid in reach.everything(t.code.action) if uid in known}
     return {name: config.primitives[name].command for name in sorted(found)}
