@@ -14,6 +14,7 @@ from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.cell.reach import Reach
 from pn2code.properties import meaning as m
+from pn2code.properties.universal import is_universal
 from pn2code.tdl.interpret import MOST_AT_ONCE
 from pn2code.verify.controller.replies import Replies
 
@@ -116,8 +117,8 @@ def _is_possibility(asked: m.Asked) -> bool:
     match asked:
         case m.Invariant(wanted=wanted):
             return not wanted
-        case m.Branching():
-            return True
+        case m.Branching(formula):
+            return not is_universal(formula, True)
         case _:
             return False
 
