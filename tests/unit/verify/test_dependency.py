@@ -45,7 +45,7 @@ RULES = """
       val seen = ref 0;
       place A : INT = 1`1
       place B : INT
-      place C : INT = 1`1
+      place C : INT = 2`1
       place D : INT
       place Free = 1
       trans Left

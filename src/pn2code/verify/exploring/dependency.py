@@ -59,11 +59,14 @@ from pn2code.net.flat import (
     FlatArc,
     FlatNet,
     FlatTransition,
+    Form,
 )
 from pn2code.semantics.evaluation.effects import Effect, Effects
 from pn2code.semantics.evaluation.references import occurring
+from pn2code.structure.relations import Relations, relations
 from pn2code.verify.controller.unsure import is_total
 from pn2code.verify.exploring.elements import NotPossibleError, colours
+from pn2code.verify.exploring.updates import Accesses, accesses, commute, is_moved_by
 
 MAGIC = "pn2code-dependency 1"
 MOST_TRANSITIONS = 3000
@@ -79,6 +82,7 @@ class _Use:
     Args:
         least: tokens without which it is disabled. `consumes`: it surely takes some.
         is_plain: with so many tokens it is not disabled, if all are equal.
+        constants, puts_constants: all the tokens that it demands, that it puts; None: these depend on its variables.
     """
 
     takes: bool = False
@@ -89,11 +93,18 @@ class _Use:
     least: int = 0
     consumes: bool = False
     is_plain: bool = True
+    constants: frozenset[core.Exp] | None = frozenset()
+    puts_constants: frozenset[core.Exp] | None = frozenset()
 
     @property
     def demands(self) -> bool:
         """Whether tokens of the place are needed."""
         return self.takes or self.tests
+
+    def keep(self) -> None:
+        """It puts what it takes: it only tests it."""
+        self.tests = True
+        self.takes = self.puts = self.consumes = False
 
     def add(self, arc: FlatArc) -> None:
         """One more arc."""
@@ -102,8 +113,11 @@ class _Use:
         self.puts |= arc.kind is ArcKind.OUTPUT
         self.inhibits |= arc.kind is ArcKind.INHIBITOR
         self.clears |= arc.kind is ArcKind.RESET
+        if arc.kind is ArcKind.OUTPUT:
+            self.puts_constants = _more(self.puts_constants, _put_constants(arc))
         if arc.kind not in _TAKING:
             return
+        self.constants = _more(self.constants, _taken_constants(arc))
         counts = [
             _count(arc, i) for i in range(len(arc.inscription.terms if arc.inscription else ()))
         ]
@@ -111,6 +125,34 @@ class _Use:
         least = sum(n or 0 for n in counts)
         self.least = max(self.least, least)
         self.consumes |= arc.kind is ArcKind.INPUT and least > 0
+
+
+def _more(
+    known: frozenset[core.Exp] | None, more: frozenset[core.Exp] | None
+) -> frozenset[core.Exp] | None:
+    return None if known is None or more is None else known | more
+
+
+def _taken_constants(arc: FlatArc) -> frozenset[core.Exp] | None:
+    assert arc.inscription is not None
+    terms = arc.inscription.terms
+    if not terms or any(t.whole or not _is_constant(t.value) for t in terms):
+        return None
+    return frozenset(t.value for t in terms)
+
+
+def _put_constants(arc: FlatArc) -> frozenset[core.Exp] | None:
+    assert arc.inscription is not None
+    value = arc.inscription.value
+    is_one = arc.inscription.form is Form.TOKEN and _is_constant(value)
+    return frozenset({value}) if is_one else None
+
+
+def _is_constant(e: core.Exp) -> bool:
+    """Whether two of these are the same value only if they are equal."""
+    if isinstance(e, core.Con):
+        return not e.constructor.has_argument
+    return isinstance(e, core.Lit) and isinstance(e.value, int | str)
 
 
 def _count(arc: FlatArc, index: int) -> int | None:
@@ -197,7 +239,7 @@ def dependency(net: FlatNet) -> Dependency:
     """
     effects = Effects(net.program)
     check(net, effects)
-    found = _Relation(net, effects)
+    found = _Relation(net, effects, relations(net))
     return Dependency(len(net.places), tuple(map(found.member, net.transitions)))
 
 
@@ -241,8 +283,9 @@ class _Touching:
 
 
 class _Relation:
-    def __init__(self, net: FlatNet, effects: Effects) -> None:
+    def __init__(self, net: FlatNet, effects: Effects, known: Relations) -> None:
         self.net = net
+        self.known = known
         self.single = [colours(p.colset) == 1 for p in net.places]
         self.uses: list[dict[int, _Use]] = []
         self.at = [_Touching() for _ in net.places]
@@ -252,9 +295,13 @@ class _Relation:
             own: dict[int, _Use] = {}
             for arc in t.arcs:
                 own.setdefault(arc.place, _Use()).add(arc)
+            for p in known.kept[t.index]:
+                own[p].keep()
             self.uses.append(own)
             for p, use in own.items():
                 self.at[p].uses[t.index] = use
+        self.accesses: list[dict[int, Accesses]] = [self._accesses(t) for t in net.transitions]
+        self.raises_nothing = [_raises_nothing(t) for t in net.transitions]
         self.recurring = recurring(self.consumed(), len(net.transitions))
 
     def consumed(self) -> list[list[frozenset[int]]]:
@@ -271,18 +318,35 @@ class _Relation:
             self._spoils(t) or i in self.recurring,
             _sorted(self._rivals(i), i),
             _sorted(self._helpers(i), i),
-            tuple(self._reasons(t)) if _raises_nothing(t) else (),
+            tuple(self._reasons(t)) if self.raises_nothing[i] else (),
         )
 
+    def _accesses(self, t: FlatTransition) -> dict[int, Accesses]:
+        places = self.known.single.intersection(self.uses[t.index])
+        found = {p: accesses(self.net, t, p) for p in sorted(places)}
+        return {p: a for p, a in found.items() if a is not None}
+
     def _rivals(self, i: int) -> Iterator[int]:
+        for j in set(self._dependent(i)):
+            # An exception in a search is raised although not all that is demanded is there.
+            if not (self.raises_nothing[j] and self.known.exclude(i, j)):
+                yield j
+
+    def _dependent(self, i: int) -> Iterator[int]:
+        """Those with which an enabled one does not commute, as far as arcs and references tell."""
         for p, use in self.uses[i].items():
             for j, other in self.at[p].uses.items():
-                if self._conflicts(use, other, is_single=self.single[p]):
+                if self._conflicts(use, other, is_single=self.single[p]) and not self._updates(i, j, p):
                     yield j
         if self.reach[i].writes:
             yield from (j for j, r in enumerate(self.reach) if r.reads or r.writes)
         elif self.reach[i].reads:
             yield from self.writers
+
+    def _updates(self, i: int, j: int, place: int) -> bool:
+        """Whether both replace or test the only token of a place, and commute there."""
+        one, other = self.accesses[i].get(place), self.accesses[j].get(place)
+        return one is not None and other is not None and commute(one, other)
 
     @staticmethod
     def _conflicts(mine: _Use, other: _Use, *, is_single: bool) -> bool:
@@ -292,22 +356,30 @@ class _Relation:
         if (mine.inhibits and other.puts) or (other.inhibits and mine.puts):
             return True  # what inhibits one and is taken by the other never lets both be enabled
         if (mine.takes and other.demands) or (mine.tests and other.takes):
-            return True
-        return mine.demands and other.puts and not (is_single and mine.is_plain)
+            asked, wanted = mine.constants, other.constants
+            if asked is None or wanted is None or asked & wanted:
+                return True
+        return mine.demands and other.puts and not (mine.is_plain and (is_single or mine.constants is not None))
 
     def _helpers(self, i: int) -> Iterator[int]:
         for p, use in self.uses[i].items():
             if use.demands:
-                yield from self.at[p].putting()
+                yield from (j for j in self.at[p].putting() if self._may_help(i, j, p))
             if use.inhibits:
                 yield from self.at[p].removing()
         if self.reach[i].searches:
             yield from self.writers
 
+    def _may_help(self, i: int, j: int, place: int) -> bool:
+        """Whether what the second one does at a place may enable the first."""
+        one, other = self.accesses[i].get(place), self.accesses[j].get(place)
+        return one is None or other is None or is_moved_by(one, other)
+
     def _reasons(self, t: FlatTransition) -> Iterator[Reason]:
         for p, use in self.uses[t.index].items():
             if use.demands and use.least > 0:
-                yield Reason(p, use.least, _sorted(self.at[p].putting(), t.index))
+                more = (j for j in self.at[p].putting() if p in self.known.growing[j])
+                yield Reason(p, use.least, _sorted(more, t.index))
             if use.inhibits:
                 yield Reason(p, 0, _sorted(self.at[p].removing(), t.index))
 
