@@ -172,12 +172,15 @@ class Analysis:
 
 @frozen
 class Start:
+    """The initial marking; None where it is not known, and then why."""
+
     evaluator: Evaluator | None
     marking: tuple[MultiSet | TimedMultiSet | None, ...]
     unknown: dict[int, str]
 
     @property
     def initial(self) -> tuple[int | None, ...]:
+        """The numbers of tokens."""
         return tuple(None if m is None else len(m) for m in self.marking)
 
 

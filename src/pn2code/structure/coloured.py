@@ -245,6 +245,7 @@ def _component(c: Colset, step: Component) -> Colset | None:
 
 
 def has_real(t: Type) -> bool:
+    """Whether values of a type may have reals in them, of which equal ones may differ in the sign of a zero."""
     match t:
         case TRecord(fields):
             return any(has_real(x) for _, x in fields)

@@ -8,12 +8,13 @@ take changes its *value* by a number (`n` becomes `n - 1`). So values can be in 
 
     Feeder + Feeding + ... + Stowing - value of Left = 0
 
-In the matrix a value is a row like those of places (`skeleton.counts`), with the same columns: one for each transition, and
-further ones for what changes it by an amount that is not known. It may have a negative weight, numbers of tokens may not.
+In the matrix a value is a row like those of places (`skeleton.counts`), with the same columns: one for each transition,
+and further ones for what changes it by an amount that is not known. It may have a negative weight, numbers of tokens
+may not.
 
 Where two transitions are both enabled, each place holds what either of them demands (the greater number, if both demand
 some), and a value is the constant that one of them demands. If the weighted sum of these is greater than it ever is,
-because no place holds fewer than no tokens, that never is the case. In the example `End` demands the value 0 of `Left`,
+although other places hold no tokens, that never is the case. In the example `End` demands the value 0 of `Left`,
 `Stowed` a token of `Stowing`: 1 - 0 > 0. The same is true if they demand different constants of a place with one token.
 """
 

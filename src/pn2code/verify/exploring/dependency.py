@@ -18,16 +18,23 @@ below are enough for D1 and D2:
   tests or inhibits, and on the references that its inscriptions read. A *code segment* belongs to the binding: it
   computes outputs from inputs. What commands of robots do is not seen in the net.
 * An *enabled* transition t has as rivals all that take from, test, or clear what it takes, or take or clear what it
-  tests (else they could disable each other), all that put tokens where it takes or tests (else it could get other
-  bindings; not where the place has one colour and t demands a known number of tokens: more of the same is
-  nothing new), all that put tokens where it must find none, or the other way round, all at a place that one of
-  the two clears, and all that change a reference that it reads or changes, or the other way round. Two that put tokens
-  into the same place, or test one there, commute. Of two that need a token of a place, and need it to be empty, only
-  one is ever enabled; before the other can be, something of the set occurs.
+  tests (else they could disable each other; not where both demand constants, and different ones), all that put
+  tokens where it takes or tests (else it could get other bindings; not where t demands known numbers of constants, or
+  the place has one colour: more tokens are nothing new), all that put tokens where it must find none, or the other
+  way round, all at a place that one of the two clears, and all that change a reference that it reads or changes, or
+  the other way round. Two that put tokens into the same place, or test one there, commute. What puts the very tokens
+  that it takes only tests them.
+* *Updates* of the only token of a place that commute (`updates`) make nobody a rival there. A binding then stands for
+  all that differ in variables on which nothing else depends, in D1 and D2 too: after the others t occurs with another
+  value of such a variable, and all comes to the same marking.
+* Two that are *never both enabled* in a reachable marking (`structure.relations`) are no rivals: as long as nothing of
+  the set has occurred, t remains enabled, step by step, so the other one does not occur. Nor does it matter that it
+  raises an exception, if its search raises none. Of two that need a token of a place, and need it to be empty, only
+  one is ever enabled, too.
 * A *disabled* transition remains disabled as long as an input place lacks tokens, or an inhibiting one has some. So it
-  is enough to have with it what puts tokens into one such place, or takes from it. If this is not why it is
-  disabled, with it come all that put tokens into any of its input places, take from the inhibiting ones, or
-  change references that it reads.
+  is enough to have with it what increases the number of tokens on one such place, or takes from it. If this is not why
+  it is disabled, with it come all that put tokens into any of its input places (not what changes a part of the only
+  token that it does not look at), take from the inhibiting ones, or change references that it reads.
 * An *exception* in an inscription is looked at as an occurrence after which nothing happens. It may be raised while
   bindings are searched for, although an input place lacks tokens. So a transition whose guards and input inscriptions
   are not certain to raise nothing has no such reason. Nor must an exception be put off for ever, because what is
@@ -59,7 +66,6 @@ from pn2code.net.flat import (
     FlatArc,
     FlatNet,
     FlatTransition,
-    Form,
 )
 from pn2code.semantics.evaluation.effects import Effect, Effects
 from pn2code.semantics.evaluation.references import occurring
@@ -82,7 +88,7 @@ class _Use:
     Args:
         least: tokens without which it is disabled. `consumes`: it surely takes some.
         is_plain: with so many tokens it is not disabled, if all are equal.
-        constants, puts_constants: all the tokens that it demands, that it puts; None: these depend on its variables.
+        constants: all the tokens that it demands; None: these depend on its variables.
     """
 
     takes: bool = False
@@ -94,7 +100,6 @@ class _Use:
     consumes: bool = False
     is_plain: bool = True
     constants: frozenset[core.Exp] | None = frozenset()
-    puts_constants: frozenset[core.Exp] | None = frozenset()
 
     @property
     def demands(self) -> bool:
@@ -113,11 +118,10 @@ class _Use:
         self.puts |= arc.kind is ArcKind.OUTPUT
         self.inhibits |= arc.kind is ArcKind.INHIBITOR
         self.clears |= arc.kind is ArcKind.RESET
-        if arc.kind is ArcKind.OUTPUT:
-            self.puts_constants = _more(self.puts_constants, _put_constants(arc))
         if arc.kind not in _TAKING:
             return
-        self.constants = _more(self.constants, _taken_constants(arc))
+        own = _taken_constants(arc)
+        self.constants = None if own is None or self.constants is None else self.constants | own
         counts = [
             _count(arc, i) for i in range(len(arc.inscription.terms if arc.inscription else ()))
         ]
@@ -127,25 +131,12 @@ class _Use:
         self.consumes |= arc.kind is ArcKind.INPUT and least > 0
 
 
-def _more(
-    known: frozenset[core.Exp] | None, more: frozenset[core.Exp] | None
-) -> frozenset[core.Exp] | None:
-    return None if known is None or more is None else known | more
-
-
 def _taken_constants(arc: FlatArc) -> frozenset[core.Exp] | None:
     assert arc.inscription is not None
     terms = arc.inscription.terms
     if not terms or any(t.whole or not _is_constant(t.value) for t in terms):
         return None
     return frozenset(t.value for t in terms)
-
-
-def _put_constants(arc: FlatArc) -> frozenset[core.Exp] | None:
-    assert arc.inscription is not None
-    value = arc.inscription.value
-    is_one = arc.inscription.form is Form.TOKEN and _is_constant(value)
-    return frozenset({value}) if is_one else None
 
 
 def _is_constant(e: core.Exp) -> bool:
@@ -336,7 +327,9 @@ class _Relation:
         """Those with which an enabled one does not commute, as far as arcs and references tell."""
         for p, use in self.uses[i].items():
             for j, other in self.at[p].uses.items():
-                if self._conflicts(use, other, is_single=self.single[p]) and not self._updates(i, j, p):
+                if self._conflicts(use, other, is_single=self.single[p]) and not self._updates(
+                    i, j, p
+                ):
                     yield j
         if self.reach[i].writes:
             yield from (j for j, r in enumerate(self.reach) if r.reads or r.writes)
@@ -359,7 +352,11 @@ class _Relation:
             asked, wanted = mine.constants, other.constants
             if asked is None or wanted is None or asked & wanted:
                 return True
-        return mine.demands and other.puts and not (mine.is_plain and (is_single or mine.constants is not None))
+        return (
+            mine.demands
+            and other.puts
+            and not (mine.is_plain and (is_single or mine.constants is not None))
+        )
 
     def _helpers(self, i: int) -> Iterator[int]:
         for p, use in self.uses[i].items():

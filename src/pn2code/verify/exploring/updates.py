@@ -22,11 +22,11 @@ Why these commute: two that read change nothing; a component that is idle in one
 by the other one only; addition, maximum and minimum are associative and commutative; a constant that is set twice
 is set.
 
-*Exceptions*: `n + 1` may raise one (an overflow, or a number that the colour set does not have). Let t be put first in a run in
-which additions occur before t, at the end of which t raises one. The sum is the same at the end, and it is out of range:
-so one of the run raises an exception at the latest there. This is why only a single addition counts, and not
-`n + 1 - 1`, which may raise an exception although its sum is in range. Maximum, minimum and constants raise one because of their
-amount, whatever the token is. And a variable takes any token of the place: its colour set is that of the place.
+*Exceptions*: `n + 1` may raise one (an overflow, or a number that the colour set does not have). Let t be put first in
+a run of additions that t ends with an exception. The sum at the end is the same, and is out of range: so one of the run
+raises an exception there at the latest. This is why only a single addition counts, and not `n + 1 - 1`, which may
+raise an exception although its sum is in range. Maximum, minimum and constants raise one because of their amount,
+whatever the token is. And a variable takes any token of the place: its colour set is that of the place.
 
 Sums of reals depend on their order, and equal reals may differ in the sign of a zero, so nothing is said of them.
 """
@@ -150,7 +150,12 @@ def _looked_at(
 ) -> Accesses | None:
     assert taken.inscription is not None
     terms = taken.inscription.terms
-    if len(terms) != 1 or terms[0].whole or terms[0].delay is not None or not _is_one(terms[0].coefficient):
+    if (
+        len(terms) != 1
+        or terms[0].whole
+        or terms[0].delay is not None
+        or not _is_one(terms[0].coefficient)
+    ):
         return None
     value = terms[0].value if put is None else _one_token(put)
     if value is None:
@@ -186,7 +191,9 @@ def _becomes(variable: core.Symbol, value: core.Exp, uses: _Uses, *, is_own: boo
     if isinstance(value, core.Lit | core.Con):
         return Access(How.SETS, value)
     match value:
-        case core.Apply(core.Builtin(name), core.RecordExp((("1", left), ("2", right)))) if name in _AMOUNT:
+        case core.Apply(core.Builtin(name), core.RecordExp((("1", left), ("2", right)))) if (
+            name in _AMOUNT
+        ):
             if _is(left, variable) and variable not in uses.of(right):
                 return Access(_AMOUNT[name])
             if name in _EITHER_SIDE and _is(right, variable) and variable not in uses.of(left):
@@ -247,7 +254,9 @@ def _one_token(arc: FlatArc) -> core.Exp | None:
     if arc.inscription.form is Form.TOKEN:
         return value
     match value:
-        case core.Apply(core.Builtin("Ms.`"), core.RecordExp((("1", n), ("2", token)))) if _is_one(n):
+        case core.Apply(core.Builtin("Ms.`"), core.RecordExp((("1", n), ("2", token)))) if _is_one(
+            n
+        ):
             return token
         case core.ListExp((token,)):
             return token
@@ -281,4 +290,3 @@ class _Uses:
     def of(e: core.Exp | None) -> list[core.Symbol]:
         """Those in an expression, as often as they occur."""
         return [] if e is None else [x.symbol for x in walk(e) if isinstance(x, core.Var)]
-
