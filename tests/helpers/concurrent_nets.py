@@ -4,7 +4,8 @@
 of `Pick`, so that its graph is the union of those of the pages, and one compilation checks all of them. Each page
 has two to four processes, whose transitions also take, put, test, inhibit and clear places that they share, have
 guards, code segments, conditional and several terms, and priorities; some read and change references. All graphs
-are finite: what goes back takes from a budget.
+are finite: what goes back takes from a budget. With `counters` transitions also change the only tokens of places,
+numbers and pairs, in ways of which some commute.
 """
 
 from __future__ import annotations
@@ -17,6 +18,10 @@ _HEAD = """net Concurrent
   colset L = list S;
   var x, y, z: S;
   var l: L;
+  colset C = int with ~60..60;
+  colset CS = product C * S;
+  var n, m, k: C;
+  var a, b: S;
   val first = ref 0;
   val other = ref 0;
   fun next i = (i + 1) mod 3;
@@ -37,17 +42,34 @@ _READING = (
     "code input (x); output (y); action (x + !first) mod 3",
     "code input (x); output (y); action (x + !other) mod 3",
 )
+_BECOMES = (
+    *("$ + 1", "$ - 1", "$ - x", "x + $", "$ + 2", "$", "$"),
+    *(
+        "Int.max ($, x)",
+        "Int.max ($, 2)",
+        "Int.min ($, 1)",
+        "2",
+        "2",
+        "1",
+        "2 - $",
+        "2 * $",
+        "$ - $",
+    ),
+)
+"""What may become of the number on a counter."""
 
 
 class _Page:
-    def __init__(self, r: Random, number: int) -> None:
+    def __init__(self, r: Random, number: int, counters: int = 0) -> None:
+        self.counters = counters
         self.r = r
         self.number = number
         self.lines: list[str] = []
         self.start: list[str] = []
         self.shared: list[tuple[str, str]] = []
-        self.has_priorities = r.random() < 0.35
-        self.has_references = r.random() < 0.35
+        rare = 0.1 if counters else 0.35
+        self.has_priorities = r.random() < rare
+        self.has_references = r.random() < rare
         self.count = 0
 
     def text(self) -> str:
@@ -57,6 +79,13 @@ class _Page:
             colset = r.choice(_SHARED)
             self._place(f"G{i}", colset, r.choice((0, 0, 1, 1, 2)))
             self.shared.append((f"G{i}", colset))
+        for i in range(self.counters):
+            pair = i % 2 == 1
+            self.lines.append(f"    place K{i} : {'CS' if pair else 'C'}")
+            first = r.randint(0, 2)
+            self.start.append(
+                f"K{i} : 1`({first}, {r.randint(0, 2)})" if pair else f"K{i} : {first}"
+            )
         bodies: list[str] = []
         for k in range(r.randint(2, 4)):
             bodies += self._process(k)
@@ -92,8 +121,15 @@ class _Page:
         if self.has_references and r.random() < 0.3:
             guard = r.choice(("[!first < 2]", "[!other = x]"))
         arcs = [f"in {here} : x", *more]
-        for _ in range(r.choice((0, 1, 1, 2))):
+        for _ in range(r.choice((0, 1, 1, 2) if not self.counters else (0, 0, 0, 0, 1))):
             arcs += self._touch(*r.choice(self.shared))
+        if self.counters and r.random() < 0.8:
+            i = r.randrange(self.counters)
+            more_guard, counting = self._count(f"K{i}", "n", is_pair=i % 2 == 1)
+            arcs += counting
+            if i + 1 < self.counters and r.random() < 0.3:
+                arcs += self._count(f"K{i + 1}", r.choice("mmn"), is_pair=i % 2 == 0)[1]
+            guard = guard or more_guard
         code = ""
         if r.random() < 0.4:
             kinds = _CODE if not self.has_references else r.choice((_CODE, _CHANGING, _READING))
@@ -108,6 +144,26 @@ class _Page:
         if self.has_priorities and r.random() < 0.5:
             head += f" priority {r.choice((100, 1000, 10000))}"
         return [f"{head} {code}".rstrip(), *(f"      {a}" for a in dict.fromkeys(arcs))]
+
+    def _count(self, place: str, n: str, *, is_pair: bool) -> tuple[str, list[str]]:
+        """A guard and arcs at the place of a counter."""
+        r = self.r
+        guard = r.choice(("", "", "", "", f"[{n} < 3]", f"[{n} <> 1]"))
+        if r.random() < 0.15:
+            shown = (
+                f"({r.choice((n, '1'))}, {r.choice(('a', '0'))})" if is_pair else r.choice((n, "1"))
+            )
+            return guard if n in shown else "", [f"both {place} : {shown}"]
+        if r.random() < 0.15:
+            one = r.choice((0, 1))
+            taken = f"({one}, a)" if is_pair else str(one)
+            put = r.choice((taken, f"({one + 1}, a)" if is_pair else str(one + 1)))
+            return "", [f"in {place} : {taken}", f"out {place} : {put}"]
+        becomes = r.choice(_BECOMES).replace("$", n)
+        if not is_pair:
+            return guard, [f"in {place} : {n}", f"out {place} : {becomes}"]
+        other = r.choice(("a", "a", "a", "1", "next a", "x"))
+        return guard, [f"in {place} : ({n}, a)", f"out {place} : 1`({becomes}, {other})"]
 
     def _touch(self, place: str, colset: str) -> list[str]:
         r = self.r
@@ -133,7 +189,7 @@ class _Page:
         return [f"{how} {place} : {value}"]
 
 
-def concurrent(seed: int, count: int) -> str:
-    """A file with so many nets."""
-    pages = [_Page(Random(f"concurrent {seed} {i}"), i).text() for i in range(count)]
+def concurrent(seed: int, count: int, counters: int = 0) -> str:
+    """A file with so many nets, each with so many counters."""
+    pages = [_Page(Random(f"concurrent {seed} {i}"), i, counters).text() for i in range(count)]
     return _HEAD + "".join(pages)

@@ -1,10 +1,16 @@
-"""Stubborn sets of transitions, closed as the explorer does it; is what they promise true in the token game?"""
+"""Stubborn sets of transitions, closed as the explorer does it; is what they promise true in the token game?
+
+Where a place holds one token, a transition may occur with another value of a variable that only stands on the arcs
+between the two: elements that differ in such variables count as one, if they come to the same marking in either order.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from pn2code.ml.core.terms import Symbol, Var
 from pn2code.net.flat import FlatNet
+from pn2code.net.uses import walk
 from pn2code.semantics.game.marking import BindingElement, Marking
 from pn2code.semantics.game.token_game import Game
 from pn2code.verify.exploring.dependency import Dependency, Member
@@ -56,6 +62,7 @@ def check(net: FlatNet, table: Dependency, markings: Sequence[Marking], game: Ga
         BrokenError: an element of a set, and what occurs outside of it, do not commute.
     """
     smaller = 0
+    hidden = _hidden(net, markings)
     for marking in markings:
         elements = game.enabled_in(marking)
         enabled = {e.transition for e in elements}
@@ -66,8 +73,39 @@ def check(net: FlatNet, table: Dependency, markings: Sequence[Marking], game: Ga
             smaller += 1
             mine = [e for e in elements if e.transition in chosen]
             for here in _outside(game, marking, chosen):
-                _compare(net, game, here, mine, chosen)
+                _compare(net, game, here, mine, chosen, hidden)
     return smaller
+
+
+def _hidden(net: FlatNet, markings: Sequence[Marking]) -> set[tuple[int, Symbol]]:
+    """Variables of transitions that stand only on arcs to one place, which never holds two tokens."""
+    lone = {
+        p.index for p in net.places if all(sum(1 for _ in m.places[p.index]) <= 1 for m in markings)
+    }
+    found = set()
+    for t in net.transitions:
+        texts = [(a.place, a.inscription.value) for a in t.arcs if a.inscription]
+        texts += [(-1, g) for g in t.guards]
+        texts += [(-1, t.code.action)] if t.code else []
+        inputs = t.code.inputs if t.code else ()
+        for s in t.variables:
+            where = {
+                p for p, e in texts if any(isinstance(x, Var) and x.symbol == s for x in walk(e))
+            }
+            if len(where) == 1 and where <= lone and s not in inputs:
+                found.add((t.index, s))
+    return found
+
+
+def _shown(
+    elements: Sequence[BindingElement], hidden: set[tuple[int, Symbol]]
+) -> list[tuple[tuple[int, str], BindingElement]]:
+    """The elements, each after what it is without such variables."""
+    found = []
+    for e in elements:
+        values = [(s.name, v) for s, v in e.values if (e.transition, s) not in hidden]
+        found.append(((e.transition, repr(values)), e))
+    return found
 
 
 def _outside(game: Game, marking: Marking, chosen: set[int]) -> Iterator[Marking]:
@@ -84,28 +122,33 @@ def _outside(game: Game, marking: Marking, chosen: set[int]) -> Iterator[Marking
 
 
 def _compare(
-    net: FlatNet, game: Game, here: Marking, mine: list[BindingElement], chosen: set[int]
+    net: FlatNet,
+    game: Game,
+    here: Marking,
+    mine: list[BindingElement],
+    chosen: set[int],
+    hidden: set[tuple[int, Symbol]],
 ) -> None:
-    elements = game.enabled_in(here)
-    own = [e for e in elements if e.transition in chosen]
-    if own != mine:
-        names = {
-            net.transitions[e.transition].name
-            for e in (*own, *mine)
-            if e not in own or e not in mine
-        }
-        raise BrokenError(f"{sorted(names)} are not enabled as before")
-    for a in own:
+    elements = _shown(game.enabled_in(here), hidden)
+    before = sorted(key for key, _ in _shown(mine, hidden))
+    own = [(key, e) for key, e in elements if e.transition in chosen]
+    if sorted(key for key, _ in own) != before:
+        changed = {k for k, _ in own}.symmetric_difference(before)
+        raise BrokenError(
+            f"{sorted({net.transitions[t].name for t, _ in changed})} are not enabled as before"
+        )
+    for key_a, a in own:
         after_a, _ = game.occur(here, a)
-        for u in elements:
+        for key_u, u in elements:
             if u.transition in chosen:
                 continue
             after_u, _ = game.occur(here, u)
             names = f"{net.transitions[a.transition].name} and {net.transitions[u.transition].name}"
-            if u not in game.enabled_in(after_a):
+            seconds = [e for key, e in _shown(game.enabled_in(after_a), hidden) if key == key_u]
+            if not seconds:
                 raise BrokenError(f"{names}: the second is not enabled after the first")
-            if (
-                a in game.enabled_in(after_u)
-                and game.occur(after_a, u)[0] != game.occur(after_u, a)[0]
-            ):
+            firsts = [e for key, e in _shown(game.enabled_in(after_u), hidden) if key == key_a]
+            if firsts and {game.occur(after_a, e)[0] for e in seconds} != {
+                game.occur(after_u, e)[0] for e in firsts
+            }:
                 raise BrokenError(f"{names} do not commute")

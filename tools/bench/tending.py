@@ -1,7 +1,8 @@
 """The machine-tending family: n parts through feeder, loader, mill and finisher onto pallets; two arms, three devices.
 
     python -m tools.bench.tending --parts 4 FOLDER           # cell.cpn and cell.toml
-    python -m tools.bench.tending --measure 2,4,6,8,12,50    # markings with and without partial order
+    python -m tools.bench.tending --measure 2,4,6             # markings with and without partial order
+    python -m tools.bench.tending --reduced --measure 8,12    # with it only
 
 Arm 1 feeds the loader and carries loaded parts to the mill; arm 2 passes milled parts to the finisher and stows
 finished ones on the pallet for good parts or for scrap. Between the machines parts wait on trays, any number of them.
@@ -316,6 +317,7 @@ def main() -> int:
     parser.add_argument(
         "--states", type=int, default=10_000_000, help="most markings (default: %(default)s)"
     )
+    parser.add_argument("--reduced", action="store_true", help="with partial order only")
     parser.add_argument("folder", type=Path, nargs="?")
     given = parser.parse_args()
     if given.folder is not None:
@@ -325,7 +327,7 @@ def main() -> int:
         print("| parts | reduction | markings | dead | seconds | MiB | whole command, s |")
         print("|---|---|---|---|---|---|---|")
     for parts in map(int, given.measure.split(",")) if given.measure else ():
-        for options in ((), ("--reduce", "partial-order")):
+        for options in ((), ("--reduce", "partial-order"))[given.reduced :]:
             found = measure(parts, limits, *options)
             used = ", ".join(found["reductions"]) or "none"
             size = f"{found['nodes']:,}" if found["complete"] else f"more than {found['nodes']:,}"

@@ -171,13 +171,16 @@ class Analysis:
 
 
 @frozen
-class _Start:
+class Start:
+    """The initial marking; None where it is not known, and then why."""
+
     evaluator: Evaluator | None
     marking: tuple[MultiSet | TimedMultiSet | None, ...]
     unknown: dict[int, str]
 
     @property
     def initial(self) -> tuple[int | None, ...]:
+        """The numbers of tokens."""
         return tuple(None if m is None else len(m) for m in self.marking)
 
 
@@ -197,12 +200,12 @@ def analyse(
         given: names of places whose initial marking is given from outside: it is not known here.
     """
     limits = limits or Limits()
-    start = _start(net, storage or {}, given)
+    start = start_of(net, storage or {}, given)
     symbolic = Symbolic(net, start.evaluator)
     skel = skeleton(net, symbolic)
     initial = start.initial
     p_flows = _p_flows(skel, limits)
-    everything = flows.basis(_without_resets(skel), limits.flows)
+    everything = flows.basis(without_resets(skel), limits.flows)
     coloured = coloured_invariants(skel, symbolic, start.marking, bool(storage))
     t_flows = _t_flows(skel, limits)
     g = graph(net)
@@ -290,7 +293,7 @@ def bounds_and_sums(
 ) -> tuple[dict[int, PlaceBound], tuple[Sum, ...]]:
     """The same, and sums that never change. Arguments as for `analyse`."""
     limits = limits or Limits()
-    start = _start(net, storage or {}, given)
+    start = start_of(net, storage or {}, given)
     symbolic = Symbolic(net, start.evaluator)
     skel = skeleton(net, symbolic)
     coloured = coloured_invariants(skel, symbolic, start.marking, bool(storage))
@@ -336,13 +339,13 @@ def _covers(covered: int, of: int, found: flows.Flows) -> bool | None:
 # --- the initial marking ---------------------------------------------------------------------------
 
 
-def _start(net: FlatNet, storage: Mapping[str, str], given: Collection[str]) -> _Start:
+def start_of(net: FlatNet, storage: Mapping[str, str], given: Collection[str]) -> Start:
     """The initial marking, as far as it does not depend on chance or on files."""
     try:
         game = Game(net, storage)
     except GameError as error:
         reason = f"the initial marking cannot be evaluated: {error.message}"
-        return _Start(None, (None,) * len(net.places), {p.index: reason for p in net.places})
+        return Start(None, (None,) * len(net.places), {p.index: reason for p in net.places})
     effects = effects_of(net.program)
     marking: list[MultiSet | TimedMultiSet | None] = list(game.marking.places)
     unknown: dict[int, str] = {}
@@ -353,13 +356,13 @@ def _start(net: FlatNet, storage: Mapping[str, str], given: Collection[str]) -> 
             unknown[place.index] = "the initial marking depends on random numbers or files"
     for p in unknown:
         marking[p] = None
-    return _Start(game.evaluator, tuple(marking), unknown)
+    return Start(game.evaluator, tuple(marking), unknown)
 
 
 # --- invariants ------------------------------------------------------------------------------------
 
 
-def _without_resets(skel: Skeleton) -> list[dict[int, int]]:
+def without_resets(skel: Skeleton) -> list[dict[int, int]]:
     """The matrix of the numbers of tokens; a place that is reset gets a column of its own, which no other cancels."""
     rows = [dict(r) for r in skel.counts]
     for p in skel.resets:
@@ -368,7 +371,7 @@ def _without_resets(skel: Skeleton) -> list[dict[int, int]]:
 
 
 def _p_flows(skel: Skeleton, limits: Limits) -> flows.Flows:
-    return flows.semiflows(_without_resets(skel), limits.flows)
+    return flows.semiflows(without_resets(skel), limits.flows)
 
 
 _SHORT = Limits(flows=flows.Limits(rows=1_000, work=20_000, programs=0))

@@ -127,7 +127,7 @@ class _Search:
             if p.index in skeleton.resets or p.colset.type == UNIT or not self._deltas[p.index]:
                 continue
             for steps, kind in self._projections(p.colset.type, ()):
-                if not (narrowed and _has_real(kind)) and kind != UNIT:
+                if not (narrowed and has_real(kind)) and kind != UNIT:
                     projection = Projection(p.index, steps)
                     self._rows.setdefault(kind, {})[projection] = self._row(projection)
 
@@ -244,12 +244,13 @@ def _component(c: Colset, step: Component) -> Colset | None:
     return None
 
 
-def _has_real(t: Type) -> bool:
+def has_real(t: Type) -> bool:
+    """Whether values of a type may have reals in them, of which equal ones may differ in the sign of a zero."""
     match t:
         case TRecord(fields):
-            return any(_has_real(x) for _, x in fields)
+            return any(has_real(x) for _, x in fields)
         case TCon(_, args):
-            return t == REAL or any(_has_real(x) for x in args)
+            return t == REAL or any(has_real(x) for x in args)
         case _:
             return True
 

@@ -37,7 +37,7 @@ MOST_EVALUATIONS = 20_000
 _STEPS = 50_000
 """Of one evaluation."""
 
-_TOKEN = Atom(core.Lit(1, INT, Span(SourceText("", NOWHERE), 0, 0)), -1)
+TOKEN = Atom(core.Lit(1, INT, Span(SourceText("", NOWHERE), 0, 0)), -1)
 """Stands for one token, whatever its colour."""
 
 
@@ -301,13 +301,13 @@ def _sums(arc: FlatArc, symbolic: Symbolic, facts: Facts) -> Iterator[dict[Part,
 # --- counting ------------------------------------------------------------------------------------
 
 
-def _counted(parts: Sum, counter: Counter) -> dict[Part, int]:
+def counted(parts: Sum, counter: Counter) -> dict[Part, int]:
     """Numbers of tokens as a sum: parts of known size become a number of the empty part, under their conditions."""
     found: dict[Part, int] = {}
     for part, n in parts.items():
         size = counter.size(part)
         if size.exact:
-            part, n = Part(part.conditions, _TOKEN, False), n * size.low
+            part, n = Part(part.conditions, TOKEN, False), n * size.low
         found[part] = found.get(part, 0) + n
     return {p: n for p, n in found.items() if n}
 
@@ -319,7 +319,7 @@ def _count(
     own: dict[Part, int] = {}
     for place in sorted({*flow.take, *flow.put}):
         delta = add(flow.put.get(place, {}), scaled(flow.take.get(place, {}), -1))
-        for part, n in _counted(delta, counter).items():
+        for part, n in counted(delta, counter).items():
             if part not in own:
                 own[part] = len(columns)
                 columns.append(t)
@@ -328,13 +328,13 @@ def _count(
 
 def _varying(parts: Sum, counter: Counter) -> Size | None:
     """The number of tokens of an arc, if that is not constant."""
-    counted = _counted(parts, counter)
-    if all(not p.conditions and p.atom is _TOKEN for p in counted):
+    found = counted(parts, counter)
+    if all(not p.conditions and p.atom is TOKEN for p in found):
         return None
-    conditions = sorted({c for p in counted for c in p.conditions}, key=_order)
+    conditions = sorted({c for p in found for c in p.conditions}, key=_order)
     if len(conditions) > MOST_CONDITIONS:
-        return _interval(counted, counter)
-    sizes = [_interval(_chosen(counted, c), counter) for c in _choices(conditions)]
+        return _interval(found, counter)
+    sizes = [_interval(_chosen(found, c), counter) for c in _choices(conditions)]
     highs = [s.high for s in sizes]
     high = None if None in highs else max(h for h in highs if h is not None)
     size = Size(min(s.low for s in sizes), high)
@@ -345,8 +345,8 @@ def _interval(parts: Sum, counter: Counter) -> Size:
     """Bounds of a sum of counts, every condition and every unknown number being independent."""
     low, high = 0, 0
     bounded = True
-    for part, n in _counted(parts, counter).items():
-        size = counter.size(part) if part.atom is not _TOKEN else ONE
+    for part, n in counted(parts, counter).items():
+        size = counter.size(part) if part.atom is not TOKEN else ONE
         least = 0 if part.conditions else size.low
         ends = [n * least] + ([n * size.high] if size.high is not None else [])
         if size.high is None:
@@ -411,8 +411,8 @@ def _mode(
     delta: dict[int, int] = {}
     unknown: set[int] = set()
     for place in sorted({*take, *put}):
-        change = _counted(add(put.get(place, {}), scaled(take.get(place, {}), -1)), counter)
-        if any(p.conditions or p.atom is not _TOKEN for p in change):
+        change = counted(add(put.get(place, {}), scaled(take.get(place, {}), -1)), counter)
+        if any(p.conditions or p.atom is not TOKEN for p in change):
             unknown.add(place)
         elif change:
             delta[place] = sum(change.values())

@@ -16,9 +16,12 @@ from pn2code.net.flat import FlatNet
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.graph import state_space
 from pn2code.semantics.game.token_game import Game
+from pn2code.structure.relations import Relations
 from pn2code.verify.exploring import dependency as module
+from pn2code.verify.exploring import updates
 from pn2code.verify.exploring.dependency import dependency, recurring
 from pn2code.verify.exploring.elements import NotPossibleError
+from pn2code.verify.exploring.updates import How
 
 NETS = amount(16, 1000)
 MARKINGS = 60
@@ -37,6 +40,12 @@ def test_sets_of_random_nets_keep_what_they_promise() -> None:
     assert smaller > 20 * NETS
 
 
+def test_sets_where_counters_are_changed() -> None:
+    net = flat(concurrent(0, NETS // 2, counters=3))
+    smaller = sum(sets(only(net, [number])) for number in numbers_of(net))
+    assert smaller > 15 * NETS
+
+
 RULES = """
     net Rules
       colset UNIT = unit;
@@ -45,7 +54,7 @@ RULES = """
       val seen = ref 0;
       place A : INT = 1`1
       place B : INT
-      place C : INT = 1`1
+      place C : INT = 2`1
       place D : INT
       place Free = 1
       trans Left
@@ -137,6 +146,174 @@ def test_code_segments_meet_at_references_only(left: str, right: str, expected: 
     assert rivals(text, "Left") == expected
 
 
+COUNTERS = """
+    net Counters
+      standard
+      colset SMALL = int with 0..9;
+      colset PAIR = product INT * BOOL;
+      colset HELD = product REAL * INT;
+      var n, m, x: INT;
+      var s: SMALL;
+      var b: BOOL;
+      var r: REAL;
+      val seen = ref 0;
+      fun twice n = n + n;
+      place A : INT = 3`1
+      place B : INT = 3`1
+      place N : INT = 1`5
+      place M : INT = 1`5
+      place Two : INT = 2`5
+      place Pair : PAIR = 1`(5, true)
+      place Small : SMALL = 1`5
+      place Held : HELD = 1`(1.0, 5)
+      place D : INT
+      trans Left
+        in A : x
+      trans Right
+        in B : x
+      trans Over
+        in M : n
+"""
+
+
+@pytest.mark.parametrize(
+    ("left", "right", "expected"),
+    [
+        ("in N : n; out N : n + 1", "in N : n; out N : n - 2", set()),
+        ("in N : n; out N : n + x", "in N : m; out N : 1`(x + m)", set()),
+        ("in N : n; out N : Int.max (n, x)", "in N : n; out N : Int.max (3, n)", set()),
+        ("in N : n; out N : Int.max (n, x)", "in N : n; out N : Int.min (3, n)", {"Right"}),
+        ("in N : n; out N : n + 1", "in N : n; out N : Int.max (n, 3)", {"Right"}),
+        ("in N : n; out N : 7", "in N : n; out N : 7", set()),
+        ("in N : n; out N : 7", "in N : n; out N : 8", {"Right"}),
+        ("in N : n; out N : 7", "in N : n; out N : n + 1", {"Right"}),
+        ("in N : n; out N : x", "in N : n; out N : x", {"Right"}),
+        ("in N : n; out N : 1 - n", "in N : n; out N : 1 - n", {"Right"}),
+        ("in N : n; out N : 2 * n", "in N : n; out N : 2 * n", {"Right"}),
+        ("in N : n; out N : twice n", "in N : n; out N : n + 1", {"Right"}),
+        ("in N : n; out N : n + 1 - 1", "in N : n; out N : n + 1", {"Right"}),  # it may overflow
+        ("in N : n; out N : n + n", "in N : n; out N : n + 1", {"Right"}),
+        ("in N : n; out N : n", "in N : n; out N : n + 1", set()),  # nothing depends on it
+        ("in N : n; out N : n; out D : n", "in N : n; out N : n + 1", {"Right"}),
+        ("both N : n", "in N : n; out N : n + 1", set()),
+        ("both N : n", "in N : n; out N : 2 * n", set()),
+        ("both N : n; out D : n", "in N : n; out N : n + 1", {"Right"}),
+        ("both N : n; out D : n", "both N : n; out D : n", set()),
+        ("both N : x", "in N : n; out N : n + 1", {"Right"}),
+        ("both N : 5", "in N : n; out N : n + 1", {"Right"}),
+        ("in N : 5; out N : 5", "both N : n; out D : n", set()),
+        ("in N : 5", "in N : n; out N : n + 1", {"Right"}),
+        ("in N : n; out N : n + 1; both M : n", "in N : n; out N : n + 1", {"Right", "Over"}),
+        ("in Two : n; out Two : n + 1", "in Two : n; out Two : n + 1", {"Right"}),
+        ("both Two : n; out D : n", "in Two : n; out Two : n + 1", {"Right"}),
+        ("both Two : n; out D : n", "in Two : n; out Two : n", set()),  # it is only tested
+        ("in Two : n; out Two : n", "in Two : n; out Two : n", set()),
+        ("in Two : 4", "in Two : 5", set()),
+        ("in Two : 5", "in Two : 5", {"Right"}),
+        ("in Two : 5", "out Two : 5", set()),  # more of the same is nothing new
+        ("in Two : n", "out Two : 5", {"Right"}),
+        ("in Two : 5", "in Two : n", {"Right"}),
+        (
+            "in Pair : (n, b); out Pair : (n + 1, b)",
+            "in Pair : (m, b); out Pair : (m, not b)",
+            set(),
+        ),
+        (
+            "in Pair : (n, b); out Pair : (n + 1, not b)",
+            "in Pair : (n, b); out Pair : (n, not b)",
+            {"Right"},
+        ),
+        ("both Pair : (n, true)", "in Pair : (m, b); out Pair : (m + 1, b)", set()),
+        ("both Pair : (n, true)", "in Pair : (m, b); out Pair : (m, false)", {"Right"}),
+        ("in Small : s; out Small : s + 1", "in Small : s; out Small : s - 1", set()),
+        ("in N : s; out N : s + 1", "in N : n; out N : n + 1", {"Right"}),  # not any number
+        (
+            "in Held : (r, n); out Held : (r, n + 1)",
+            "in Held : (r, n); out Held : (r, n + 1)",
+            {"Right"},
+        ),
+    ],
+)
+def test_updates_of_the_only_token(left: str, right: str, expected: set[str]) -> None:
+    lines = COUNTERS.splitlines()
+    for name, more in (("Left", left), ("Right", right)):
+        at = next(i for i, line in enumerate(lines) if f"trans {name}" in line)
+        lines[at + 2 : at + 2] = [f"        {arc.strip()}" for arc in more.split(";")]
+    assert rivals("\n".join(lines), "Left") == expected
+
+
+@pytest.mark.parametrize(
+    ("where", "expected"),
+    [
+        ("trans Left guard [n > 0]", {"Right"}),
+        ("trans Left code input (n); action ignore n", {"Right"}),
+        ("trans Left code action ignore (!seen)", set()),
+    ],
+)
+def test_what_else_depends_on_the_token(where: str, expected: set[str]) -> None:
+    text = COUNTERS.replace("trans Left", f"{where}\n        in N : n\n        out N : n + 1")
+    text = text.replace("trans Right", "trans Right\n        in N : m\n        out N : m + 1")
+    assert rivals(text, "Left") == expected
+
+
+TENDING = """
+    net Tending
+      standard
+      var n: INT;
+      place Feeder = 3
+      place Held
+      place Left : INT = 1`3
+      place Free = 1
+      place Done
+      trans Feed
+        in Feeder : ()
+        in Free : ()
+        out Held : ()
+      trans Stow
+        in Held : ()
+        in Left : n
+        out Left : n - 1
+        out Free : ()
+      trans Drop
+        in Feeder : ()
+        in Left : n
+        out Left : n - 1
+      trans End
+        in Left : 0
+        out Done : ()
+"""
+
+
+def test_what_is_never_enabled_together_does_not_conflict() -> None:
+    """`Left` is as great as the number of tokens on the two other places."""
+    assert rivals(TENDING, "End") == set()
+    assert rivals(TENDING, "Stow") == set()
+    assert rivals(TENDING, "Drop") == {"Feed"}
+    assert rivals(TENDING.replace("Left : INT = 1`3", "Left : INT = 1`2"), "Stow") == {"End"}
+    assert rivals(TENDING.replace("in Left : 0", "in Left : 1"), "Stow") == {"End"}
+    assert rivals(TENDING.replace("out Held : ()", "out Held : 2`()"), "Stow") == {"End"}
+    assert "End" in rivals(TENDING.replace("Left : INT = 1`3", "Left : INT = 1`3 ++ 1`0"), "Stow")
+
+
+def test_a_search_that_may_raise_is_not_excluded() -> None:
+    """Its exception does not wait for the tokens without which it is disabled."""
+    text = TENDING.replace("trans End", "trans End guard [6 div n > 0]").replace(
+        "in Left : 0", "in Left : n\n        inhibit Held\n        in Free : ()"
+    )
+    assert "End" in rivals(text, "Stow")
+
+
+def test_what_puts_back_what_it_takes_helps_nobody() -> None:
+    net = flat(TENDING)
+    index = {t.short: t.index for t in net.transitions}
+    left = next(p.index for p in net.places if p.short == "Left")
+    member = dependency(net).members[index["End"]]
+    assert [(r.place, r.helpers) for r in member.reasons] == [(left, ())]
+    assert member.helpers == (index["Stow"], index["Drop"])  # they may make it 0
+    member = dependency(net).members[index["Drop"]]
+    assert member.helpers == ()
+
+
 def test_reasons_why_a_transition_is_disabled() -> None:
     net = flat(
         RULES + "      trans Both\n        in B : x\n        in D : 2`3\n        inhibit A\n"
@@ -194,6 +371,34 @@ def test_each_rule_is_needed(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module._Relation, "_conflicts", staticmethod(less))
     with pytest.raises(BrokenError):
         test_sets_of_random_nets_keep_what_they_promise()
+
+
+def _everything(a: Any, b: Any) -> bool:
+    return How.CHANGES not in (a.how, b.how) or How.IDLE in (a.how, b.how)
+
+
+def _sum(self: Relations, relation: Any, one: int, other: int) -> bool:
+    mine, its = self.least[one], self.least[other]
+    total = sum(w * (mine.get(p, 0) + its.get(p, 0)) for p, w in relation.tokens.items())
+    return total > relation.total
+
+
+@pytest.mark.parametrize(
+    ("of", "name", "wrong"),
+    [
+        (updates, "_commute", _everything),  # a sum and a maximum
+        (module, "is_moved_by", lambda a, b: False),  # guards that see the token
+        (Relations, "_is_broken", _sum),  # tokens of both instead of either
+    ],
+)
+def test_wrong_rules_for_counters_are_noticed(
+    monkeypatch: pytest.MonkeyPatch, of: Any, name: str, wrong: Any
+) -> None:
+    monkeypatch.setattr(of, name, wrong)
+    net = flat(concurrent(0, NETS, counters=3))
+    with pytest.raises(BrokenError):
+        for number in numbers_of(net):
+            sets(only(net, [number]))
 
 
 @pytest.mark.parametrize(

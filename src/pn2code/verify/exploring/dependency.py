@@ -18,18 +18,24 @@ below are enough for D1 and D2:
   tests or inhibits, and on the references that its inscriptions read. A *code segment* belongs to the binding: it
   computes outputs from inputs. What commands of robots do is not seen in the net.
 * An *enabled* transition t has as rivals all that take from, test, or clear what it takes, or take or clear what it
-  tests (else they could disable each other), all that put tokens where it takes or tests (else it could get other
-  bindings; not where the place has one colour and t demands a known number of tokens: more of the same is
-  nothing new), all that put tokens where it must find none, or the other way round, all at a place that one of
-  the two clears, and all that change a reference that it reads or changes, or the other way round. Two that put tokens
-  into the same place, or test one there, commute; but not where tokens have reals, since of 0.0 and ~0.0, which are
-  one token, a place keeps the sign of what was there first: at such a place all that change it are rivals. Of two
-  that need a token of a place, and need it to be empty, only one is ever enabled; before the other can be, something
-  of the set occurs.
+  tests (else they could disable each other; not where both demand constants, and different ones), all that put
+  tokens where it takes or tests (else it could get other bindings; not where t demands known numbers of constants, or
+  the place has one colour: more tokens are nothing new), all that put tokens where it must find none, or the other
+  way round, all at a place that one of the two clears, and all that change a reference that it reads or changes, or
+  the other way round. Two that put tokens into the same place, or test one there, commute; but not where tokens have
+  reals, since of 0.0 and ~0.0, which are one token, a place keeps the sign of what was there first: at such a place all
+  that change it are rivals. What puts the very tokens that it takes only tests them.
+* *Updates* of the only token of a place that commute (`updates`) make nobody a rival there. A binding then stands for
+  all that differ in variables on which nothing else depends, in D1 and D2 too: after the others t occurs with another
+  value of such a variable, and all comes to the same marking.
+* Two that are *never both enabled* in a reachable marking (`structure.relations`) are no rivals: as long as nothing of
+  the set has occurred, t remains enabled, step by step, so the other one does not occur. Nor does it matter that it
+  raises an exception, if its search raises none. Of two that need a token of a place, and need it to be empty, only
+  one is ever enabled, too.
 * A *disabled* transition remains disabled as long as an input place lacks tokens, or an inhibiting one has some. So it
-  is enough to have with it what puts tokens into one such place, or takes from it. If this is not why it is
-  disabled, with it come all that put tokens into any of its input places, take from the inhibiting ones, or
-  change references that it reads.
+  is enough to have with it what increases the number of tokens on one such place, or takes from it. If this is not why
+  it is disabled, with it come all that put tokens into any of its input places (not what changes a part of the only
+  token that it does not look at), take from the inhibiting ones, or change references that it reads.
 * An *exception* in an inscription is looked at as an occurrence after which nothing happens. It may be raised while
   bindings are searched for, although an input place lacks tokens. So a transition whose guards and input inscriptions
   are not certain to raise nothing has no such reason. Nor must an exception be put off for ever, because what is
@@ -64,8 +70,10 @@ from pn2code.net.flat import (
 )
 from pn2code.semantics.evaluation.effects import Effect, Effects, effects_of
 from pn2code.semantics.evaluation.references import occurring
+from pn2code.structure.relations import Relations, relations
 from pn2code.verify.controller.unsure import is_total
 from pn2code.verify.exploring.elements import NotPossibleError, colours
+from pn2code.verify.exploring.updates import Accesses, accesses, commute, is_moved_by
 
 MAGIC = "pn2code-dependency 1"
 MOST_TRANSITIONS = 3000
@@ -81,6 +89,7 @@ class _Use:
     Args:
         least: tokens without which it is disabled. `consumes`: it surely takes some.
         is_plain: with so many tokens it is not disabled, if all are equal.
+        constants: all the tokens that it demands; None: these depend on its variables.
     """
 
     takes: bool = False
@@ -91,6 +100,7 @@ class _Use:
     least: int = 0
     consumes: bool = False
     is_plain: bool = True
+    constants: frozenset[core.Exp] | None = frozenset()
 
     @property
     def demands(self) -> bool:
@@ -102,6 +112,11 @@ class _Use:
         """Whether the place may hold something else afterwards."""
         return self.takes or self.puts or self.clears
 
+    def keep(self) -> None:
+        """It puts what it takes: it only tests it."""
+        self.tests = True
+        self.takes = self.puts = self.consumes = False
+
     def add(self, arc: FlatArc) -> None:
         """One more arc."""
         self.takes |= arc.kind is ArcKind.INPUT
@@ -111,6 +126,8 @@ class _Use:
         self.clears |= arc.kind is ArcKind.RESET
         if arc.kind not in _TAKING:
             return
+        own = _taken_constants(arc)
+        self.constants = None if own is None or self.constants is None else self.constants | own
         counts = [
             _count(arc, i) for i in range(len(arc.inscription.terms if arc.inscription else ()))
         ]
@@ -118,6 +135,21 @@ class _Use:
         least = sum(n or 0 for n in counts)
         self.least = max(self.least, least)
         self.consumes |= arc.kind is ArcKind.INPUT and least > 0
+
+
+def _taken_constants(arc: FlatArc) -> frozenset[core.Exp] | None:
+    assert arc.inscription is not None
+    terms = arc.inscription.terms
+    if not terms or any(t.whole or not _is_constant(t.value) for t in terms):
+        return None
+    return frozenset(t.value for t in terms)
+
+
+def _is_constant(e: core.Exp) -> bool:
+    """Whether two of these are the same value only if they are equal."""
+    if isinstance(e, core.Con):
+        return not e.constructor.has_argument
+    return isinstance(e, core.Lit) and isinstance(e.value, int | str)
 
 
 def _count(arc: FlatArc, index: int) -> int | None:
@@ -204,7 +236,7 @@ def dependency(net: FlatNet) -> Dependency:
     """
     effects = effects_of(net.program)
     check(net, effects)
-    found = _Relation(net, effects)
+    found = _Relation(net, effects, relations(net))
     return Dependency(len(net.places), tuple(map(found.member, net.transitions)))
 
 
@@ -248,8 +280,9 @@ class _Touching:
 
 
 class _Relation:
-    def __init__(self, net: FlatNet, effects: Effects) -> None:
+    def __init__(self, net: FlatNet, effects: Effects, known: Relations) -> None:
         self.net = net
+        self.known = known
         self.single = [colours(p.colset) == 1 for p in net.places]
         self.signed = [has_reals(p.colset) for p in net.places]
         self.uses: list[dict[int, _Use]] = []
@@ -260,9 +293,13 @@ class _Relation:
             own: dict[int, _Use] = {}
             for arc in t.arcs:
                 own.setdefault(arc.place, _Use()).add(arc)
+            for p in known.kept[t.index]:
+                own[p].keep()
             self.uses.append(own)
             for p, use in own.items():
                 self.at[p].uses[t.index] = use
+        self.accesses: list[dict[int, Accesses]] = [self._accesses(t) for t in net.transitions]
+        self.raises_nothing = [_raises_nothing(t) for t in net.transitions]
         self.recurring = recurring(self.consumed(), len(net.transitions))
 
     def consumed(self) -> list[list[frozenset[int]]]:
@@ -279,19 +316,37 @@ class _Relation:
             self._spoils(t) or i in self.recurring,
             _sorted(self._rivals(i), i),
             _sorted(self._helpers(i), i),
-            tuple(self._reasons(t)) if _raises_nothing(t) else (),
+            tuple(self._reasons(t)) if self.raises_nothing[i] else (),
         )
 
+    def _accesses(self, t: FlatTransition) -> dict[int, Accesses]:
+        places = self.known.single.intersection(self.uses[t.index])
+        found = {p: accesses(self.net, t, p) for p in sorted(places)}
+        return {p: a for p, a in found.items() if a is not None}
+
     def _rivals(self, i: int) -> Iterator[int]:
+        for j in set(self._dependent(i)):
+            # An exception in a search is raised although not all that is demanded is there.
+            if not (self.raises_nothing[j] and self.known.exclude(i, j)):
+                yield j
+
+    def _dependent(self, i: int) -> Iterator[int]:
+        """Those with which an enabled one does not commute, as far as arcs and references tell."""
         for p, use in self.uses[i].items():
             for j, other in self.at[p].uses.items():
                 is_order_kept = self.signed[p] and (use.changes or other.changes)
-                if is_order_kept or self._conflicts(use, other, is_single=self.single[p]):
+                conflicts = self._conflicts(use, other, is_single=self.single[p])
+                if is_order_kept or (conflicts and not self._updates(i, j, p)):
                     yield j
         if self.reach[i].writes:
             yield from (j for j, r in enumerate(self.reach) if r.reads or r.writes)
         elif self.reach[i].reads:
             yield from self.writers
+
+    def _updates(self, i: int, j: int, place: int) -> bool:
+        """Whether both replace or test the only token of a place, and commute there."""
+        one, other = self.accesses[i].get(place), self.accesses[j].get(place)
+        return one is not None and other is not None and commute(one, other)
 
     @staticmethod
     def _conflicts(mine: _Use, other: _Use, *, is_single: bool) -> bool:
@@ -301,22 +356,34 @@ class _Relation:
         if (mine.inhibits and other.puts) or (other.inhibits and mine.puts):
             return True  # what inhibits one and is taken by the other never lets both be enabled
         if (mine.takes and other.demands) or (mine.tests and other.takes):
-            return True
-        return mine.demands and other.puts and not (is_single and mine.is_plain)
+            asked, wanted = mine.constants, other.constants
+            if asked is None or wanted is None or asked & wanted:
+                return True
+        return (
+            mine.demands
+            and other.puts
+            and not (mine.is_plain and (is_single or mine.constants is not None))
+        )
 
     def _helpers(self, i: int) -> Iterator[int]:
         for p, use in self.uses[i].items():
             if use.demands:
-                yield from self.at[p].putting()
+                yield from (j for j in self.at[p].putting() if self._may_help(i, j, p))
             if use.inhibits:
                 yield from self.at[p].removing()
         if self.reach[i].searches:
             yield from self.writers
 
+    def _may_help(self, i: int, j: int, place: int) -> bool:
+        """Whether what the second one does at a place may enable the first."""
+        one, other = self.accesses[i].get(place), self.accesses[j].get(place)
+        return one is None or other is None or is_moved_by(one, other)
+
     def _reasons(self, t: FlatTransition) -> Iterator[Reason]:
         for p, use in self.uses[t.index].items():
             if use.demands and use.least > 0:
-                yield Reason(p, use.least, _sorted(self.at[p].putting(), t.index))
+                more = (j for j in self.at[p].putting() if p in self.known.growing[j])
+                yield Reason(p, use.least, _sorted(more, t.index))
             if use.inhibits:
                 yield Reason(p, 0, _sorted(self.at[p].removing(), t.index))
 
