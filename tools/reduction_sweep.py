@@ -21,6 +21,8 @@ from typing import Any
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests"))
 
+import typer
+
 from helpers.table_nets import Marking, Permutation, orbits
 from pn2code.cli.nets import open_net
 from pn2code.cli.options import Format
@@ -63,7 +65,7 @@ def _compare(net: Path, given: argparse.Namespace) -> Iterator[tuple[str, bool]]
     except (NotPossibleError, GameError) as why:
         yield f"not possible: {why}", False
         return
-    except SystemExit:
+    except (SystemExit, typer.Exit):
         yield "no net", False
         return
     took = time.perf_counter() - began
@@ -93,7 +95,7 @@ def _judge(
     most: int,
 ) -> tuple[str, bool]:
     if not found.get("complete") or not whole.get("complete"):
-        is_wrong = found.get("why") not in ("complete", "states", "seconds", "memory")
+        is_wrong = found.get("why") not in ("complete", "states", "seconds", "memory", "infinite")
         states = f"{whole.get('nodes')} -> {found.get('nodes')}"
         return f"{'+'.join(reductions)}: {found.get('why', found)}, {states}", is_wrong
     said = f"{'+'.join(reductions)}: {whole['nodes']} -> {found['nodes']}"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from itertools import permutations
 from pathlib import Path
 from random import Random
 
@@ -175,24 +176,38 @@ def test_dead_markings_of_processes_that_count(explorers: Explorers, seed: int) 
     assert found.report["dead_count"] == whole.report["dead_count"] > 10
 
 
-def test_a_sum_that_gets_too_great_is_not_missed(explorers: Explorers) -> None:
-    """In one order of the additions only."""
-    text = """
-        net Raises
-          standard
-          colset SMALL = int with 0..2;
-          var n: SMALL;
-          place N : SMALL = 1`1
-          place A = 1
-          place B = 1
+BEGIN = """
+          trans Begin
+            in Q : ()
+            out A : ()"""
+PLUS = """
           trans Plus
             in A : ()
             in N : n
-            out N : n + 2
+            out N : n + 3"""
+MINUS = """
           trans Minus
             in B : ()
             in N : n
-            out N : n - 1
+            out N : n - 3"""
+
+
+@pytest.mark.parametrize("first", [0, 1])
+@pytest.mark.parametrize("order", list(permutations((BEGIN, PLUS, MINUS))))
+def test_a_sum_that_gets_too_great_is_not_missed(
+    explorers: Explorers, order: tuple[str, ...], first: int
+) -> None:
+    """In one order only; `Plus` may have to wait for a step with which `Minus` has nothing to do."""
+    text = f"""
+        net Raises
+          standard
+          colset SMALL = int with 0..5;
+          var n: SMALL;
+          place N : SMALL = 1`4
+          place Q = {1 - first}
+          place A = {first}
+          place B = 1
+{"".join(order)}
     """
     _, found = by_transitions(explorers, flat(text), is_complete=False)
     assert found.report["error"]["kind"] == "exception", found.report

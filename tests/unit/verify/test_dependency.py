@@ -152,7 +152,12 @@ COUNTERS = """
       colset SMALL = int with 0..9;
       colset PAIR = product INT * BOOL;
       colset HELD = product REAL * INT;
+      fun even n = n mod 2 = 0;
+      colset EVEN = subset INT by even;
       var n, m, x: INT;
+      val four = 4 : IntInf.int;
+      var w: INTINF;
+      var e: EVEN;
       var s: SMALL;
       var b: BOOL;
       var r: REAL;
@@ -165,6 +170,8 @@ COUNTERS = """
       place Two : INT = 2`5
       place Pair : PAIR = 1`(5, true)
       place Small : SMALL = 1`5
+      place Wide : INTINF = 1`5
+      place Even : EVEN = 1`4
       place Held : HELD = 1`(1.0, 5)
       place D : INT
       trans Left
@@ -179,8 +186,13 @@ COUNTERS = """
 @pytest.mark.parametrize(
     ("left", "right", "expected"),
     [
-        ("in N : n; out N : n + 1", "in N : n; out N : n - 2", set()),
-        ("in N : n; out N : n + x", "in N : m; out N : 1`(x + m)", set()),
+        ("in N : n; out N : n + 1", "in N : n; out N : n + 2", set()),
+        ("in N : n; out N : n - 1", "in N : n; out N : 1`(n - 2)", set()),
+        ("in N : n; out N : n + 1", "in N : n; out N : n - 2", {"Right"}),  # no overflow after it
+        ("in N : n; out N : n + x", "in N : m; out N : 1`(x + m)", {"Right"}),
+        ("in Wide : w; out Wide : w + four", "in Wide : w; out Wide : 1`(w - four)", set()),
+        ("in Even : e; out Even : e + 2", "in Even : e; out Even : e + 2", {"Right"}),
+        ("in Even : e; out Even : Int.max (e, 3)", "in Even : e; out Even : 4", {"Right"}),
         ("in N : n; out N : Int.max (n, x)", "in N : n; out N : Int.max (3, n)", set()),
         ("in N : n; out N : Int.max (n, x)", "in N : n; out N : Int.min (3, n)", {"Right"}),
         ("in N : n; out N : n + 1", "in N : n; out N : Int.max (n, 3)", {"Right"}),
@@ -225,7 +237,8 @@ COUNTERS = """
         ),
         ("both Pair : (n, true)", "in Pair : (m, b); out Pair : (m + 1, b)", set()),
         ("both Pair : (n, true)", "in Pair : (m, b); out Pair : (m, false)", {"Right"}),
-        ("in Small : s; out Small : s + 1", "in Small : s; out Small : s - 1", set()),
+        ("in Small : s; out Small : s + 1", "in Small : s; out Small : s + 2", set()),
+        ("in Small : s; out Small : s + 1", "in Small : s; out Small : s - 1", {"Right"}),
         ("in N : s; out N : s + 1", "in N : n; out N : n + 1", {"Right"}),  # not any number
         (
             "in Held : (r, n); out Held : (r, n + 1)",

@@ -1,7 +1,7 @@
 """What a transition does with the token of a place that holds at most one: which such uses commute.
 
     uses = access(t, place)      # None: nothing is known
-    uses["count"]                # Access(How.ADDS)
+    uses["count"]                # Access(How.GROWS)
     commute(uses, other)         # whether two transitions may do these in either order
 
 A transition that takes the token `n` and puts `n + 1` instead does with it what adding does, if nothing else in the
@@ -13,7 +13,8 @@ that differ in such variables. Tokens that are tuples or records are looked at c
 |---|---|
 | `IDLE` | is put back, and nothing depends on it |
 | `READS` | is put back, and something in the transition may depend on it |
-| `ADDS` | has an amount added or subtracted that does not depend on it |
+| `GROWS`, `SHRINKS` | has a constant added, subtracted |
+| `ADDS` | has any amount added or subtracted that does not depend on it, and no number is out of range |
 | `RAISES`, `LOWERS` | becomes the greater, the smaller one of itself and an amount that does not depend on it |
 | `SETS` | becomes a constant, whatever it was |
 | `CHANGES` | anything else |
@@ -22,11 +23,14 @@ Why these commute: two that read change nothing; a component that is idle in one
 by the other one only; addition, maximum and minimum are associative and commutative; a constant that is set twice
 is set.
 
-*Exceptions*: `n + 1` may raise one (an overflow, or a number that the colour set does not have). Let t be put first in
-a run of additions that t ends with an exception. The sum at the end is the same, and is out of range: so one of the run
-raises an exception there at the latest. This is why only a single addition counts, and not `n + 1 - 1`, which may
-raise an exception although its sum is in range. Maximum, minimum and constants raise one because of their amount,
-whatever the token is. And a variable takes any token of the place: its colour set is that of the place.
+*Exceptions*: `n + 1` may raise one (an overflow, or a number that the colour set does not have), and what raises one
+must be found in the reduced space, too. Two that both add, or both subtract, may be exchanged: what raises an exception
+now raises one after the other has occurred as well, since the number is farther out of range then, and the other way
+round one of the two raises one at the latest where the sum is out of range. Of one that adds and one that subtracts the
+second may keep the first from raising an exception: these commute only where no number is out of range, in
+`intinf` without bounds. So only a single addition of a constant counts, and not `n + 1 - 1`, which may raise an
+exception although its sum is in range. Maximum, minimum and constants raise one because of their amount, whatever the
+token is. This is so in ranges of numbers; of subsets nothing is said. And a variable takes any token of the place: its colour set is that of the place.
 
 Sums of reals depend on their order, and equal reals may differ in the sign of a zero, so nothing is said of them.
 """
@@ -59,6 +63,8 @@ class How(Enum):
 
     IDLE = "idle"
     READS = "reads"
+    GROWS = "grows"
+    SHRINKS = "shrinks"
     ADDS = "adds"
     RAISES = "raises"
     LOWERS = "lowers"
@@ -66,9 +72,11 @@ class How(Enum):
     CHANGES = "changes"
 
 
-_SAME = frozenset({How.READS, How.ADDS, How.RAISES, How.LOWERS, How.SETS})
+_SAME = frozenset(
+    {How.READS, How.GROWS, How.SHRINKS, How.ADDS, How.RAISES, How.LOWERS, How.SETS}
+)
 """Two transitions that do the same commute."""
-_BLIND = frozenset({How.IDLE, How.ADDS, How.RAISES, How.LOWERS, How.SETS})
+_BLIND = frozenset(How) - {How.READS, How.CHANGES}
 """A transition that does one of these takes any token."""
 _AMOUNT = {
     "Int.+": How.ADDS,
@@ -195,10 +203,26 @@ def _becomes(variable: core.Symbol, value: core.Exp, uses: _Uses, *, is_own: boo
             name in _AMOUNT
         ):
             if _is(left, variable) and variable not in uses.of(right):
-                return Access(_AMOUNT[name])
+                return Access(_changed(name, right, variable))
             if name in _EITHER_SIDE and _is(right, variable) and variable not in uses.of(left):
-                return Access(_AMOUNT[name])
+                return Access(_changed(name, left, variable))
     return Access(How.CHANGES)
+
+
+def _changed(name: str, amount: core.Exp, variable: core.Symbol) -> How:
+    """What a function with this amount does to a variable's value."""
+    how = _AMOUNT[name]
+    among = variable.colset.resolved if variable.colset is not None else None
+    if among is None or among.kind not in (Kind.INT, Kind.INTINF):
+        return How.CHANGES  # of a subset: what is legal need not be all numbers of a range
+    if how is not How.ADDS:
+        return how
+    if among.kind is Kind.INTINF and among.low is None and among.high is None:
+        return how
+    if not isinstance(amount, core.Lit) or not isinstance(amount.value, int):
+        return How.CHANGES
+    is_more = (amount.value >= 0) == name.endswith("+")
+    return How.GROWS if is_more else How.SHRINKS
 
 
 def _is(e: core.Exp, variable: core.Symbol) -> bool:
