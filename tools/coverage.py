@@ -30,7 +30,8 @@ TESTS = (
     "test_supervisor_host", "test_supervisor_rows", "test_generated_supervisor", "test_dry_runs", "test_faults",
     "test_riveting_faults", "test_messages_c", "test_message_cell", "test_minimal_cell", "test_input_sizes",
     "test_bad_coordinates", "test_monitor_chance", "test_monitor_references", "test_timed_channels", "test_files_c",
-    "test_library_files_c", "test_shared_files", "test_running_ends", "test_who_waits", "test_order_of_asking",
+    "test_library_files_c", "test_files_of_one_generation", "test_failing_calls", "test_shared_files",
+    "test_running_ends", "test_who_waits", "test_order_of_asking",
 )  # fmt: skip
 WRAPPER = """\
 #!/bin/sh
@@ -145,6 +146,7 @@ def run_tests(store: Path, tests: list[str], options: list[str]) -> int:
         path.write_text(WRAPPER.format(compiler=compiler, store=store), encoding="utf-8")
         path.chmod(0o755)
     env = {**os.environ, "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}", "CC": "gcc"}
+    env["PN2CODE_COUNTING"] = "1"
     return subprocess.run(
         [sys.executable, "-m", "pytest", "-q", *tests, *options], cwd=ROOT, env=env, check=False
     ).returncode

@@ -5,6 +5,7 @@
  *   crc TEXT                 prints pn_crc32 of it
  *   real TEXT                parses one real: its hex float, or `refused COLUMN REPORT`
  *   string TEXT              parses one string: itself in hexadecimal, formatted again
+ *   scalar NUMBER TEXT       parses one scalar of the table below: as it is written again, or `refused COLUMN`
  *   file CONSUMED HEX        reads a channel's file (two reals, session 0123abcd) given in hexadecimal:
  *                            `empty`, `message X Y SEQ`, or `refused WHY`
  */
@@ -33,6 +34,32 @@ static void parse(pn_scalar_kind_t kind, const char *text)
         }
         (void)printf(" %.*s\n", (int)length, again);
     }
+}
+
+static void parse_scalar(const char *argument)
+{
+    static const char *const names[] = { "red", "green" };
+    static const pn_scalar_t scalars[] = {
+        { .kind = PN_SCALAR_UNIT, .label = "", .colset = "UNIT" },
+        { .kind = PN_SCALAR_BOOL, .label = "", .colset = "BOOL" },
+        { .kind = PN_SCALAR_ENUM, .label = "c", .colset = "COLOUR", .name_count = 2U, .name = names },
+        { .kind = PN_SCALAR_INDEX, .label = "", .colset = "INDEX", .bounded = true, .low = 1, .high = 3 },
+        { .kind = PN_SCALAR_INT, .label = "n", .colset = "RANGE", .bounded = true, .low = -2, .high = 8 },
+        { .kind = PN_SCALAR_INT, .label = "", .colset = "INT" },
+        { .kind = PN_SCALAR_REAL, .label = "", .colset = "SPAN", .bounded = true, .real_low = -1.5, .real_high = 2.5 },
+    };
+    char *text = NULL;
+    char again[PN_CHANNEL_TEXT];
+    const pn_scalar_t *const scalar = &scalars[strtoul(argument, &text, 10)];
+    text += (*text == ' ') ? 1 : 0;
+    s_message.count = 0U;
+    s_message.text_length = 0U;
+    if (!pn_scalars_parse(scalar, 1U, text, strlen(text), &s_message)) {
+        (void)printf("refused %u\n", (unsigned)s_message.column);
+        return;
+    }
+    const size_t length = pn_scalars_format(scalar, 1U, s_message.leaf, again, sizeof again);
+    (void)printf("%.*s\n", (int)length, again);
 }
 
 static void parse_file(const char *argument)
@@ -87,6 +114,8 @@ int main(void)
             parse(PN_SCALAR_REAL, line + 5);
         } else if (strncmp(line, "string ", 7U) == 0) {
             parse(PN_SCALAR_STRING, line + 7);
+        } else if (strncmp(line, "scalar ", 7U) == 0) {
+            parse_scalar(line + 7);
         } else if (strncmp(line, "file ", 5U) == 0) {
             parse_file(line + 5);
         } else {

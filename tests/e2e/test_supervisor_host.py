@@ -33,7 +33,7 @@ from pn2code.channels import (
     Written,
 )
 from pn2code.channels.message import compose, parse
-from pn2code.channels.scalars import format_real
+from pn2code.channels.scalars import Malformed, format_real, format_scalars, parse_scalars
 from pn2code.emission import c_flags
 from pn2code.run.supervisor import Exit, SupervisorProcess
 
@@ -269,6 +269,42 @@ def test_both_sides_read_alike(built: Path) -> None:
     )
     assert all("is not a string" in line for line in lines[8:10])
     assert "\\xff\\x01" in lines[10]
+
+
+SCALARS = (
+    Scalar(ScalarKind.UNIT, "", "UNIT"),
+    Scalar(ScalarKind.BOOL, "", "BOOL"),
+    Scalar(ScalarKind.ENUM, "c", "COLOUR", ("red", "green")),
+    Scalar(ScalarKind.INDEX, "", "INDEX", low=1, high=3),
+    Scalar(ScalarKind.INT, "n", "RANGE", low=-2, high=8),
+    Scalar(ScalarKind.INT, "", "INT"),
+    Scalar(ScalarKind.REAL, "", "SPAN", low=-1.5, high=2.5),
+)
+"""Those of `cnative/tests/scalars.c`."""
+
+
+def test_both_sides_read_scalars_of_all_kinds_alike(built: Path) -> None:
+    words = (
+        "1 0 -1 +1 -2 -3 8 9 3 4 2 red green re greens true false 1.5 -1.5 -1.6 2.5 2.6 1e0 1e+0"
+    )
+    words += " 1E-1 1e 1e+ - + . .5 9223372036854775807 9223372036854775808 -9223372036854775809 ()"
+    words += " nan inf 0x1 1_0 `x` " + "7" * 70
+    cases = [
+        (n, word) for n in range(len(SCALARS)) for word in ["", *words.split(), "1 1", "z" * 90]
+    ]
+    lines = "".join(f"scalar {n} {word}\n" for n, word in cases)
+    done = subprocess.run(
+        [built / "scalars"], input=lines, capture_output=True, text=True, check=True
+    )
+    expected = []
+    for n, word in cases:
+        found = parse_scalars(SCALARS[n : n + 1], word)
+        again = None if isinstance(found, Malformed) else format_scalars(SCALARS[n : n + 1], found)
+        expected.append(f"refused {found.column}" if isinstance(found, Malformed) else again)
+    assert dict(zip(cases, done.stdout.splitlines(), strict=True)) == dict(
+        zip(cases, expected, strict=True)
+    )
+    assert len({line for line in expected if line and "refused" not in line}) > 10
 
 
 def test_both_sides_judge_files_alike(built: Path) -> None:
