@@ -63,3 +63,27 @@ def test_a_supervisor_that_does_not_wait(tmp_path: Path) -> None:
         lines[at + 2]
         == "`Next` cannot occur: its guard `n > 3` is false for the tokens that are there."
     )
+
+
+OCCUPIED = NET.replace(
+    "    place Going = 0\n",
+    "    place Going = 0\n    place Mode : INT = 1`1\n    place Zone = 1\n"
+    "    trans Ask\n      both Mode : n\n      in done : 99\n",
+    1,
+).replace("      in Ready : ()\n", "      in Ready : ()\n      in Zone : ()\n", 1)
+"""Nobody gives the zone back, and there is always a transition that waits for a message."""
+
+
+@pytest.mark.parametrize("options", [(), ("--full",)])
+def test_the_token_that_somebody_has_forgotten_is_named(
+    tmp_path: Path, options: tuple[str, ...]
+) -> None:
+    cell = write(tmp_path, OCCUPIED)
+    done = CliRunner().invoke(app, ["verify", str(cell), "--no-medium", *options])
+    assert done.exit_code == 1, done.output
+    lines = [line.strip() for line in done.output.splitlines()]
+    at = lines.index("After that nothing can occur:")
+    assert lines[at + 1] == "The supervisor waits: `Ask` needs a message in `done`."
+    assert lines[at + 2].startswith("Robot `robot1` waits for `flag` (robot1.tdl:")
+    # Not the transitions for which the end of a run, and not only a zone, is missing.
+    assert lines[at + 3 : at + 5] == ["`Next` cannot occur: place `Zone` is empty.", ""]

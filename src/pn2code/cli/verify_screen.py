@@ -28,7 +28,7 @@ from pn2code.verify.answers.outcome import error_text
 from pn2code.verify.answers.path import Step, play, steps, text
 from pn2code.verify.answers.properties import kind as kind_of
 from pn2code.verify.answers.waiting import Scripts
-from pn2code.verify.answers.who_waits import supervisor_waits
+from pn2code.verify.answers.who_waits import lacks_messages_alone, supervisor_waits
 from pn2code.verify.controller.control_types import TITLES
 from pn2code.verify.exploring.result import Exploration, Trace
 from pn2code.verify.report import control_text
@@ -46,7 +46,9 @@ LEAST_STEPS = 3
 """Of it are always there, whatever else the screen has to say."""
 MOST_STEPS = 3_000
 """A longer run is not played again: its last steps are shown as they are recorded."""
-LEAST_WAY = 10
+LEAST_WHY = 6
+"""Lines that tell why nothing can occur after it, if there is so much to tell."""
+LEAST_WAY = 12
 """Lines that a run gets before further failures do: its head, steps, and why it goes on no more."""
 MOST_ITEMS = 8
 """Failures and open questions that have lines of their own on one screen."""
@@ -122,7 +124,7 @@ def _end(said: Said, file: Path, is_deadlock: bool) -> list[str]:
         game, played = play(said.net, said.storage, file)
         if sum(1 for _ in islice(played, MOST_STEPS)) == MOST_STEPS:
             return []
-        return _after(_obstacles(said, game, is_deadlock, everything=True))
+        return _after(_obstacles(said, game, is_deadlock))
     except (TraceRefusedError, GameError, OSError):
         return []  # the run is told above, with what is wrong with it
 
@@ -131,19 +133,22 @@ def _after(why: Sequence[str]) -> list[str]:
     return ["  After that nothing can occur:", *(f"    {x}" for x in why)] if why else []
 
 
-def _obstacles(said: Said, game: Game, is_deadlock: bool, *, everything: bool = False) -> list[str]:
+def _obstacles(said: Said, game: Game, is_deadlock: bool, most: int | None = None) -> list[str]:
     """What each program waits for, then which transitions are nearest to occurring and what they lack.
 
-    These are the transitions of programs that do not wait, unless `everything` is wanted.
-
+    A transition that lacks messages alone is not named again where it is said what its program waits for.
     A cell may be in a deadlock where its closed net can go on.
+
+    Args:
+        most: lines; where there are more, some of the programs are only counted, but the transitions are named: where
+            every program waits for a message, it is they that tell which token somebody has forgotten.
 
     Raises:
         GameError: an inscription raises an exception.
     """
     running = said.control.running if said.control is not None else None
     if running is None or said.config is None:
-        return why_disabled.reasons(game)
+        return why_disabled.reasons(game)[:most]
     if game.advance() and not is_deadlock:
         return []
     partition = running.partition
@@ -151,9 +156,20 @@ def _obstacles(said: Said, game: Game, is_deadlock: bool, *, everything: bool = 
     supervisor = supervisor_waits(game, partition)
     if supervisor:
         stand[0] = supervisor
-    owners = partition.transition_owner
-    others = [t for t in game.net.transitions if everything or owners[t.index] not in stand]
-    return [*(stand[k] for k in sorted(stand)), *why_disabled.reasons(game, others)]
+    waiting = {
+        t.index
+        for t, owner in zip(game.net.transitions, partition.transition_owner, strict=True)
+        if owner in stand and lacks_messages_alone(game, partition, t)
+    }
+    others = [t for t in game.net.transitions if t.index not in waiting]
+    programs, near = [stand[k] for k in sorted(stand)], why_disabled.reasons(game, others)
+    room = len(programs) if most is None else max(most - len(near), 1)
+    if len(programs) > room:
+        rest = len(programs) - max(room - 1, 1)
+        programs[-rest:] = [
+            f"And {_count_of(rest, 'program')} more: `--full` says what each waits for."
+        ]
+    return [*programs, *near]
 
 
 def _figures(found: Exploration) -> str:
@@ -470,14 +486,16 @@ def _last(
                 shown = _recorded(said, file)
             elif loop is None:
                 with suppress(GameError):  # an inscription raises an exception there
-                    why = _obstacles(said, game, is_deadlock)
+                    why = _obstacles(
+                        said, game, is_deadlock, max(most - LEAST_STEPS - 1, LEAST_WHY)
+                    )
     except TimeIsOverError:
         return [f"The run {goal} is in {file}; there was no time to show it."]
     except (TraceRefusedError, GameError, OSError) as problem:
         return [f"The run {goal} is in {file}; it cannot be shown: {problem}"]
     lines = [f"The run {goal}, {_count_of(len(shown), 'step')}, {file}:"]
     least = min(LEAST_STEPS, len(shown))
-    after = [_cut(x) for x in _after(why[: max(most - least - 1, 1)])]
+    after = [_cut(x) for x in _after(why)]
     last = max(most - len(after), least)
     if len(shown) > last:
         lines.append(f"  ... {_count_of(len(shown) - last, 'step')} before")

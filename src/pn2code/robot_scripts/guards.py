@@ -2,6 +2,7 @@
 
 k = 1        and  k = 2        exclude each other
 n < 3        and  n >= 3       exclude each other and cover everything
+k = 1        and  k = 2 or k = 3      exclude each other: each way of the one contradicts each way of the other
 x < 3.0      and  x >= 3.0     exclude each other: of a real that is no number (NaN) both are false
 """
 
@@ -14,6 +15,9 @@ from pn2code.robot_scripts.not_a_number import MayBeNan
 from pn2code.robot_scripts.values import FALSE, TRUE
 from pn2code.tdl import tree as t
 from pn2code.tdl.pretty import expression
+
+MOST_WAYS = 64
+"""In which a condition can hold; one with more is not taken to pieces."""
 
 Constant = int | float | str | bool
 
@@ -50,6 +54,21 @@ def conjuncts(e: t.Expression) -> list[t.Expression]:
             return []
         case _:
             return [e]
+
+
+def ways(e: t.Expression, wanted: bool = True) -> list[list[t.Expression]]:
+    """The ways in which a condition holds (or does not, if not `wanted`): of each the parts that hold together."""
+    match e:
+        case t.Value(bool(value)):
+            return [[]] if value == wanted else []
+        case t.Unary("not", operand):
+            return ways(operand, not wanted)
+        case t.Binary("and" | "or" as operator, left, right):
+            a, b = ways(left, wanted), ways(right, wanted)
+            is_either = (operator == "or") == wanted
+            if (len(a) + len(b) if is_either else len(a) * len(b)) <= MOST_WAYS:
+                return [*a, *b] if is_either else [[*x, *y] for x in a for y in b]
+    return [[e if wanted else t.Unary("not", e)]]
 
 
 def fact(e: t.Expression, constants: Mapping[str, Constant], may_be_nan: MayBeNan) -> Fact:
@@ -96,9 +115,12 @@ def exclusive(
     """Whether it is certain that not both hold."""
     if FALSE in (a, b):
         return True
-    first = [fact(e, constants, may_be_nan) for e in conjuncts(a)]
-    second = [fact(e, constants, may_be_nan) for e in conjuncts(b)]
-    return any(_contradict(x, y) for x in first for y in second)
+
+    def facts(e: t.Expression) -> list[list[Fact]]:
+        return [[fact(part, constants, may_be_nan) for part in way] for way in ways(e)]
+
+    first, second = facts(a), facts(b)
+    return all(any(_contradict(x, y) for x in f for y in g) for f in first for g in second)
 
 
 def _contradict(x: Fact, y: Fact) -> bool:

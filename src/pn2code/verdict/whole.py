@@ -25,6 +25,7 @@ from pn2code.verify.answers.outcome import Counts
 from pn2code.verify.answers.properties import Answer, Verdict, kind
 from pn2code.verify.answers.reasons import raised
 from pn2code.verify.codes import STATE_ERROR, TRACE_UNWRITABLE
+from pn2code.verify.controller import short_timers
 from pn2code.verify.controller.control_types import Control
 from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.explore import ExploreOptions, explore
@@ -147,7 +148,9 @@ def question(
     partition = divided(opened.flat, opened.config, d)
     if partition is not None and opened.config is not None:
         # What is said of a cell is said of its programs: without them there is nothing to say.
-        lower_robots(partition, opened.config, d)
+        programs = lower_robots(partition, opened.config, d)
+        if programs is not None:
+            short_timers.warn(partition, opened.config, d)
     asked = gather(opened, texts, file, d, found=found)
     nondeterminism.warn(opened.flat, d)
     return asked

@@ -136,3 +136,12 @@ CAPACITY_ASSUMED = register(
     "The program was generated with room for some tokens, and stops safely, with the place's name, when there are "
     "more. The head of net.c says which places these are. A cell.toml with `[capacity]` declares bounds.",
 )
+SHORT_TIMER = register(
+    "short-timer",
+    "a timer of the supervisor is over before the answer that it waits for can come",
+    "A transition of the supervisor sends a command and starts a timer, and the answer ends the wait, or the timer "
+    "does. What tools, waits and delays of the robot or device take between command and answer is written in "
+    "cell.toml and in the net (moves count as nothing), and it is longer than the timer: in a run the timer is always "
+    "first. The state space has the answer in time as well, because a check holds for all durations. Make the timer "
+    "longer.",
+)

@@ -725,6 +725,16 @@ def test_a_transition_that_another_one_always_precedes_is_named(tmp_path: Path) 
         ("n > 1", "n > 2", True),
         ("n = 1 andalso k = 1", "n = 1 andalso k = 2", False),
         ("not (n = 1)", "n = 1", False),
+        ("n = 1", "n = 2 orelse n = 3", False),
+        ("n = 1", "n = 2 orelse n = 1", True),
+        ("n = 1 orelse n = 4", "n = 2 orelse n = 3 orelse n = 5", False),
+        ("n = 1 orelse n = 4", "n = 2 orelse n = 3 orelse n = 4", True),
+        ("n = 1", "n = 2 orelse k = 3", True),
+        ("n = 1 andalso k = 2", "n = 2 orelse k = 3", False),
+        ("n = 1", "not (n = 1 andalso k = 1)", True),
+        ("n = 1 andalso k = 1", "not (n = 1 andalso k = 1)", False),
+        ("n = 1", "not (n = 1 orelse k = 1)", False),
+        ("(n = 1 orelse n = 2) andalso (k = 1 orelse k = 2)", "k = 3 orelse n = 3", False),
     ],
 )
 def test_guards_that_exclude_each_other_are_recognised(
@@ -744,6 +754,26 @@ def test_guards_that_exclude_each_other_are_recognised(
       both K : k
     """
     cell = Cell(tmp_path, robot)
+    assert any("robot-choice" in m for m in cell.messages) == warns
+
+
+@pytest.mark.parametrize(
+    ("guard", "warns"), [("n = 1 orelse n = 2", False), ("n = 1 orelse n = 3", True)]
+)
+def test_a_constant_on_an_arc_is_compared_with_the_other_guard(
+    tmp_path: Path, guard: str, warns: bool
+) -> None:
+    robot = f"""
+    place A = 1
+    place Told : PAIR = 1`(3, 1)
+    trans T code action drill ()
+      both A
+      both Told : (3, k)
+    trans U guard [{guard}] code action moveHome ()
+      both A
+      both Told : (n, k)
+    """
+    cell = Cell(tmp_path, robot, extra="colset PAIR = product INT * INT;")
     assert any("robot-choice" in m for m in cell.messages) == warns
 
 

@@ -57,3 +57,19 @@ def test_those_that_lack_least_come_first() -> None:
     found = reasons(Game(flat(text)))
     assert len(found) == MOST_REASONS
     assert [line.split()[0] for line in found] == ["`N0`", "`N1`", "`N2`"]
+
+
+def test_tokens_that_never_leave_their_places_bring_no_transition_near() -> None:
+    """`Start` and `Go` lack one token each; of `Go` one has come, of `Start` there is only the counter."""
+    start = "      trans Start\n        in A : n\n        out A : n + 1\n        in B : m\n"
+    go = start.replace("Start", "Go").replace("in B : m", "in Ready\n        in C : m")
+    go = "      place Ready = 1\n" + go
+    assert reasons(Game(flat(HEAD + start))) == ["`Start` cannot occur: place `B` is empty."]
+    assert reasons(Game(flat(HEAD + start + go))) == ["`Go` cannot occur: place `C` is empty."]
+
+
+def test_of_those_that_lack_equally_many_the_one_that_has_most_comes_first() -> None:
+    one = "      trans One\n        in A : n\n        in B : m\n"
+    two = "      trans Two\n        in A : n\n        in Clock : n\n        in C : m\n"
+    found = reasons(Game(flat(HEAD.replace("1`7", "1`1") + one + two)))
+    assert [line.split()[0] for line in found] == ["`Two`", "`One`"]

@@ -52,6 +52,13 @@ def supervisor_waits(game: Game, partition: Partition) -> str:
     return f"The supervisor waits: {'; '.join(parts)}{more}."
 
 
+def lacks_messages_alone(game: Game, partition: Partition, t: FlatTransition) -> bool:
+    """Whether tokens are missing, and only in channels."""
+    channels = {c.place for c in partition.channels}
+    empty = {a.place for a in t.arcs if a.kind in _TAKING and not _holds(game, a.place)}
+    return bool(empty) and empty <= channels
+
+
 def _listed(names: list[str]) -> str:
     if len(names) > MOST_NAMES:
         return f"{', '.join(names[:MOST_NAMES])} and {len(names) - MOST_NAMES} more"

@@ -3,7 +3,9 @@
     `Order` cannot occur: its guard `n > 9` is false for the tokens that are there.
     `StartPress` cannot occur: place `placed` is empty.
 
-A transition none of whose input places holds a token is not worth a line. It is the reference token game that answers.
+A transition none of whose input places holds a token is not worth a line. Nor is one whose only tokens are those that
+never leave their places (of a mode, a counter), if there are others: such a token says nothing about who is near.
+Of those that lack equally many tokens the ones that have most come first. It is the reference token game that answers.
 """
 
 from __future__ import annotations
@@ -34,16 +36,31 @@ def reasons(game: Game, among: Iterable[FlatTransition] | None = None) -> list[s
     """
     if game.advance():
         return []
-    found: list[tuple[int, str]] = []
+    kept = _kept(game)
+    found: list[tuple[int, int, str]] = []
     for t in game.net.transitions if among is None else among:
         inputs = list(_inputs(t))
         empty = {a.place for a in inputs if not _holds(game.marking, a.place)}
         if inputs and len(empty) == len({a.place for a in inputs}):
             continue
         name = t.name.rpartition(".")[2]
-        found.append((len(empty), f"`{name}` cannot occur: {_lack(game, t, sorted(empty))}."))
-    least = sorted(found, key=lambda row: row[0])[:MOST_REASONS]
-    return [text for _, text in least]
+        arrived = len({a.place for a in inputs} - empty - kept)
+        found.append(
+            (len(empty), arrived, f"`{name}` cannot occur: {_lack(game, t, sorted(empty))}.")
+        )
+    near = [row for row in found if row[1] or not row[0]] or found
+    least = sorted(near, key=lambda row: (row[0], -row[1]))[:MOST_REASONS]
+    return [text for _, _, text in least]
+
+
+def _kept(game: Game) -> set[int]:
+    """The places in which something lies now and whose tokens each transition that takes one gives back."""
+    takes_away = set()
+    for t in game.net.transitions:
+        given = {a.place for a in t.arcs if a.kind is ArcKind.OUTPUT}
+        taken = {a.place for a in t.arcs if a.kind in (ArcKind.INPUT, ArcKind.RESET)}
+        takes_away |= taken - given
+    return {p.index for p in game.net.places if _holds(game.marking, p.index)} - takes_away
 
 
 def _inputs(t: FlatTransition) -> Iterator[FlatArc]:

@@ -4,13 +4,33 @@
  * Every owner plays the scheme of docs/execution.md in turn (priorities count within an owner, as in the cell),
  * messages are tokens in the channels' places and arrive at once. When nothing is enabled, model time jumps to the next
  * time stamp.
+ *
+ * An owner that repeats itself (it asks a sensor again and again, which has one value in a dry run) gives way to the
+ * others, always in the same marking of those that it goes through. Where nobody else can do anything, the cell is
+ * taken to be at rest.
  */
 #include "supervisor_impl.h"
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <string.h>
 
 #include "pn/pn_port.h"
+
+#define PATIENCE   100U /* firings of a turn before anybody looks whether it repeats itself: chance may end it */
+#define LOOP_NAMED 8U   /* firings of a repetition that are named */
+
+/* Whether the owner that plays comes to markings where it has been in this turn (Brent's algorithm). */
+typedef struct repetition {
+    uint64_t fired;  /* in this turn */
+    uint64_t kept;   /* hash of the marking after firing number `since` */
+    uint64_t since;  /* 0: none is kept */
+    uint64_t least;  /* of the hashes since then: the marking in which the owner gives way */
+    bool is_certain; /* it does repeat itself, and `least` is that of the whole loop */
+} repetition_t;
+
+static uint64_t s_given_way[PN_CELL_PEERS_MAX + 1U]; /* the marking in which each owner gave way last, 0: none */
+static int32_t s_repeats = -1; /* an owner that has given way since somebody else has done something */
 
 static bool s_occupied[PN_CELL_CHANNELS_MAX]; /* channels that held a token when last looked at */
 
@@ -56,9 +76,51 @@ static bool note_messages(sup_t *sup)
     return true;
 }
 
-/* One owner until it comes to rest. */
+/* Of all bytes, never 0. A repetition that is seen where there is none only makes an owner give way. */
+static uint64_t marking_hash(const sup_t *sup)
+{
+    const unsigned char *const bytes = sup->marking;
+    const size_t size = sup->net->marking_size;
+    uint64_t hash = 14695981039346656037U;
+    for (size_t at = 0U; at < size; at += sizeof(uint64_t)) {
+        uint64_t word = 0U;
+        const size_t left = size - at;
+        (void)memcpy(&word, &bytes[at], (left < sizeof word) ? left : sizeof word);
+        hash = (hash ^ word) * 1099511628211U;
+        hash ^= hash >> 29U;
+    }
+    return (hash != 0U) ? hash : 1U;
+}
+
+/* After a firing: whether the owner gives way. */
+static bool gives_way(const sup_t *sup, repetition_t *loop)
+{
+    loop->fired++;
+    if (loop->fired < PATIENCE) {
+        return false;
+    }
+    const uint64_t hash = marking_hash(sup);
+    if (loop->is_certain && (loop->fired < (2U * loop->since))) {
+        return hash == loop->least;
+    }
+    loop->is_certain = false; /* or chance has ended it */
+    loop->least = (hash < loop->least) ? hash : loop->least;
+    if (hash == loop->kept) {
+        loop->is_certain = true;
+        return hash == loop->least;
+    }
+    if ((loop->since == 0U) || (loop->fired >= (2U * loop->since))) {
+        loop->kept = hash;
+        loop->since = loop->fired;
+        loop->least = hash;
+    }
+    return false;
+}
+
+/* One owner until it comes to rest, or gives way. Counts its firings, if they have led to something new. */
 static bool play_owner(sup_t *sup, int32_t owner, uint64_t *count)
 {
+    repetition_t loop = { 0U, 0U, 0U, 0U, false };
     uint32_t transition = 0U;
     int result = 1;
     while (result > 0) {
@@ -69,22 +131,32 @@ static bool play_owner(sup_t *sup, int32_t owner, uint64_t *count)
             return true;
         }
         result = sup_fire_one(sup, owner, &transition);
-        if (result > 0) {
-            (*count)++;
-            if (!note_messages(sup)) {
-                result = -1;
+        if ((result > 0) && !note_messages(sup)) {
+            result = -1;
+        }
+        if ((result > 0) && (owner >= 0) && gives_way(sup, &loop)) {
+            s_repeats = owner;
+            if (s_given_way[owner] != loop.least) {
+                s_given_way[owner] = loop.least;
+                *count += loop.fired;
             }
+            return true;
         }
     }
+    *count += loop.fired;
     return result == 0;
 }
 
+/* Every owner in turn, until none can do anything but repeat itself. */
 static bool play_all(sup_t *sup)
 {
-    const uint32_t parties = ((sup->cell->owner < 0) || (sup->net->owner_count == 0U)) ? 1U : sup->net->owner_count;
+    const bool is_whole =
+        (sup->cell->owner < 0) || (sup->net->owner_count == 0U) || (sup->net->owner_count > (PN_CELL_PEERS_MAX + 1U));
+    const uint32_t parties = is_whole ? 1U : sup->net->owner_count;
     uint64_t count = 1U;
     while (count > 0U) {
         count = 0U;
+        s_repeats = -1;
         for (uint32_t i = 0U; i < parties; i++) {
             if (!play_owner(sup, (parties == 1U) ? -1 : (int32_t)i, &count)) {
                 return false;
@@ -95,6 +167,36 @@ static bool play_all(sup_t *sup)
         }
     }
     return true;
+}
+
+/* Stops where an owner repeats itself and nobody else can do anything: with what it does. */
+static void stop_repetition(sup_t *sup)
+{
+    char told[640];
+    pn_text_t text;
+    const uint64_t begin = marking_hash(sup);
+    bool goes_on = true;
+    pn_text_init(&text, told, sizeof told);
+    for (uint32_t k = 0U; goes_on && (k < LOOP_NAMED); k++) {
+        uint32_t transition = 0U;
+        char binding[128];
+        pn_text_t json;
+        goes_on = (sup_fire_one(sup, s_repeats, &transition) > 0);
+        if (goes_on) {
+            pn_text_init(&json, binding, sizeof binding);
+            pn_json(sup->net->transition[transition].binding, sup->binding, &json);
+            pn_text_str(&text, (k > 0U) ? ", `" : "`");
+            pn_text_str(&text, sup->net->transition[transition].name);
+            pn_text_str(&text, "` ");
+            pn_text_str(&text, json.truncated ? "" : binding);
+            goes_on = (marking_hash(sup) != begin);
+        }
+    }
+    (void)sup_stop(sup, SUP_EXIT_MODEL,
+                   "no end in a final place (`%s`%s): nobody but %s can do anything, and it repeats itself for ever: "
+                   "%s%s; sensors have their first values in a dry run",
+                   sup->net->place[sup->cell->final_place[0]].name, (sup->cell->final_count > 1U) ? ", ..." : "",
+                   sup->net->owner[s_repeats].name, told, goes_on ? ", ..." : "");
 }
 
 static void print_summary(const sup_t *sup)
@@ -141,6 +243,9 @@ void sup_run_alone(sup_t *sup)
         }
     }
     if (!sup->stopped && (sup->cell->final_count > 0U) && !sup_is_final(sup)) {
+        if (s_repeats >= 0) {
+            stop_repetition(sup);
+        }
         print_summary(sup);
         (void)sup_stop(sup, SUP_EXIT_MODEL, "deadlock: nothing is enabled, and no final place (`%s`%s) holds a token",
                        sup->net->place[sup->cell->final_place[0]].name, (sup->cell->final_count > 1U) ? ", ..." : "");
