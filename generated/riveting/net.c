@@ -551,20 +551,10 @@ static const int64_t val_FAILED = 2;
  */
 static const double val_approachDistance = 100.0;
 
-/* cell.cpn:361
- *     val safeReturn = false
- */
-static const bool val_safeReturn = false;
-
 /* cell.cpn:366
  *     val tolerance = 50.0
  */
 static const double val_tolerance = 50.0;
-
-/* cell.cpn:371
- *     val faults = true
- */
-static const bool val_faults = true;
 
 /* --- functions --------------------------------------------------------------------------------- */
 
@@ -759,7 +749,7 @@ static bool ml_moved(double x, double y, double z)
  */
 static int64_t ml_outcome(int64_t reading)
 {
-    return val_faults ? reading : val_DONE;
+    return reading;
 }
 
 /* cell.cpn:494
@@ -836,12 +826,12 @@ static bool ml_usable(int64_t e, POSE_t planned, POSE_t measured)
  *         (0.0 - pitches * x, 0.0 - pitches * y, 0.0 - pitches * z)
  *       end
  */
-static VECTOR_t ml_wayBack(pn_ctx_t *cx, int64_t n, VECTOR_t a2)
+static VECTOR_t ml_wayBack(int64_t n, VECTOR_t a2)
 {
     const double x = a2.c1;
     const double y = a2.c2;
     const double z = a2.c3;
-    const double pitches = pn_int_to_real(val_safeReturn ? pn_int_add(cx, n, 1) : n);
+    const double pitches = pn_int_to_real(n);
     return (VECTOR_t){ .c1 = 0.0 - pitches * x, .c2 = 0.0 - pitches * y, .c3 = 0.0 - pitches * z };
 }
 
@@ -1454,12 +1444,8 @@ PN_NET_SEARCH static bool Supervisor_Approach_Send_fire(pn_ctx_t *cx, void *mark
     (void)self;
     Supervisor_Approach_Send_binding_t *const b = binding;
     pn_begin(cx, "page `Approach`, transition `Send` (ID1412310300)", m->now);
-    PLAN_t Supervisor_Approach_order_token = (PLAN_t){ .c1 = val_JOINT,
+    const PLAN_t Supervisor_Approach_order_token = (PLAN_t){ .c1 = val_JOINT,
         .c2 = ml_standoff(b->s.first), .c3 = ml_standoff(ml_facing(b->s.first)) };
-    pn_bag_check(cx, &s_at_Supervisor_Approach_order, &Supervisor_Approach_order_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
     if (!pn_has_room(cx, m->Supervisor_Approach_order.full, &s_at_Supervisor_Approach_order)
         || !pn_has_room(cx, m->Supervisor_Approach_seam.full, &s_at_Supervisor_Approach_seam)) {
         return false;
@@ -1769,11 +1755,7 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_first_fire(pn_ctx_t *cx, void *m
     Supervisor_Verify_Ask_first_binding_t *const b = binding;
     pn_begin(cx, "page `Verify`, transition `Ask first` (ID1412310377)", m->now);
     const POSE_t referencia1_token = b->s.first;
-    int64_t flag1_interno_token = val_MEASURE;
-    pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
+    const int64_t flag1_interno_token = val_MEASURE;
     if (!pn_has_room(cx, m->Supervisor_Verify_first_asked.full, &s_at_Supervisor_Verify_first_asked)
         || !pn_has_room(cx, m->referencia1.full, &s_at_referencia1)
         || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)) {
@@ -1838,11 +1820,7 @@ PN_NET_SEARCH static bool Supervisor_Verify_Ask_last_fire(pn_ctx_t *cx, void *ma
     pn_begin(cx, "page `Verify`, transition `Ask last` (ID1412310385)", m->now);
     const ASKED_t Supervisor_Verify_last_asked_token = (ASKED_t){ .c1 = b->s, .c2 = b->a };
     const POSE_t referencia1_token = b->s.last;
-    int64_t flag1_interno_token = val_MEASURE;
-    pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
+    const int64_t flag1_interno_token = val_MEASURE;
     if (!pn_has_room(cx, m->Supervisor_Verify_last_asked.full, &s_at_Supervisor_Verify_last_asked)
         || !pn_has_room(cx, m->referencia1.full, &s_at_referencia1)
         || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)) {
@@ -1972,11 +1950,7 @@ PN_NET_SEARCH static bool Supervisor_Verify_First_lost_fire(pn_ctx_t *cx, void *
     (void)self;
     (void)binding;
     pn_begin(cx, "page `Verify`, transition `First lost` (ID1412320018)", m->now);
-    int64_t Supervisor_result_token = val_FAILED;
-    pn_bag_check(cx, &s_at_Supervisor_result, &Supervisor_result_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
+    const int64_t Supervisor_result_token = val_FAILED;
     if (!pn_has_room(cx, m->Supervisor_result.full, &s_at_Supervisor_result)
         || !pn_has_room(cx, m->Supervisor_ended.full, &s_at_Supervisor_ended)) {
         return false;
@@ -2041,11 +2015,7 @@ PN_NET_SEARCH static bool Supervisor_Verify_Last_lost_fire(pn_ctx_t *cx, void *m
     (void)self;
     (void)binding;
     pn_begin(cx, "page `Verify`, transition `Last lost` (ID1412320023)", m->now);
-    int64_t Supervisor_result_token = val_FAILED;
-    pn_bag_check(cx, &s_at_Supervisor_result, &Supervisor_result_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
+    const int64_t Supervisor_result_token = val_FAILED;
     if (!pn_has_room(cx, m->Supervisor_result.full, &s_at_Supervisor_result)
         || !pn_has_room(cx, m->Supervisor_ended.full, &s_at_Supervisor_ended)) {
         return false;
@@ -2171,12 +2141,8 @@ PN_NET_SEARCH static bool Supervisor_Correct_Move_over_fire(pn_ctx_t *cx, void *
     (void)self;
     Supervisor_Correct_Move_over_binding_t *const b = binding;
     pn_begin(cx, "page `Correct`, transition `Move over` (ID1412310461)", m->now);
-    PLAN_t Supervisor_Correct_order_token = (PLAN_t){ .c1 = val_LINEAR, .c2 = ml_inTool(b->p, b->v),
-        .c3 = ml_inTool(ml_facing(b->p), b->v) };
-    pn_bag_check(cx, &s_at_Supervisor_Correct_order, &Supervisor_Correct_order_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
+    const PLAN_t Supervisor_Correct_order_token = (PLAN_t){ .c1 = val_LINEAR,
+        .c2 = ml_inTool(b->p, b->v), .c3 = ml_inTool(ml_facing(b->p), b->v) };
     /* seam: (n, p, d) (ID1412310539): stays where it is */
     if (!pn_has_room(cx, m->Supervisor_Correct_order.full, &s_at_Supervisor_Correct_order)) {
         return false;
@@ -2352,13 +2318,9 @@ PN_NET_SEARCH static bool Supervisor_Install_Go_back_fire(pn_ctx_t *cx, void *ma
     (void)self;
     Supervisor_Install_Go_back_binding_t *const b = binding;
     pn_begin(cx, "page `Install`, transition `Go back` (ID1412310594)", m->now);
-    PLAN_t Supervisor_Install_return_token = (PLAN_t){ .c1 = val_LINEAR,
-        .c2 = ml_inTool(b->p, ml_wayBack(cx, b->n, b->d)),
-        .c3 = ml_inTool(ml_facing(b->p), ml_wayBack(cx, b->n, b->d)) };
-    pn_bag_check(cx, &s_at_Supervisor_Install_return, &Supervisor_Install_return_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
+    const PLAN_t Supervisor_Install_return_token = (PLAN_t){ .c1 = val_LINEAR,
+        .c2 = ml_inTool(b->p, ml_wayBack(b->n, b->d)),
+        .c3 = ml_inTool(ml_facing(b->p), ml_wayBack(b->n, b->d)) };
     /* result: DONE (ID1412320065): stays where it is */
     if (!pn_has_room(cx, m->Supervisor_Install_return.full, &s_at_Supervisor_Install_return)) {
         return false;
@@ -2423,9 +2385,8 @@ PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_fire(pn_ctx_t *cx, void 
     (void)self;
     Supervisor_Install_Next_rivet_binding_t *const b = binding;
     pn_begin(cx, "page `Install`, transition `Next rivet` (ID1412310624)", m->now);
-    PLAN_t Supervisor_Install_shift_token = (PLAN_t){ .c1 = val_LINEAR, .c2 = ml_inTool(b->p, b->d),
-        .c3 = ml_inTool(ml_facing(b->p), b->d) };
-    pn_bag_check(cx, &s_at_Supervisor_Install_shift, &Supervisor_Install_shift_token);
+    const PLAN_t Supervisor_Install_shift_token = (PLAN_t){ .c1 = val_LINEAR,
+        .c2 = ml_inTool(b->p, b->d), .c3 = ml_inTool(ml_facing(b->p), b->d) };
     WORK_t Supervisor_Install_work_token = (WORK_t){ .c1 = b->n, .c2 = pn_int_sub(cx, b->k, 1),
         .c3 = b->p, .c4 = b->d };
     pn_bag_check(cx, &s_at_Supervisor_Install_work, &Supervisor_Install_work_token);
@@ -2582,13 +2543,8 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_in_fire(pn_ctx_t *cx, void
     (void)self;
     (void)binding;
     pn_begin(cx, "page `Rivet`, transition `Go in` (ID1412310716)", m->now);
-    PLAN_t Supervisor_Install_Rivet_advance_token = (PLAN_t){ .c1 = val_LINEAR,
+    const PLAN_t Supervisor_Install_Rivet_advance_token = (PLAN_t){ .c1 = val_LINEAR,
         .c2 = ml_alongTool(val_approachDistance), .c3 = ml_alongTool(val_approachDistance) };
-    pn_bag_check(cx, &s_at_Supervisor_Install_Rivet_advance,
-        &Supervisor_Install_Rivet_advance_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
     if (!pn_has_room(cx, m->Supervisor_Install_Rivet_advance.full,
         &s_at_Supervisor_Install_Rivet_advance)) {
         return false;
@@ -2631,13 +2587,8 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Go_out_fire(pn_ctx_t *cx, voi
     (void)self;
     Supervisor_Install_Rivet_Go_out_binding_t *const b = binding;
     pn_begin(cx, "page `Rivet`, transition `Go out` (ID1412310742)", m->now);
-    PLAN_t Supervisor_Install_Rivet_retract_token = (PLAN_t){ .c1 = val_LINEAR,
+    const PLAN_t Supervisor_Install_Rivet_retract_token = (PLAN_t){ .c1 = val_LINEAR,
         .c2 = ml_alongTool(-val_approachDistance), .c3 = ml_alongTool(-val_approachDistance) };
-    pn_bag_check(cx, &s_at_Supervisor_Install_Rivet_retract,
-        &Supervisor_Install_Rivet_retract_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
     if (!pn_has_room(cx, m->Supervisor_Install_Rivet_retract.full,
         &s_at_Supervisor_Install_Rivet_retract)
         || !pn_has_room(cx, m->Supervisor_result.full, &s_at_Supervisor_result)) {
@@ -2678,11 +2629,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_fire(pn_ctx_t *c
     (void)self;
     (void)binding;
     pn_begin(cx, "page `Fasten`, transition `Press` (ID1412310842)", m->now);
-    int64_t flag2_interno_token = val_PRESS;
-    pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
+    const int64_t flag2_interno_token = val_PRESS;
     if (!pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_pressing.full,
         &s_at_Supervisor_Install_Rivet_Fasten_pressing)
         || !pn_has_room(cx, m->flag2_interno.full, &s_at_flag2_interno)) {
@@ -2725,11 +2672,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_fire(pn_ctx_t *c
     (void)self;
     (void)binding;
     pn_begin(cx, "page `Fasten`, transition `Drill` (ID1412310850)", m->now);
-    int64_t flag1_interno_token = val_DRILL;
-    pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
+    const int64_t flag1_interno_token = val_DRILL;
     if (!pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_drilling.full,
         &s_at_Supervisor_Install_Rivet_Fasten_drilling)
         || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)) {
@@ -2773,11 +2716,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Insert_fire(pn_ctx_t *
     (void)self;
     (void)binding;
     pn_begin(cx, "page `Fasten`, transition `Insert` (ID1412310858)", m->now);
-    int64_t flag1_interno_token = val_INSERT;
-    pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
+    const int64_t flag1_interno_token = val_INSERT;
     if (!pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_inserting.full,
         &s_at_Supervisor_Install_Rivet_Fasten_inserting)
         || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)) {
@@ -2825,11 +2764,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Release_fire(pn_ctx_t 
     (void)self;
     Supervisor_Install_Rivet_Fasten_Release_binding_t *const b = binding;
     pn_begin(cx, "page `Fasten`, transition `Release` (ID1412310866)", m->now);
-    int64_t flag2_interno_token = val_RELEASE;
-    pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
+    const int64_t flag2_interno_token = val_RELEASE;
     if (!pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_releasing.full,
         &s_at_Supervisor_Install_Rivet_Fasten_releasing)
         || !pn_has_room(cx, m->flag2_interno.full, &s_at_flag2_interno)) {
@@ -2930,12 +2865,8 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Press_failed_fire(pn_c
     (void)self;
     (void)binding;
     pn_begin(cx, "page `Fasten`, transition `Press failed` (ID1412320087)", m->now);
-    int64_t flag2_interno_token = val_RELEASE;
-    pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
+    const int64_t flag2_interno_token = val_RELEASE;
     const int64_t Supervisor_Install_Rivet_Fasten_releasing_token = val_FAILED;
-    if (!pn_ok(cx)) {
-        return false;
-    }
     if (!pn_has_room(cx, m->flag2_interno.full, &s_at_flag2_interno)
         || !pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_releasing.full,
         &s_at_Supervisor_Install_Rivet_Fasten_releasing)) {
@@ -2983,12 +2914,8 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Drill_failed_fire(pn_c
     (void)self;
     (void)binding;
     pn_begin(cx, "page `Fasten`, transition `Drill failed` (ID1412320092)", m->now);
-    int64_t flag2_interno_token = val_RELEASE;
-    pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
+    const int64_t flag2_interno_token = val_RELEASE;
     const int64_t Supervisor_Install_Rivet_Fasten_releasing_token = val_FAILED;
-    if (!pn_ok(cx)) {
-        return false;
-    }
     if (!pn_has_room(cx, m->flag2_interno.full, &s_at_flag2_interno)
         || !pn_has_room(cx, m->Supervisor_Install_Rivet_Fasten_releasing.full,
         &s_at_Supervisor_Install_Rivet_Fasten_releasing)) {
@@ -3031,13 +2958,8 @@ PN_NET_SEARCH static bool Supervisor_Home_Send_home_fire(pn_ctx_t *cx, void *mar
     (void)self;
     (void)binding;
     pn_begin(cx, "page `Home`, transition `Send home` (ID1412311039)", m->now);
-    int64_t flag1_interno_token = val_HOME;
-    pn_bag_check(cx, &s_at_flag1_interno, &flag1_interno_token);
-    int64_t flag2_interno_token = val_HOME;
-    pn_bag_check(cx, &s_at_flag2_interno, &flag2_interno_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
+    const int64_t flag1_interno_token = val_HOME;
+    const int64_t flag2_interno_token = val_HOME;
     if (!pn_has_room(cx, m->Supervisor_Home_leaving_1.full, &s_at_Supervisor_Home_leaving_1)
         || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)
         || !pn_has_room(cx, m->Supervisor_Home_leaving_2.full, &s_at_Supervisor_Home_leaving_2)
@@ -3104,11 +3026,9 @@ PN_NET_SEARCH static bool Supervisor_Home_Both_fire(pn_ctx_t *cx, void *marking,
         Supervisor_Failed_token = PN_UNIT;
         Supervisor_Failed_tokens = 1U;
     }
-    if (!pn_has_room(cx, (Supervisor_Finished_tokens > 1U)
-        || ((Supervisor_Finished_tokens == 1U) && m->Supervisor_Finished.full),
+    if (!pn_has_room(cx, (Supervisor_Finished_tokens > 0U) && m->Supervisor_Finished.full,
         &s_at_Supervisor_Finished)
-        || !pn_has_room(cx, (Supervisor_Failed_tokens > 1U)
-        || ((Supervisor_Failed_tokens == 1U) && m->Supervisor_Failed.full),
+        || !pn_has_room(cx, (Supervisor_Failed_tokens > 0U) && m->Supervisor_Failed.full,
         &s_at_Supervisor_Failed)) {
         return false;
     }
@@ -3354,11 +3274,7 @@ PN_NET_SEARCH static bool Robot_MoveJoint_fire(pn_ctx_t *cx, void *marking, uint
     REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action moveJoint p */
     ml_moveJoint(b->p);
-    int64_t Done_token = val_DONE;
-    pn_bag_check(cx, own->Done, &Done_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
+    const int64_t Done_token = val_DONE;
     if (!pn_has_room(cx, at_Done->full, own->Done)) {
         return false;
     }
@@ -3420,11 +3336,7 @@ PN_NET_SEARCH static bool Robot_MoveLinear_fire(pn_ctx_t *cx, void *marking, uin
     REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action moveLinear p */
     ml_moveLinear(b->p);
-    int64_t Done_token = val_DONE;
-    pn_bag_check(cx, own->Done, &Done_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
+    const int64_t Done_token = val_DONE;
     if (!pn_has_room(cx, at_Done->full, own->Done)) {
         return false;
     }
@@ -3478,11 +3390,7 @@ PN_NET_SEARCH static bool Robot_MoveHome_fire(pn_ctx_t *cx, void *marking, uint3
     REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
     /* code segment: action moveHome () */
     ml_moveHome();
-    int64_t Done_token = val_DONE;
-    pn_bag_check(cx, own->Done, &Done_token);
-    if (!pn_ok(cx)) {
-        return false;
-    }
+    const int64_t Done_token = val_DONE;
     if (!pn_has_room(cx, at_Done->full, own->Done)) {
         return false;
     }
@@ -3535,12 +3443,6 @@ PN_NET_SEARCH static bool Robot_Measure_enumerate(pn_ctx_t *cx, const void *mark
     /* seen over all of REPLY */
     for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
         pn_type_value(&s_REPLY, number, &b.seen);
-        if (!pn_is_legal(cx, &s_REPLY, &b.seen)) {
-            continue;
-        }
-        if (!pn_ok(cx)) {
-            return true;
-        }
         if (!sink(user, self, &b)) {
             return false;
         }
@@ -3612,12 +3514,6 @@ PN_NET_SEARCH static bool Robot_Drill_enumerate(pn_ctx_t *cx, const void *markin
     /* drilled over all of REPLY */
     for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
         pn_type_value(&s_REPLY, number, &b.drilled);
-        if (!pn_is_legal(cx, &s_REPLY, &b.drilled)) {
-            continue;
-        }
-        if (!pn_ok(cx)) {
-            return true;
-        }
         if (!sink(user, self, &b)) {
             return false;
         }
@@ -3683,12 +3579,6 @@ PN_NET_SEARCH static bool Robot_Insert_enumerate(pn_ctx_t *cx, const void *marki
     /* inserted over all of REPLY */
     for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
         pn_type_value(&s_REPLY, number, &b.inserted);
-        if (!pn_is_legal(cx, &s_REPLY, &b.inserted)) {
-            continue;
-        }
-        if (!pn_ok(cx)) {
-            return true;
-        }
         if (!sink(user, self, &b)) {
             return false;
         }
@@ -3754,12 +3644,6 @@ PN_NET_SEARCH static bool Robot_Press_enumerate(pn_ctx_t *cx, const void *markin
     /* pressed over all of REPLY */
     for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
         pn_type_value(&s_REPLY, number, &b.pressed);
-        if (!pn_is_legal(cx, &s_REPLY, &b.pressed)) {
-            continue;
-        }
-        if (!pn_ok(cx)) {
-            return true;
-        }
         if (!sink(user, self, &b)) {
             return false;
         }
@@ -3825,12 +3709,6 @@ PN_NET_SEARCH static bool Robot_Release_enumerate(pn_ctx_t *cx, const void *mark
     /* released over all of REPLY */
     for (uint64_t number = 0U; number < pn_type_size(&s_REPLY); number++) {
         pn_type_value(&s_REPLY, number, &b.released);
-        if (!pn_is_legal(cx, &s_REPLY, &b.released)) {
-            continue;
-        }
-        if (!pn_ok(cx)) {
-            return true;
-        }
         if (!sink(user, self, &b)) {
             return false;
         }

@@ -13,6 +13,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from pn2code.base.frozen import frozen
@@ -83,18 +84,36 @@ class Begun:
     given: tuple[Given, ...] = ()
 
 
-def begin(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> Begun:
+def begin(
+    net: FlatNet,
+    config: CellConfig | None,
+    d: Diagnostics,
+    *,
+    is_started: bool = False,
+    given: Path | None = None,
+) -> Begun:
     """The net as a run of its cell begins it; the same net where there are no input files.
 
     Args:
         net: the net.
         config: the cell; None: a net that is one program.
         d: gets an error for each file that the supervisor would refuse, and a warning for each that is not there.
+        is_started: the supervisor is started with these files, so a file that is not there is an error, too.
+        given: a folder with other files than those beside cell.toml, or the one file.
     """
     if config is None or not config.inputs:
         return Begun(net)
     for entry in config.inputs:
-        if not (config.folder / entry.file).is_file():
+        if config.input_path(entry, given).is_file():
+            continue
+        if is_started:
+            d.error(
+                CELL_MISSING,
+                f"input: there is no file `{entry.file}` beside {config.path.name}",
+                entry.origin,
+                hint="write it, or correct `file`; the supervisor reads it when it starts",
+            )
+        else:
             d.warning(
                 CELL_MISSING,
                 f"input: there is no file `{entry.file}` beside {config.path.name}, so the answers are about the "
@@ -102,7 +121,7 @@ def begin(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> Begun:
                 entry.origin,
                 hint="write it first, or correct `file`; the supervisor reads it when it starts",
             )
-    found = tuple(tokens(net, config, d))
+    found = tuple(tokens(net, config, d, given))
     places = list(net.places)
     for token in found:
         exp = _expression(net, token.place.colset, token.data, token.text)
@@ -119,7 +138,9 @@ def _given(token: Token) -> Given:
     return Given(token.place.index, token.place.name, json.dumps(marking), says)
 
 
-def tokens(net: FlatNet, config: CellConfig, d: Diagnostics) -> Sequence[Token]:
+def tokens(
+    net: FlatNet, config: CellConfig, d: Diagnostics, given: Path | None = None
+) -> Sequence[Token]:
     """The tokens of all files that are there; an error for each file that the supervisor would refuse.
 
     A place that cell.toml names wrongly is passed over here: `cell.divide` reports it.
@@ -134,17 +155,21 @@ def tokens(net: FlatNet, config: CellConfig, d: Diagnostics) -> Sequence[Token]:
     found: list[Token] = []
     for entry in config.inputs:
         place = find(entry.place, entry.origin, "input")
-        is_there = (config.folder / entry.file).is_file()
-        if is_there and place is not None and scalars_of(place.colset) is not None:
-            token = _token(game, place, config, entry, d)
+        path = config.input_path(entry, given)
+        if path.is_file() and place is not None and scalars_of(place.colset) is not None:
+            token = _token(game, place, path, config, entry, d)
             found += [] if token is None else [token]
     return tuple(found)
 
 
 def _token(
-    game: Game, place: FlatPlace, config: CellConfig, entry: InputConfig, d: Diagnostics
+    game: Game,
+    place: FlatPlace,
+    path: Path,
+    config: CellConfig,
+    entry: InputConfig,
+    d: Diagnostics,
 ) -> Token | None:
-    path = config.folder / entry.file
     colset = place.colset
     try:
         text = path.read_bytes().decode("latin-1")

@@ -73,6 +73,7 @@ def generate(
     int_bits: int = 31,
     checked: bool = True,
     examine: Examine | None = None,
+    inputs: Path | None = None,
 ) -> Generated | None:
     """Everything from files to files in memory; None when an error was reported.
 
@@ -81,6 +82,9 @@ def generate(
     The supervisor of a cell is checked (docs/execution.md) with the tokens of its input files, and its places get room
     for what is proven to come, with more room where other files may lead to more; without `checked` nothing is refused
     for that.
+
+    `inputs` is a folder with other input files than those beside cell.toml, or the one file: what is checked, and what
+    there is room for, is the cell with these.
 
     `examine` looks at net and cell before anything that takes long; nothing is done after an error of it.
 
@@ -108,7 +112,7 @@ def generate(
     robots = lower_robot.lower_robots(partition, config, d) if config else ()
     if ir is None or robots is None or d.has_errors:
         return None
-    begun = begin(net, config, d) if checked else Begun(net)
+    begun = begin(net, config, d, given=inputs) if checked else Begun(net)
     if d.has_errors:
         return None
     proofs = prove(
@@ -141,8 +145,8 @@ def generate(
             net_size=len(net_files[0].text),
         ),
         *emit_tdl.emit(robots, source=Path(net.file).name, digest=digest, version=version),
-        *runtime.emit("supervisor", "simulate"),
-        *_inputs(config),
+        *runtime.emit("supervisor", "simulate", "exercise"),
+        *_inputs(config, inputs),
     ]
     files.append(manifest.emit(partition, files, digest=digest, version=version))
     return Generated(
@@ -174,15 +178,17 @@ def _refuse_unsupported(d: Diagnostics, net: FlatNet | None) -> None:
     ]
 
 
-def _inputs(config: CellConfig | None) -> Iterator[OutputFile]:
-    """Copies of the cell's own input files, so that `make && ./supervisor` works where it stands.
+def _inputs(config: CellConfig | None, given: Path | None) -> Iterator[OutputFile]:
+    """Copies of the input files that the programs were generated with, so that `make && ./supervisor` works where it
+    stands.
 
     A file that is missing or is no text is left out: the supervisor says so when it starts, where it can be mended.
     """
     for entry in config.inputs if config else ():
         with suppress(OSError, UnicodeDecodeError):
             assert config is not None
-            yield OutputFile(entry.file, (config.folder / entry.file).read_text(encoding="utf-8"))
+            path = config.input_path(entry, given)
+            yield OutputFile(entry.file, path.read_text(encoding="utf-8"))
 
 
 def program_digest(

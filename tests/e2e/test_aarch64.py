@@ -7,14 +7,13 @@ package `qemu-user`); docs/execution.md says what was tried.
 from __future__ import annotations
 
 import importlib.util
-import os
 import shutil
-import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
+from helpers.traced_runs import make, traces
 from pn2code import pipeline
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.write import write
@@ -34,28 +33,6 @@ def _compiler() -> str:
     pytest.skip(f"there is neither `{CROSS}` nor the Python package `ziglang`")
 
 
-def _make(folder: Path, *options: str) -> None:
-    env = {k: v for k, v in os.environ.items() if not k.startswith(("MAKE", "CFLAGS"))}
-    command = ["make", "-s", *options, "CFLAGS=-O1", "supervisor.traced", "simulate"]
-    done = subprocess.run(command, cwd=folder, env=env, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
-
-
-def _traces(folder: Path, *prefix: str) -> list[bytes]:
-    """A dry run of the supervisor, and two random runs."""
-    found = []
-    for name, *options in (
-        ("supervisor.traced", "--dry-run", "--quiet"),
-        ("simulate", "--seed", "1", "--steps", "300"),
-        ("simulate", "--seed", "7", "--steps", "300"),
-    ):
-        command = [*prefix, f"./{name}", *options, "--trace", "run.trace.jsonl"]
-        done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
-        assert done.returncode == 0, (command, done.stderr)
-        found.append((folder / "run.trace.jsonl").read_bytes())
-    return found
-
-
 @pytest.mark.parametrize("name", ["riveting", "sorting", "timed"])
 def test_traces_are_the_same(name: str, root: Path, tmp_path: Path) -> None:
     if shutil.which(QEMU) is None:
@@ -67,11 +44,11 @@ def test_traces_are_the_same(name: str, root: Path, tmp_path: Path) -> None:
     here, there = tmp_path / "here", tmp_path / "aarch64"
     for folder, options in ((here, ()), (there, (f"CC={compiler}",))):
         write(folder, made.files)
-        _make(folder, *options)
+        make(folder, *options)
     header = (there / "supervisor.traced").read_bytes()[:20]
     assert header[:4] == b"\x7fELF" and header[18:20] == b"\xb7\x00", "it is made for aarch64"
 
-    own, other = _traces(here), _traces(there, QEMU)
+    own, other = traces(here), traces(there, QEMU)
 
     assert all(trace.count(b"\n") > 20 for trace in own)
     assert own == other

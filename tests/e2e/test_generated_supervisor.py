@@ -181,10 +181,33 @@ def test_i5_flags_are_read_before_data(
     assert together and all(names == ["flag1_externo", "medida1"] for names in together), said
 
 
-def test_a_run_in_real_time_sends_the_rows(
-    built: Path, root: Path, shared: Path, robots: list[Robot]
+@pytest.fixture(scope="module")
+def no_heap(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What stops a program that asks for memory, where it is preloaded; in a program that does, it works."""
+    library = tmp_path_factory.mktemp("no_heap") / "no_heap.so"
+    source = root / "cnative" / "tests" / "no_heap.c"
+    command = ["gcc", "-shared", "-fPIC", "-fno-builtin", "-Wall", "-Werror", source, "-o", library]
+    subprocess.run(command, check=True)
+    done = subprocess.run(
+        ["ls"], env={"LD_PRELOAD": str(library)}, capture_output=True, text=True, check=False
+    )
+    if done.returncode != 99 or "is called" not in done.stderr:
+        pytest.skip("this system does not preload libraries")
+    return library
+
+
+def test_a_run_in_real_time_sends_the_rows_and_takes_no_heap(
+    built: Path,
+    root: Path,
+    shared: Path,
+    robots: list[Robot],
+    no_heap: Path,
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    with SupervisorProcess(built / "supervisor", shared, root / "examples/riveting") as supervisor:
+    with monkeypatch.context() as preloaded:
+        preloaded.setenv("LD_PRELOAD", str(no_heap))
+        supervisor = SupervisorProcess(built / "supervisor", shared, root / "examples/riveting")
+    with supervisor:
         join(robots)
         end = threading.Event()
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import subprocess
 from pathlib import Path
 
@@ -194,3 +195,39 @@ def test_the_arena_has_room_for_what_the_file_needs(tmp_path: Path) -> None:
     assert check["assumes"] == ["`Pieces` begins with the token of `s.in`: 90000"]
     ran = dry_run(made(folder, tmp_path / "out"), folder)
     assert ran.returncode == 0, ran.stderr
+
+
+def test_a_run_with_other_files_has_room_for_what_these_lead_to(tmp_path: Path) -> None:
+    """Its program is generated for them, and its supervisor is checked with them."""
+    folder, other = cell(tmp_path / "cell", "5\n"), tmp_path / "other"
+    other.mkdir()
+    (other / "s.in").write_text("90\n")
+    for given in (other, other / "s.in"):
+        out = tmp_path / "out"
+        done = run(folder, given, out)
+        assert done.returncode == 0, done.stdout + done.stderr
+        assert room(out / "program", "Stock") == "room for 180"
+        says = "`Pieces` begins with the token of `s.in`: 90"
+        assert says in (out / "program" / "cell_config.c").read_text()
+        assert (out / "program" / "s.in").read_text() == "90\n"
+        shutil.rmtree(out)
+
+
+def test_a_run_with_files_that_lead_to_a_deadlock_does_not_begin(tmp_path: Path) -> None:
+    folder, other = cell(tmp_path / "cell", "5\n"), tmp_path / "mine.txt"
+    other.write_text("-1\n")
+    done = run(folder, other, tmp_path / "out")
+    assert done.returncode == 1, done.stdout
+    said = " ".join(done.stderr.split())
+    assert "error[controller-check]: non-blocking: there is a deadlock at the start" in said
+    assert "`Pieces` begins with the token of `s.in`: (~1)" in said
+    assert not (tmp_path / "out").exists()
+    (folder / "s.in").write_text("-1\n")
+    other.write_text("5\n")
+    done = run(folder, other, tmp_path / "out")
+    assert done.returncode == 0, "the cell's own file is not read"
+
+
+def run(folder: Path, given: Path, out: Path) -> subprocess.CompletedProcess[str]:
+    options = ["--backend", "fake", "--no-pictures", "-o", out]
+    return pn2code("run", folder, "--input", given, *options)

@@ -150,6 +150,37 @@ def test_a_message_that_cannot_be_written_is_found_out(
     assert said["medium"][0]["answer"] == "no" and words in said["medium"][0]["why"]
 
 
+def test_the_message_that_comes_first_is_blamed(tmp_path: Path) -> None:
+    """Data stand before flags among the channels, but the supervisor gets no further than the flag."""
+    net = BASE.replace("COLSET", "STRING").replace("VALUE", 'rep (4054, "x")')
+    net = net.replace(
+        "    place done : INT\n", "    place done : INT\n    place more : STRING\n", 1
+    )
+    net = net.replace("(flag -> flag, done -> done)", "(flag -> flag, done -> done, more -> more)")
+    net = net.replace(
+        "    place done port in : INT\n",
+        "    place done port in : INT\n    place more port out : STRING\n",
+        1,
+    ).replace(
+        "    place Over\n",
+        "    place Over\n    place more port in : STRING\n    place Read : STRING\n"
+        "    trans Take\n      in more : v\n      in Waiting : ()\n      out Read : v\n",
+        1,
+    )
+    net = net.replace(
+        "      out Finished : k\n", '      out Finished : k\n      out more : rep (4060, "y")\n', 1
+    )
+    toml = TOML + '[[channel]]\nplace = "more"\nfile = "more.txt"\nkind = "data"\n'
+    cell = small_cell.write(tmp_path / "cell", net, toml)
+    options = ["--no-found", "--json", "--threads", "1", "--traces", str(tmp_path)]
+    done = CliRunner().invoke(app, ["verify", str(cell), *options])
+    assert done.exit_code == 1, done.output
+    said = json.loads(done.stdout)
+    (check,) = [c for c in said["controller"] if c["check"] == "messages"]
+    assert "of channel `flag` cannot be sent" in check["says"], check
+    assert check["evidence"][0]["steps"] == 2
+
+
 def test_a_number_out_of_its_range_once_it_is_rounded(tmp_path: Path) -> None:
     """0.1 in single precision is a little more than 0.1, which a reader of 0.0..0.1 refuses."""
     net = BASE.replace("COLSET", "NARROW").replace("VALUE", "0.1")

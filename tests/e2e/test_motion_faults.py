@@ -18,10 +18,12 @@ pytestmark = pytest.mark.usefixtures("quick_build", "generated_once")
 POSE = r"TCP pose \(-?[\d.]+, -?[\d.]+, -?[\d.]+ mm; -?[\d.]+, -?[\d.]+, -?[\d.]+ deg\)"
 
 
-def run(root: Path, tmp_path: Path, backend: str, first: str, last: str) -> RunResult:
+def run(
+    root: Path, tmp_path: Path, backend: str, first: str, last: str, *, checked: bool = True
+) -> RunResult:
     input_file = tmp_path / "points.txt"
     input_file.write_text(f"5\n{first}\n{last}\n")
-    options = RunOptions(out=tmp_path / "out", input=input_file, backend=backend)  # type: ignore[arg-type]
+    options = RunOptions(out=tmp_path / "out", input=input_file, backend=backend, checked=checked)  # type: ignore[arg-type]
     d = Diagnostics()
     result = run_cell(root / "examples" / "riveting", options, d)
     assert result is not None, [e.message for e in d.errors]
@@ -50,9 +52,12 @@ def check_stopped(result: RunResult, tmp_path: Path, root: Path) -> None:
 
 @pytest.mark.cc
 def test_pose_out_of_reach(root: Path, tmp_path: Path) -> None:
-    result = run(
-        root, tmp_path, "fake", "9750 5898.8 2135.05 -105 0 0", "9950 5898.8 2135.05 -105 0 0"
-    )
+    poses = "9750 5898.8 2135.05 -105 0 0", "9950 5898.8 2135.05 -105 0 0"
+    with pytest.raises(AssertionError, match="reach: .* commands a move that is not possible"):
+        run(
+            root, tmp_path, "fake", *poses
+        )  # what is checked is the cell with the file that is given
+    result = run(root, tmp_path, "fake", *poses, checked=False)
     check_stopped(result, tmp_path, root)
     reason = result.record.reason
     assert re.match(

@@ -13,8 +13,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 from helpers.table_2 import table_2
+from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.front import load
 from pn2code.robot.transforms import Array
@@ -125,6 +127,16 @@ class TestWholeRun:
         occurred = [e for e in result.record.events if "transition" in e]
         assert found.steps == len(occurred) > 300
         assert found.ended == "finished"
+
+    def test_trace_is_drawn_on_the_pages(
+        self, bullet_run: tuple[str, Path, RunResult, Noses], root: Path, tmp_path: Path
+    ) -> None:
+        _, out, _, _ = bullet_run
+        page = tmp_path / "steps.html"
+        cell, trace = str(root / "examples" / "riveting"), str(out / "cell.trace.jsonl")
+        done = CliRunner().invoke(app, ["draw", cell, "--trace", trace, "-o", str(page)])
+        assert done.exit_code == 0, done.output
+        assert "Cell.Supervisor" in page.read_text(encoding="utf-8")
 
     def test_a_falsified_trace_is_refused(
         self, root: Path, tmp_path: Path, bullet_run: tuple[str, Path, RunResult, Noses]

@@ -226,14 +226,19 @@ FLOOD = net(
 )
 
 
-def test_messages_that_gather_end_the_exploration(tmp_path: Path) -> None:
-    """No limit is set: a channel of few colours in which more and more messages lie needs none."""
+def few() -> str:
+    """FLOOD with a channel of two colours, which are counted."""
     head, b = FLOOD.split("  page PB\n")
     text = head.replace("fromB : INT", "fromB : FEW").replace(
         "fromB port in : INT", "fromB port in : FEW"
     )
     text = text.replace("  page Top", "  colset FEW = int with 1..2;\n  page Top", 1)
-    text += "  page PB\n" + b.replace("say port out : INT", "say port out : FEW")
+    return text + "  page PB\n" + b.replace("say port out : INT", "say port out : FEW")
+
+
+@pytest.mark.parametrize("text", [few(), FLOOD], ids=["few colours", "one of many"])
+def test_messages_that_gather_end_the_exploration(text: str, tmp_path: Path) -> None:
+    """No limit is set: a channel in which more and more messages lie needs none, whatever their colour set."""
     found = said(write(tmp_path, text, toml(["A", "B"], TOOL)))
     assert found["why"] in ("messages", "infinite")
     assert found["nodes"] < 100_000

@@ -158,7 +158,7 @@ def test_a_trace_that_is_no_run_is_refused(tmp_path: Path) -> None:
         assert (found["why"], found["replayed"], found["steps"]) == ("replay", 3, 3)
         assert "not enabled" in found["refusal"]
     trace.write_text('{"trace": 1, "by": "supervisor"}\n')
-    assert "only runs of `simulate`" in simulate(net, "--replay", trace, code=2).stderr
+    assert "only traces of `simulate`" in simulate(net, "--replay", trace, code=2).stderr
     trace.write_text("nonsense\n")
     for engine in ("compiled", "reference"):
         done = simulate(net, "--replay", trace, "--engine", engine, code=2)
@@ -379,7 +379,8 @@ def test_many_at_the_same_time(tmp_path: Path) -> None:
     assert len(list((tmp_path / "cache" / "pn2code" / "programs").iterdir())) == 2
 
 
-def test_without_a_compiler(tmp_path: Path) -> None:
+def test_without_a_compiler(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "ziglang", None)  # not installed
     net = write(COUNTER, tmp_path / "cell.cpn")
     environment = _environment(tmp_path, PATH=str(tmp_path), CC="")
     done = simulate(net, "--engine", "compiled", env=environment, code=2)

@@ -192,3 +192,19 @@ THREE = "".join(
     f"    place X{k} : INT = 1`0\n    trans Up{k} guard [n < 30]\n      in X{k} : n\n      out X{k} : n + 1\n"
     for k in range(3)
 )
+
+
+def test_times_that_grow_are_not_taken_for_numbers(tmp_path: Path) -> None:
+    """Three clocks whose delays have no common part: the markings differ in the times alone."""
+    head = "\nnet slow\n  standard\n  colset CLOCK = UNIT timed;\n  page Top\n"
+    for i, delay in enumerate((1_000_000_000, 999_999_937, 999_999_893)):
+        head += f"    place P{i} : CLOCK = 1`()@0\n"
+        head += f"    trans T{i}\n      in P{i} : ()\n      out P{i} : ()@+{delay}\n"
+    net = write(head, tmp_path / "net.cpn")
+    for options, words in (
+        ((), "or the time of a token does, so that there is no end of markings (`--reduce time`"),
+        (("--reduce", "time"), "or long delays are gone through in small steps"),
+    ):
+        done = pn2code("verify", net, "--max-states", "3000", *options)
+        assert done.returncode == 3, done.stderr
+        assert words in " ".join(done.stdout.split()), done.stdout

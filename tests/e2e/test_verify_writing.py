@@ -212,3 +212,22 @@ def test_the_explorer_is_killed_while_it_writes(net: Path, tmp_path: Path) -> No
         assert "error[explorer-failed]: the explorer was ended by signal 9" in done.stderr
         assert not list(tmp_path.iterdir())
         break
+
+
+@pytest.mark.parametrize(
+    ("option", "file", "endings"),
+    [
+        ("--report", "r.pdf", ".html, .htm or .txt"),
+        ("--report", "r.HTLM", ".html, .htm or .txt"),
+        ("--draw", "g.png", ".svg or .html"),
+        ("--plot", "p.pdf", ".svg or .png"),
+    ],
+)
+def test_an_ending_that_says_no_form_is_refused_before_anything_is_done(
+    option: str, file: str, endings: str, tmp_path: Path
+) -> None:
+    done = pn2code("verify", tmp_path / "missing.cpn", option, tmp_path / file)
+    assert done.returncode == 2
+    said = " ".join(done.stderr.replace("│", " ").split())
+    assert f"does not end in {endings}" in said, said
+    assert "missing" not in said and not (tmp_path / file).exists()

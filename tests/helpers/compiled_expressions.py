@@ -22,7 +22,7 @@ from ml_suite.suite import NotShowable
 from ml_suite.suite import show as show_simple
 from pn2code.diagnostics import NOWHERE, Diagnostics, SourceText
 from pn2code.ml.core import terms as core
-from pn2code.ml.core.types import STRING, UNIT, TCon, TFun, TRecord, Type
+from pn2code.ml.core.types import BOOL, INT, STRING, UNIT, TCon, TFun, TRecord, Type
 from pn2code.net.flat import FlatNet, Form
 from pn2code.semantics.values.data import MlException, MlLimit, MlUnavailable
 
@@ -84,7 +84,31 @@ _MORE = {
 
 
 class WideTexts(Texts):
-    """With numbers beyond all bounds, characters that are no letters, reals that are no numbers."""
+    """With numbers beyond all bounds, odd characters, reals that are no numbers, and values that nobody looks at."""
+
+    def block(self, t: Type, depth: int) -> str:
+        """Sometimes something whose value is not looked at comes before: its exception must not be lost."""
+        inner = super().block(t, depth)
+        return f"({self.effect(depth)}; {inner})" if self.r.random() < 0.3 else inner
+
+    def effect(self, depth: int) -> str:
+        """Of type unit."""
+        test, number = self.of(BOOL, depth - 1), self.of(INT, depth - 1)
+        match self.r.randrange(8):
+            case 0 | 1:
+                return f"if {test} then () else ()"
+            case 2:
+                return f"case {number} of 0 => () | _ => ()"
+            case 3:
+                return f"case ({number}, {test}) of (_, true) => () | _ => ()"
+            case 4:
+                return f"ignore ({self.of(self.type(1), depth - 1)})"
+            case 5:
+                return f"let val (_, _) = ({number}, {test}) in () end"
+            case 6:
+                return f"app (fn _ => if {test} then () else ()) [{number}]"
+            case _:
+                return f"(if {test} then ignore {self.atom(number)} else ()) handle Bare => ()"
 
     def constructed(self, name: str, args: tuple[Type, ...], depth: int) -> str:
         if name in _WIDE and self.r.random() < 0.3:

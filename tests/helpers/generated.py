@@ -6,6 +6,7 @@ That the same input gives the same bytes is tested by itself (`unit/test_golden.
 from __future__ import annotations
 
 import hashlib
+import os
 import pickle
 from collections.abc import Callable
 from pathlib import Path
@@ -85,7 +86,10 @@ def _key(path: Path, options: dict[str, Any]) -> str:
     whole = {**(generate.__kwdefaults__ or {}), **options}
     whole = {**whole, "values": sorted((whole["values"] or {}).items()), "examine": None}
     found = hashlib.sha256(repr((path.resolve(), sorted(whole.items()))).encode())
-    for file in sorted(p for p in folder.rglob("*") if p.is_file()):
-        found.update(f"{file.relative_to(folder)}\0{file.stat().st_size}\0".encode())
+    files = [p for p in folder.rglob("*") if p.is_file()]
+    if (given := whole.get("inputs")) is not None:
+        files += [given] if given.is_file() else [p for p in given.rglob("*") if p.is_file()]
+    for file in sorted(files):
+        found.update(f"{os.path.relpath(file, folder)}\0{file.stat().st_size}\0".encode())
         found.update(file.read_bytes())
     return found.hexdigest()

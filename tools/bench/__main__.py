@@ -18,7 +18,7 @@ from statistics import median
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))  # as pytest does: the tests' helpers
 
-from tools.bench import compile_times, monitor, snakes_peer, states
+from tools.bench import compile_times, monitor, pairs, snakes_peer, states
 from tools.bench import measures as m
 
 
@@ -135,7 +135,12 @@ def main() -> int:
     parser.add_argument(
         "--compile", action="store_true", help="only what compiling takes, by the size of the net"
     )
+    parser.add_argument(
+        "--against", type=Path, metavar="CHECKOUT", help="only commands, beside those of a checkout"
+    )
     options = parser.parse_args()
+    if options.against:
+        return pairs.measure(options.against, options.repeat)
     if options.compile:
         return compile_times.measure(min(options.repeat, 3))
     if options.database_15:

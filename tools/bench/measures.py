@@ -27,6 +27,7 @@ from pn2code.simulate import programs
 
 ROOT = Path(__file__).parents[2]
 CELL = ROOT / "examples" / "riveting"
+CELLS = ("riveting", "sorting", "timed")
 CNATIVE = ROOT / "cnative"
 LATENCY_ROUNDS = 900
 

@@ -9,6 +9,7 @@
  *     array_take(p, v, n)          takes n of them; false, and nothing taken, when there are fewer
  *     array_add(cx, p, bag, v, n)  puts n of them; false (PN_ERR_CAPACITY) when there are now more than the place may
  *                                  hold
+ *     array_undo(p, v, n)          takes them out again, also where they are now more than can be counted
  *
  * Behind its capacity the array has room for all that one occurrence may put: nothing is ever written outside, and what
  * has been put beyond the capacity can be taken out again.
@@ -104,6 +105,14 @@
         p->token[i].count = n;                                                                                        \
         p->used = used + 1U;                                                                                          \
         return (used < bag->capacity) || pn_bag_fail_full(cx, bag);                                                   \
+    }                                                                                                                 \
+    PN_MAYBE_UNUSED static inline void array##_undo(array##_t *p, const value_t *v, uint32_t n)                       \
+    {                                                                                                                 \
+        const uint32_t i = array##_find(p, v);                                                                        \
+        if (n > 0U) {                                                                                                 \
+            p->token[i].count -= n;                                                                                   \
+            (void)((p->token[i].count == 0U) && array##_take(p, v, 0U));                                              \
+        }                                                                                                             \
     }
 
 #endif /* PN_PLACE_H */

@@ -87,28 +87,28 @@ static bool real_digits(double value, int digits, char *text, size_t capacity)
 
 size_t pn_real_format(double value, char *out, size_t capacity)
 {
-    const double v = (value == 0.0) ? 0.0 : value; /* no -0.0000 */
-    char text[512];                                /* 1e308 with four decimals has 314 characters */
-    if (!isfinite(v)) {
+    char text[512]; /* 1e308 with four decimals has 314 characters */
+    if (!isfinite(value)) {
         return 0U;
     }
-    (void)snprintf(text, sizeof text, "%.4f", v);
-    if (strtod(text, NULL) != v) {
+    /* A zero keeps its sign, which a net can see: what arrives is what was sent. */
+    (void)snprintf(text, sizeof text, "%.4f", value);
+    if (strtod(text, NULL) != value) {
         /* Most numbers that are not round need 15 to 17 digits; 17 always do. channels/scalars.py goes the same way. */
         int most = 15;
-        while ((most < 17) && !real_digits(v, most, text, sizeof text)) {
+        while ((most < 17) && !real_digits(value, most, text, sizeof text)) {
             most++;
         }
         int least = (most == 15) ? 1 : most;
         while (least < most) {
             const int middle = (least + most) / 2;
-            if (real_digits(v, middle, text, sizeof text)) {
+            if (real_digits(value, middle, text, sizeof text)) {
                 most = middle;
             } else {
                 least = middle + 1;
             }
         }
-        (void)snprintf(text, sizeof text, "%.*g", most, v);
+        (void)snprintf(text, sizeof text, "%.*g", most, value);
     }
     const size_t length = strlen(text);
     if (length >= capacity) {

@@ -176,6 +176,8 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
            || ((strcmp(option, "--ends-in") == 0) && read_text(value, &options->ends_in))
            || ((strcmp(option, "--multiset-limit") == 0) && read_number(value, UINT64_MAX, &options->multiset_limit))
            || ((strcmp(option, "--whole") == 0) && read_text(value, &options->whole))
+           || ((strcmp(option, "--heaps") == 0) && read_text(value, &options->heaps))
+           || ((strcmp(option, "--most-heaped") == 0) && read_number(value, UINT64_MAX, &options->most_heaped))
            || ((strcmp(option, "--initial") == 0) && read_text(value, &options->initial))
            || ((strcmp(option, "--seed") == 0) && read_number(value, UINT64_MAX, &options->seed));
 }

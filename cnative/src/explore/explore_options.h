@@ -47,7 +47,9 @@ typedef struct ex_options {
     const char *ends_in; /* phase in which the time ends as soon as it begins, whatever the clock says; NULL: none */
     uint64_t multiset_limit; /* colours of a multi-set bound that are printed */
     const char *whole;       /* places of which all are, numbers with commas between; NULL: none */
-    uint64_t parent;         /* process that started it, and without which it is to end; 0: none */
+    const char *heaps;       /* places that need not hold more tokens than `most_heaped`, as in `whole`; NULL: none */
+    uint64_t most_heaped;
+    uint64_t parent; /* process that started it, and without which it is to end; 0: none */
 } ex_options_t;
 
 /* Why it ended, in the order of importance. */
@@ -68,7 +70,8 @@ typedef enum ex_why {
 typedef struct ex_error {
     char message[256];
     char where[512];
-    const char *kind;   /* "capacity": of the place; "memory": of lists and strings; "exception" */
+    const char *
+        kind; /* "capacity": of the place; "heap": it holds more than `most_heaped`; "memory": of lists and strings; "exception" */
     int64_t place;      /* index, -1: none */
     int64_t transition; /* index, -1: none */
 } ex_error_t;

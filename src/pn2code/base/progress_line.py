@@ -80,6 +80,14 @@ class Line:
             self._stream.write(f"\r\x1b[K{text[:width]}")
             self._stream.flush()
 
+    def keep(self, text: str) -> None:
+        """Writes a line that stays, in a terminal, too."""
+        if self._shown:
+            self.clear()
+            self._tell(text)
+        elif self._is_plain:
+            self._tell(text)
+
     def _tell(self, text: str) -> None:
         self._told = self._clock()
         self._stream.write(f"{text}\n")

@@ -162,6 +162,12 @@ class CellConfig:
         """Where its other files are."""
         return self.path.parent
 
+    def input_path(self, entry: InputConfig, given: Path | None = None) -> Path:
+        """The file that a run reads: beside cell.toml, in the folder `given` instead, or that one file."""
+        if given is not None and not given.is_dir():
+            return given
+        return (self.folder if given is None else given) / entry.file
+
     @property
     def programs(self) -> tuple[RobotConfig, ...]:
         """Whoever runs a script: the robots, then the devices."""

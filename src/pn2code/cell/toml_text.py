@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from functools import lru_cache
 
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Origin, SourceText
@@ -41,8 +42,9 @@ class Positions:
     strings: Mapping[Path, Sequence[SourceText]]
 
 
+@lru_cache(maxsize=8)
 def positions(text: str, file: str) -> Positions:
-    """Of all keys and strings of a file."""
+    """Of all keys and strings of a file; the same file is often read again, for each of its layouts."""
     return _Scanner(text, file).run()
 
 

@@ -282,7 +282,9 @@ def _explored(
     if carried is not None and found is not None and answer == "yes":
         sent = messages.examine(carried, found, run.d)  # the writer's place has kept its index
         if sent.answer == "no":
-            answer, why = "no", sent.says
+            several = len(sent.wrong)
+            more = f"; {several:,} messages cannot be sent" if several > 1 else ""
+            answer, why = "no", sent.says + more
         elif sent.answer == "unknown":
             answer, why = "inconclusive", "the values of its messages are not known"
     return Answer(

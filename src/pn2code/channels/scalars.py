@@ -47,14 +47,16 @@ def scalars_of_json(data: Any) -> Iterator[ScalarValue]:
 
 
 def format_real(value: float) -> str:
-    """Four decimals where that reads back to the same number, otherwise the fewest digits that do; never -0.0000."""
-    v = value if value else 0.0
-    text = f"{v:.4f}"
-    if float(text) == v:
+    """Four decimals where that reads back to the same number, otherwise the fewest digits that do.
+
+    A zero keeps its sign, which a net can see (`1.0 / x`): what arrives is what was sent.
+    """
+    text = f"{value:.4f}"
+    if float(text) == value:
         return text
 
     def suffices(digits: int) -> bool:
-        return float(f"{v:.{digits}g}") == v
+        return float(f"{value:.{digits}g}") == value
 
     # the same search as pn_real_format in pn_channel.c, so that both give the same text
     most = next(digits for digits in (15, 16, 17) if digits == 17 or suffices(digits))
@@ -65,7 +67,7 @@ def format_real(value: float) -> str:
             most = middle
         else:
             least = middle + 1
-    return f"{v:.{most}g}"
+    return f"{value:.{most}g}"
 
 
 def _format_string(value: str) -> str | None:

@@ -153,6 +153,8 @@ def _files(folder: Folder) -> Iterator[str]:
 def _core(core: CoreReport) -> str:
     if core.deviation is not None:
         return f"net.c         DIFFERS from the token game: {core.deviation}"
+    if core.given_up:
+        return f"net.c         not compared to the end, because the token game gives up: {core.given_up}"
     if core.complete:
         # Random runs besides a complete space compare the times, see `CoreReport`.
         apart = ", where markings that differ only in the time count once" if core.walks else ""
@@ -192,7 +194,7 @@ def _robot(report: RobotReport, is_edited: bool) -> list[str]:
     name = f"{report.robot:<13}"
     if report.deviation is not None:
         return [f"{name} DIFFERS from its page: {report.deviation}", *_way(report.way)]
-    some = "all" if report.complete else "a part (a limit was reached),"
+    some = "all" if report.complete else f"a part ({report.why or 'a limit was reached'}),"
     return [
         f"{name} agrees with its page in {some} {report.states:,} states: {report.marks:,} firings of "
         f"{report.transitions} of its {report.all_transitions} transitions, "

@@ -157,9 +157,17 @@ def _leave(code: str | int | None) -> NoReturn:
     try:
         sys.stdout.flush()
         sys.stderr.flush()
+    except BrokenPipeError:
+        os._exit(code or Exit.UNREAD)  # what was found out is said by the code
     except (OSError, ValueError):
         sys.exit(code)  # says so
     os._exit(code or 0)
+
+
+def _unread() -> None:
+    """The reader of our output has gone (`pn2code ... | head`): nothing more can be said."""
+    sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115, PTH123
+    os.dup2(sys.stdout.fileno(), 1)
 
 
 def play() -> NoReturn:
@@ -173,7 +181,7 @@ def play() -> NoReturn:
     if signal.getsignal(signal.SIGHUP) == signal.SIG_DFL:  # else: `nohup`
         signal.signal(signal.SIGHUP, _interrupt)
     # Nets are trees: the search for cycles finds nothing, and took a third of the time of checking a large one.
-    gc.set_threshold(50_000, 20, 20)
+    gc.set_threshold(500_000, 20, 20)
     # Accepted expressions nest up to some 250 levels, each worth several Python frames.
     sys.setrecursionlimit(max(20_000, sys.getrecursionlimit()))
     try:
@@ -182,9 +190,14 @@ def play() -> NoReturn:
         typer.echo("pn2code: interrupted", err=True)
         sys.exit(130)
     except BrokenPipeError:
-        # The reader of our output has gone (`pn2code ... | head`): nothing more can be said.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(Exit.OK)
+        _unread()
+        sys.exit(Exit.UNREAD)
+    except SystemExit as left:
+        # The command-line library makes exit code 1 of it, which would say that the model is wrong.
+        if not isinstance(left.__context__, BrokenPipeError):
+            raise
+        _unread()
+        sys.exit(Exit.UNREAD)
     except Exception as problem:
         if isinstance(problem, OSError) and problem.errno in _FULL:
             where = f" `{problem.filename}`" if problem.filename else ""

@@ -24,11 +24,13 @@ class Exit:
     MODEL = 1
     """the net, the cell or a property is wrong"""
     USAGE = 2
-    """wrong usage, or a file that is missing"""
+    """wrong usage, or a file or tool that is missing"""
     INCONCLUSIVE = 3
     """a limit was hit"""
     INTERNAL = 70
     """a bug in pn2code"""
+    UNREAD = 141
+    """the reader of the output went before the end, as for a program that SIGPIPE ends"""
 
 
 class Format(StrEnum):
@@ -240,10 +242,10 @@ def stop(d: Diagnostics, form: Format = Format.FULL) -> NoReturn:
     raise typer.Exit(code_of(d))
 
 
-_FILES = frozenset({"file-missing", "file-unreadable", "run-input"})
-"""Codes about files that were given rather than about the model in them."""
+_OUTSIDE = frozenset({"file-missing", "file-unreadable", "run-input", "tool-missing"})
+"""Codes about files that were given, and tools of the machine, rather than about the model."""
 
 
 def code_of(d: Diagnostics) -> int:
-    """The exit code for these errors: a file is missing or wrong, or the model is."""
-    return Exit.USAGE if any(e.code in _FILES for e in d.errors) else Exit.MODEL
+    """The exit code for these errors: a file or tool is missing or a file wrong, or the model is."""
+    return Exit.USAGE if any(e.code in _OUTSIDE for e in d.errors) else Exit.MODEL

@@ -91,7 +91,7 @@ def replay(
     else:
         typer.echo(_sentence(trace, result))
     if not result["ok"]:
-        raise typer.Exit(Exit.MODEL)
+        raise typer.Exit(Exit.INCONCLUSIVE if result.get("given_up") else Exit.MODEL)
 
 
 _NOT_PLAYED: dict[str, Any] = {
@@ -144,6 +144,7 @@ def _recording(
         "steps": followed.steps,
         "failed_step": None if followed.ok else followed.steps + 1,
         "why": followed.why,
+        "given_up": followed.given_up,
         "time": followed.time,
         "random": followed.random,
         "drawn": list(followed.drawn),
@@ -183,6 +184,7 @@ def _own(trace: Path, opened: OpenNet, files: Path | None, claims: Claims) -> di
         "steps": result.steps,
         "failed_step": None if result.ok else result.steps + 1,
         "why": result.why,
+        "given_up": result.given_up,
         "line": result.line,
         "transition": result.transition,
         "ended": result.ended,
@@ -198,9 +200,8 @@ def _sentence(trace: Path, result: dict[str, Any]) -> str:
     if not result["ok"]:
         line = f"{trace}:{result['line']}" if result.get("line") else str(trace)
         transition = f"`{result['transition']}`: " if result.get("transition") else ""
-        return (
-            f"{line}: step {result['failed_step']} cannot be repeated: {transition}{result['why']}"
-        )
+        could = "is not known to be possible" if result.get("given_up") else "cannot be repeated"
+        return f"{line}: step {result['failed_step']} {could}: {transition}{result['why']}"
     ended = f", ended: {result['ended']}" if result.get("ended") else ""
     text = f"{trace}: {steps}, each enabled when its turn came{ended}"
     if result["time"]:

@@ -209,10 +209,6 @@ def _made(request: Request, engine: Engine | None, d: Diagnostics, form: Format)
         if request.interrupted():  # while the net was compiled
             typer.echo("pn2code: interrupted", err=True)
             raise typer.Exit(130)
-        missing = any(i.code == "tool-missing" for i in d)
-        if missing:
-            print_diagnostics(d.sorted(), form)
-            raise typer.Exit(Exit.USAGE)
         stop(d, form)
     return outcome
 

@@ -58,7 +58,7 @@ class Subject:
         rows = [("Net", opened.flat.file, opened.flat.sha256)]
         if opened.config is not None:
             rows.append(("Cell", str(opened.config.path), _file_digest(opened.config.path)))
-            inputs = [opened.config.folder / entry.file for entry in opened.config.inputs]
+            inputs = [opened.config.input_path(entry) for entry in opened.config.inputs]
             rows += [("Input", str(file), _file_digest(file)) for file in inputs if file.is_file()]
         rows += [("Properties", str(file), _file_digest(file)) for file in properties]
         rows += [("Value", name, value) for name, value in sorted(values.items())]

@@ -56,6 +56,9 @@ from pn2code.verify.report.progress import ProgressLine
 from pn2code.verify.report.text import report
 from pn2code.verify.report.webpage import webpage
 
+_PAGES = (".html", ".htm")
+_TEXTS = (".txt", "")
+"""Endings of reports; a name without one is that of a text, too."""
 EPILOG = """Examples:
 
   pn2code verify net.cpn
@@ -137,7 +140,7 @@ def verify(
         typer.Option(
             "--report",
             metavar="FILE",
-            help="Write the report to this file, as HTML if its name ends in .html.",
+            help="Write the report to this file: .html (or .htm), or .txt, as without an ending.",
         ),
     ] = None,
     draw_to: Annotated[
@@ -258,6 +261,7 @@ def verify(
     deadline = Deadline.of_command(max_seconds)
     _check_kind(draw_to, GRAPH_KINDS, "--draw")
     _check_kind(plot_to, PLOT_KINDS, "--plot")
+    _check_kind(report_to, (*_PAGES, *_TEXTS), "--report")
     d = Diagnostics()
     try:
         with deadline.enforced():
@@ -290,7 +294,12 @@ def verify(
     ):
         for path, option in ((draw_to, "--draw"), (plot_to, "--plot"), (report_to, "--report")):
             check_writable(path, option)  # perhaps in the folder that was just made
-        with Interrupts() as interrupts, ProgressLine(shown=not (as_json or quiet)) as progress:
+        line = ProgressLine(
+            shown=not (as_json or quiet),
+            is_limited=max_states is not None or max_seconds is not None,
+            is_timed=opened.flat.timed and Reduction.TIME not in limits.reductions,
+        )
+        with Interrupts() as interrupts, line as progress:
             wishes = ExploreOptions(
                 traces=folder if most_traces else None,
                 stem=stem(opened),
@@ -313,7 +322,7 @@ def verify(
         said = conclude(looked, opened, asked, limits, folder, d, checks)
         if report_to is not None:
             subject = None
-            if report_to.suffix.lower() in (".html", ".htm"):
+            if report_to.suffix.lower() in _PAGES:
                 subject = Subject.of(
                     opened,
                     net,
@@ -388,11 +397,11 @@ def _folder(traces: Path | None, name: str, *, wanted: bool) -> Iterator[Path]:
 
 
 def _check_kind(path: Path | None, kinds: tuple[str, ...], option: str) -> None:
-    """The ending of a picture's name says its form."""
+    """The ending of a name says the form of what is written."""
     if path is not None and path.suffix.lower() not in kinds:
-        raise typer.BadParameter(
-            f"`{path}` does not end in {' or '.join(kinds)}", param_hint=option
-        )
+        *others, last = (kind for kind in kinds if kind)
+        possible = f"{', '.join(others)} or {last}"
+        raise typer.BadParameter(f"`{path}` does not end in {possible}", param_hint=option)
 
 
 def _write_report(said: Said, subject: Subject | None, path: Path, d: Diagnostics) -> None:

@@ -51,6 +51,8 @@ LEAST_WAY = 10
 MOST_ITEMS = 8
 """Failures and open questions that have lines of their own on one screen."""
 MOST_NAMES = 6
+MOST_NAMES_LINES = 4
+"""Lines with the names of failures of which there is no room to say more."""
 MOST_DIFFERENCES = 4
 """Of the cell as it runs from the closed net, on one screen."""
 _WIDTH = 110
@@ -243,10 +245,20 @@ def _growing(net: FlatNet, found: Exploration) -> Iterator[str]:
     """What may be the reason that there is no end of markings."""
     growing = found.growing()
     if growing is not None:
-        place, count = net.places[growing[0]].name, growing[1]
+        place, count = net.places[growing[0]], growing[1]
+        what = "a number, text or list in a token may grow for ever"
+        so = "so that there is no end of markings; is there a guard that limits it?"
+        if place.colset.timed and "time" in found.reductions:
+            what += ", or long delays are gone through in small steps"
+            so = "so that there are very many markings, or no end of them"
+        elif place.colset.timed:
+            what += ", or the time of a token does"
+            so = (
+                "so that there is no end of markings (`--reduce time` counts those that differ in the time alone as "
+                "one)"
+            )
         yield (
-            f"place `{place}` has held {count:,} different multi-sets of tokens: a number, text or list in a token may "
-            "grow for ever, so that there is no end of markings; is there a guard that limits it?"
+            f"place `{place.name}` has held {count:,} different multi-sets of tokens: {what}, {so}"
         )
 
 
@@ -376,7 +388,7 @@ def _rest(rests: Sequence[str | None]) -> str:
 
 
 def _wrong(wrong: Sequence[_Item], room: int) -> list[str]:
-    """Failures, then open questions: as many as there is room for, the first in any case."""
+    """Failures, then open questions: as many as there is room for, the first in any case; of the others the names."""
     lines: list[str] = []
     for number, item in enumerate(wrong):
         mark = {"bad": "NO", "open": "?"}[item.kind]
@@ -388,11 +400,27 @@ def _wrong(wrong: Sequence[_Item], room: int) -> list[str]:
             break_long_words=False,
             break_on_hyphens=False,
         )[:3]
-        is_last = number == len(wrong) - 1
-        is_full = len(lines) + len(wrapped) + (not is_last) > room
+        is_full = len(lines) + len(wrapped) + len(_names_of(wrong[number + 1 :])) > room
         if number and (number == MOST_ITEMS or is_full):
-            return [*lines, f"   and {len(wrong) - number} more"]
+            return [*lines, *_names_of(wrong[number:])]
         lines += wrapped
+    return lines
+
+
+def _names_of(wrong: Sequence[_Item]) -> list[str]:
+    """What failed and what is open, by name."""
+    lines: list[str] = []
+    for kind, title in (("bad", "also NO"), ("open", "also not known")):
+        names = [item.name for item in wrong if item.kind == kind]
+        if names:
+            lines += textwrap.wrap(
+                f"{title} ({len(names)}): {', '.join(names)}",
+                _WIDTH,
+                initial_indent="   ",
+                subsequent_indent="     ",
+                max_lines=MOST_NAMES_LINES,
+                placeholder=" ...",
+            )
     return lines
 
 

@@ -9,9 +9,10 @@ import json
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Owner
 from pn2code.conform import core, data, declared, folder, robot, supervisor
 from pn2code.conform.codes import PROBE_FAILED
@@ -20,9 +21,11 @@ from pn2code.conform.probe import HOST, PATIENCE_S, Probe, ProbeError
 from pn2code.conform.scheme import MOST_STATES
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.emission.output import OutputFile
+from pn2code.input_files import begin
+from pn2code.net.flat import FlatNet
 from pn2code.pipeline import Generated, generate
 from pn2code.semantics.evaluation.files import Files
-from pn2code.semantics.game.marking import PlaceMarking, place_from_json
+from pn2code.semantics.game.marking import place_from_json, place_text
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.tdl.check import check
 from pn2code.tdl.parse import parse
@@ -89,7 +92,9 @@ def conform_cell(
         checked: whether the supervisor must pass its checks (docs/execution.md).
         stage: hears what is done next.
     """
-    made = generate(path, d, values=values, int_bits=int_bits, checked=checked)
+    made = generate(
+        path, d, values=values, int_bits=int_bits, checked=checked, examine=_examine_inputs
+    )
     if made is None:
         return None
     found: Folder | None = None
@@ -100,9 +105,10 @@ def conform_cell(
             return None
         found, files = given
     storage = made.config.storage if made.config else {}
+    begun = begin(made.partition.net, made.config, Diagnostics()).net
     try:
         stage("comparing net.c with the token game ...")
-        compared = core.compare(made.partition.net, storage, d, most=most)
+        compared = core.compare(begun, storage, d, most=most)
         if compared is None:
             return None
         if made.config is None or not made.partition.channels:
@@ -118,6 +124,11 @@ def conform_cell(
             Origin(made.partition.net.file),
         )
     return None
+
+
+def _examine_inputs(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> None:
+    """Reports what the supervisor would refuse when it starts, before anything that takes long."""
+    begin(net, config, d, is_started=True)
 
 
 def _programs(
@@ -144,7 +155,7 @@ def _programs(
 
 
 class ProgramComparison:
-    """Compares the programs of one cell with its net. The supervisor comes first: it reads the cell's input files.
+    """Compares the programs of one cell with its net, which begins with the tokens of the cell's input files.
 
     Args:
         made: what is generated from the cell.
@@ -156,7 +167,8 @@ class ProgramComparison:
         self.made = made
         self._config = made.config
         self._most = most
-        self._initial: dict[str, PlaceMarking] = {}
+        self._begun = begin(made.partition.net, made.config, Diagnostics())
+        self._partition = replace(made.partition, net=self._begun.net)
 
     def supervisor(
         self, program: Path, patience: float = PATIENCE_S, *, tables_first: bool = False
@@ -176,12 +188,14 @@ class ProgramComparison:
             trace = Path(name) / "supervisor.trace.jsonl"
             options = ["--input", str(self._config.folder), "--trace", str(trace)]
             with closing(Probe(program, options, patience)) as probe:
+                game = self._game()
                 difference = data.compare(self.made, probe.tables)
                 report = supervisor.Report()
-                if difference is None or not tables_first:
-                    self._initial = self._read(trace)
-                    partition, game = self.made.partition, self._game()
-                    report = supervisor.explore(partition, game, probe, self._most)
+                misread = self._misread(trace, game)
+                if misread is not None:  # whatever else differs may come from this
+                    difference = misread
+                elif difference is None or not tables_first:
+                    report = supervisor.explore(self._partition, game, probe, self._most)
                 if report.deviation is None and difference is not None:
                     report.deviation = supervisor.Deviation(difference, ())
                     report.complete, report.why = False, "deviation"
@@ -193,7 +207,7 @@ class ProgramComparison:
         checked = check(parsed, d) if parsed is not None else None
         if checked is None:
             return None
-        partition, game = self.made.partition, self._game()
+        partition, game = self._partition, self._game()
         difference = declared.compare(partition, self._config, owner.index, checked, game)
         if difference is not None:
             return robot.RobotReport(
@@ -201,14 +215,18 @@ class ProgramComparison:
             )
         return robot.explore(partition, self._config, owner.index, checked, game, most=self._most)
 
-    def _read(self, trace: Path) -> dict[str, PlaceMarking]:
-        """What the program has read from its input files, from the header of its trace."""
+    def _misread(self, trace: Path, game: Game) -> str | None:
+        """Where the header of the program's trace says that it has read something else from its input files."""
         with trace.open(encoding="utf-8") as lines:
-            header = json.loads(lines.readline())
-        colsets = {p.name: p.colset for p in self.made.partition.net.places}
-        found = header.get("initial", {})
-        return {name: place_from_json(colsets[name], data) for name, data in found.items()}
+            told = json.loads(lines.readline()).get("initial", {})
+        for given in self._begun.given:
+            colset = self._partition.net.places[given.place].colset
+            expected = game.marking.places[given.place]
+            found = place_from_json(colset, told.get(given.name, []))
+            if found != expected:
+                is_, should = (place_text(game.colours, colset, x) for x in (found, expected))
+                return f"place `{given.name}` begins with {is_}, but its input file holds {should}"
+        return None
 
     def _game(self) -> Game:
-        net = self.made.partition.net
-        return Game(net, self._config.storage, self._initial, files=Files(None))
+        return Game(self._begun.net, self._config.storage, files=Files(None))

@@ -23,6 +23,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.evaluation.references import Held
+from pn2code.semantics.game.enabling import GivenUpError
 from pn2code.semantics.game.marking import Marking, binding_to_json, place_from_json, place_to_json
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.simulate import programs
@@ -44,6 +45,7 @@ class CoreReport:
         walks, steps: random runs of the compiled simulator that were repeated, and their steps, where it is not, or
             where nodes that differ in time alone are one.
         deviation: in words; None: there is none.
+        given_up: what the token game did not evaluate to its end; "": nothing.
     """
 
     nodes: int
@@ -52,6 +54,7 @@ class CoreReport:
     walks: int = 0
     steps: int = 0
     deviation: str | None = None
+    given_up: str = ""
 
 
 class _Differs(Exception):  # noqa: N818
@@ -90,11 +93,11 @@ def compare(
         if not found.complete or not graph.exists():
             return _sampled(net, storage, walks, Path(name), d)
         whole = _Whole(net, storage, clock).compared(graph)
-        if whole.deviation or not clock.is_relative:
+        if whole.deviation or whole.given_up or not clock.is_relative:
             return whole
         # In relative time a graph does not say how long was waited: runs do.
         sampled = _sampled(net, storage, walks, Path(name), d)
-        if sampled is None or sampled.deviation:
+        if sampled is None or sampled.deviation or sampled.given_up:
             return sampled
         return replace(whole, walks=sampled.walks, steps=sampled.steps)
 
@@ -129,6 +132,8 @@ class _Whole:
             self._references = {0: self._game.marking.references}
             for node, ((time, places), arcs) in enumerate(zip(markings, leaving, strict=True)):
                 self._node(node, time, places, arcs)
+        except GivenUpError as limit:
+            return CoreReport(0, 0, False, given_up=str(limit))
         except (_Differs, GameError) as difference:
             return CoreReport(len(markings), len(rows), False, deviation=str(difference))
         return CoreReport(len(markings), len(rows), True)
@@ -183,6 +188,8 @@ def _sampled(
         for seed, trace in _runs(program, walks, folder):
             result = replay(trace, net, storage, files=Files(None))
             steps += result.steps
+            if result.given_up:
+                return CoreReport(0, 0, False, seed, steps, given_up=result.why)
             if not result.ok:
                 why = f"run with seed {seed}, step {result.steps + 1}: {result.why}"
                 return CoreReport(0, 0, False, seed, steps, why)

@@ -24,6 +24,7 @@ from pn2code.conform.scheme import MOST_STATES, Scheme
 from pn2code.net.flat import BindAll, BindRandom, FlatTransition
 from pn2code.primitive_calls import Calls, Listener, Unknown
 from pn2code.robot import commands
+from pn2code.semantics.game.enabling import GivenUpError
 from pn2code.semantics.game.marking import Marking, binding_to_json, element_text
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.colour_json import to_json
@@ -56,6 +57,7 @@ class RobotReport:
         complete: every state that can be reached was seen.
         deviation: in words; None: there is none.
         way: what happened before the deviation.
+        why: what the token game did not evaluate to its end; "": nothing.
     """
 
     robot: str
@@ -67,6 +69,7 @@ class RobotReport:
     complete: bool
     deviation: str | None = None
     way: tuple[str, ...] = ()
+    why: str = ""
 
 
 class DeviationError(Exception):
@@ -211,6 +214,7 @@ class _Product:
         parent: dict[_State, tuple[_State, str] | None] = {first: None}
         waiting = deque([first])
         deviation: str | None = None
+        given_up = ""
         at = first
         try:
             while waiting and len(parent) <= self._most:
@@ -222,6 +226,8 @@ class _Product:
                         waiting.append(after)
         except DeviationError as found:
             deviation = str(found)
+        except GivenUpError as limit:
+            given_up = str(limit)
         return RobotReport(
             self._name,
             len(parent),
@@ -229,9 +235,10 @@ class _Product:
             len(self._marked),
             self._partition.transition_owner.count(self._owner),
             self._commands,
-            not waiting and deviation is None,
+            not waiting and deviation is None and not given_up,
             deviation,
             tuple(self._way(parent, at)) if deviation else (),
+            given_up,
         )
 
     def _way(self, parent: dict[_State, tuple[_State, str] | None], at: _State) -> list[str]:
@@ -414,6 +421,8 @@ class _Product:
             try:
                 self._called.clear()
                 marking, occurred = self._game.occur(self._marking, element)
+            except GivenUpError:
+                raise
             except GameError as error:
                 raise DeviationError(
                     f"{where}, where the net raises an exception: {error}"

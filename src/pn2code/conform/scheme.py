@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 
 from pn2code.cell.partition import Partition
 from pn2code.net.flat import FlatTransition
+from pn2code.semantics.game.enabling import GivenUpError
 from pn2code.semantics.game.marking import BindingElement, Marking, PlaceMarking, element_text
 from pn2code.semantics.game.token_game import Game, GameError
 
@@ -153,6 +154,8 @@ class Scheme:
                 if len(done) == self._most:
                     return Cycle(marking, tuple(done), "no end of firing")
                 marking, occurred = self._game.occur(marking, element)
+            except GivenUpError:  # nothing is known then
+                raise
             except GameError as error:
                 return Cycle(marking, tuple(done), str(error))
             done.append(occurred)
@@ -172,11 +175,15 @@ class Scheme:
             for element in self.enabled(owner, marking):
                 try:
                     after, _ = self._game.occur(marking, element)
+                except GivenUpError:
+                    raise
                 except GameError:
                     raises = True
                     continue
                 text = element_text(self._game.colours, self.partition.net, element)
                 steps.append(Step(text, self._changes(owner, marking, after)))
+        except GivenUpError:
+            raise
         except GameError:
             raises = True
         return Steps(tuple(steps), raises)

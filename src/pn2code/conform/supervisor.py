@@ -21,6 +21,7 @@ from pn2code.conform.messages import scalars
 from pn2code.conform.observations import Observation, ObservedChange, look
 from pn2code.conform.probe import SESSION, Answer, Probe
 from pn2code.conform.scheme import MOST_STATES, SUPERVISOR, Scheme
+from pn2code.semantics.game.enabling import GivenUpError
 from pn2code.semantics.game.marking import Marking, place_from_json, place_text
 from pn2code.semantics.game.token_game import Game
 
@@ -138,6 +139,9 @@ class _Product:
             self.report.deviation = Deviation(str(deviation), self._way())
             self.report.complete = False
             self.report.why = "deviation"
+        except GivenUpError as limit:
+            self.report.complete = False
+            self.report.why = str(limit)
         self.report.sights = len(self._seen)
         return self.report
 
@@ -360,4 +364,7 @@ def explore(partition: Partition, game: Game, probe: Probe, most: int = MOST_STA
     Raises:
         ProbeError: the program does not answer.
     """
-    return _Product(partition, game, probe, most).run()
+    try:
+        return _Product(partition, game, probe, most).run()
+    except GivenUpError as limit:  # before the program was asked anything
+        return Report(complete=False, why=str(limit))

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from pn2code.emission import c_rows, c_tables
+from pn2code.emission import c_rows, c_tables, c_values
 from pn2code.emission.c_expressions import c_big_initialiser
 from pn2code.emission.c_lines import wrap
 from pn2code.emission.c_proofs import proofs
@@ -60,9 +60,8 @@ class _Emitter(Transitions):
         s.self_parameters, s.self_call, s.is_void = f.parameters, name, is_void
         s.is_looping = f.loops
         zero = "" if is_void else self._types.zero(f.result)
-        for p in f.parameters:
-            if p.uid not in s.used:
-                s.line(f"(void){x.local(p)};")
+        for p in f.unread:
+            s.line(f"(void){x.local(p)};")
         if f.recursive:
             s.result = "" if is_void else scope.name("result", "result")
             if not is_void:
@@ -108,20 +107,11 @@ class _Emitter(Transitions):
         s.body(g.setup)
         name = self._names.value(g.name, g.hint)
         constant = ""
-        if (
-            len(g.setup) == 1
-            and isinstance(g.setup[0], ir.SetGlobal)
-            and not (g.is_reference or g.setup[0].is_reference)
-        ):
-            value = g.setup[0].value
-            if isinstance(value, ir.Const) and value.type.rep in (Rep.INT, Rep.REAL, Rep.BOOL):
-                constant = x.text(value)
-            elif (
-                isinstance(value, ir.Const)
-                and isinstance(value.value, int)
-                and value.type == ir.BIG
-            ):
-                constant = c_big_initialiser(value.value)
+        value = c_values.constant(g)
+        if value is not None and value.type.rep in (Rep.INT, Rep.REAL, Rep.BOOL):
+            constant = x.text(value)
+        elif value is not None and isinstance(value.value, int) and value.type == ir.BIG:
+            constant = c_big_initialiser(value.value)
         return {
             "mark": self._block(g.hint, "declaration", g.origin),
             "title": where(g.origin),

@@ -52,6 +52,7 @@ class _SlotMove:
         value: a put: the token as C, "" where values say nothing (`()`).
         differs: a take: whether the token is not there, as C; "": the search has found it.
         count: "" for one; otherwise the C variable that says how many tokens.
+        is_one: there is never more than one.
         note: what it is in the net.
     """
 
@@ -62,6 +63,7 @@ class _SlotMove:
     count: str
     note: str
     differs: str = ""
+    is_one: bool = True
 
 
 class DirectFiring(Statements):
@@ -94,6 +96,7 @@ class DirectFiring(Statements):
         self._moves_made: list[_Move] = []
         self._slot_moves: list[_SlotMove] = []
         self.references: frozenset[str] = frozenset()
+        self.constants: Mapping[str, ir.Const] = {}
         self._declared: list[str] = []
         self._staying: set[int] = set()
         self._takes: list[ir.Take] = []
@@ -142,7 +145,9 @@ class DirectFiring(Statements):
         if done or takes:
             self.note("a place is full: everything is put back")
         for move, is_done in reversed(done):
-            undo = f"(void){self._call(move, 'take')};"
+            undo = f"{self._call(move, 'undo')};"
+            if move.is_packed:
+                undo = f"(void){self._call(move, 'take')};"
             if is_done:
                 self.line(f"if ({is_done}) {{")
                 self.line(f"    {undo}")
@@ -173,11 +178,13 @@ class DirectFiring(Statements):
         rooms = []
         emptied = {m.tokens for m in taken}
         for move in self._slot_moves:
-            if move.is_take or (move.tokens in emptied and not move.count):
+            if move.is_take or (move.tokens in emptied and move.is_one):
                 continue
             full = f"{move.tokens}full"
             if move.count and move.tokens in emptied:
                 test = f"{move.count} > 1U"
+            elif move.count and move.is_one:
+                test = f"({move.count} > 0U) && {full}"
             elif move.count:
                 test = f"({move.count} > 1U) || (({move.count} == 1U) && {full})"
             else:
@@ -297,7 +304,7 @@ class DirectFiring(Statements):
         if must_check:
             self.has_checks = True
             self._check(s, f"&{value}", count or "1U")
-        self._slot_moves.append(_SlotMove(False, tokens, bag, value, count, s.note))
+        self._slot_moves.append(_SlotMove(False, tokens, bag, value, count, s.note, is_one=is_one))
 
     def _worked_out(self, s: ir.Take | ir.Put, is_nested: bool, must_check: bool) -> str:
         """The variable that holds the value that is taken or put; a check may change it."""
@@ -384,6 +391,13 @@ class DirectFiring(Statements):
             self._place_tables[t.place] == table and t.value == s.value for t in self._takes
         )
 
+    def _number(self, value: ir.Ir) -> int | None:
+        """The integer that a value always is; None: not known, or it is none."""
+        known = self.constants.get(value.name) if isinstance(value, ir.GlobalUse) else value
+        if not isinstance(known, ir.Const) or known.type != ir.INT:
+            return None
+        return known.value if isinstance(known.value, int) else None
+
     def _is_within(self, value: ir.Ir, table: str) -> bool:
         """Whether a value is of a colour set: all values of its type are, or it is put together from variables."""
         if not is_restricted(self._descriptors, table):
@@ -391,6 +405,9 @@ class DirectFiring(Statements):
         if isinstance(value, ir.Bound):
             return self._tables[value.index] == table
         own = self._descriptors[table]
+        number = self._number(value)
+        if number is not None and own.low is not None and own.high is not None:
+            return not own.member and own.low <= number <= own.high
         if not isinstance(value, ir.MakeStruct) or own.member:
             return False
         parts = dict(own.fields)

@@ -10,6 +10,8 @@ from __future__ import annotations
 STANDARD = "-std=c11"
 FLOATS = ("-ffp-contract=off", "-fno-fast-math")
 """Sums of products are rounded as in the token game, on every processor. They come after the user's flags."""
+ZIG = "-fno-sanitize=undefined"
+"""For `zig cc`: below `-O2` it puts in checks, and they call a library that it links only below `-O2`, too."""
 FRAMES = ("stack-usage", "frame-larger-than")
 """Warnings about stack frames, the better one first: gcc knows both, clang the second."""
 FRAME_MAX = 16_384
@@ -27,3 +29,8 @@ measured is as fast (docs/benchmarks.md). No value that is computed depends on t
 def for_size(characters: int) -> tuple[str, ...]:
     """What the compiler is told besides `-O2`, or whatever else is asked for, about generated C of this length."""
     return QUICKER if characters > LARGE else ()
+
+
+def for_compiler(command: str) -> tuple[str, ...]:
+    """What a compiler is told because of what it is, where a program's parts are not all compiled alike."""
+    return (ZIG,) if "zig" in command and "sanitize" not in command else ()

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pn2code.diagnostics import Origin
 from pn2code.emission import c_orders, c_packed
 from pn2code.emission.c_expressions import Expressions, Types
-from pn2code.emission.c_needs import used_locals
 from pn2code.emission.c_own import OwnPlaces
 from pn2code.emission.c_shared import share, tables
 from pn2code.emission.c_statements import Statements
+from pn2code.emission.c_values import constant
 from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import NetIR
@@ -28,6 +28,7 @@ class Frame:
         self._definitions = {d.name: d for d in net.definitions}
         self._types = Types(self._names, self._definitions)
         self._descriptors = {d.name: d for d in net.descriptors}
+        self._constants = {g.name: value for g in net.globals if (value := constant(g)) is not None}
         self._functions = {f.key: f for f in net.functions}
         self._blocks: dict[str, tuple[str, str, Origin]] = {}
         self._place_names = tuple(self._names.place(p.index, p.name) for p in net.places)
@@ -102,7 +103,6 @@ class Frame:
         x.slots = self._slots
         x.global_hints = {g.name: g.hint for g in self._net.globals}
         s = Statements(self._types, x, scope, self._net.real_time)
-        s.used = used_locals(statements)
         s.bags = self._bags
         s.timed = self._timed
         s.slots = self._slots

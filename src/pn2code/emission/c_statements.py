@@ -11,7 +11,6 @@ from pn2code.emission.c_expressions import (
     c_bytes,
 )
 from pn2code.emission.c_lines import WIDTH, wrap
-from pn2code.emission.c_needs import does_nothing
 from pn2code.emission.c_sums import SumFunction
 from pn2code.emission.c_values import SCALARS
 from pn2code.emission.environment import c_comment
@@ -38,7 +37,6 @@ class Statements:
         self._real_time = real_time
         self.lines: list[str] = []
         self._depth = 1
-        self.used: frozenset[int] = frozenset()
         self.self_parameters: tuple[ir.Local, ...] = ()
         self.self_call = ""
         self.result: str | None = None
@@ -125,12 +123,6 @@ class Statements:
     def statement(self, s: Stmt) -> None:
         """Print one statement."""
         match s:
-            case ir.Let(local=local, value=value) | ir.Assign(local=local, value=value) if (
-                local.uid not in self.used
-            ):
-                self._discard(value)
-            case ir.Declare(local=local) if local.uid not in self.used:
-                pass
             case ir.Let(local=local, value=value, mutable=mutable):
                 text = self._x.text(value)
                 self.line(f"{'' if mutable else 'const '}{self._declaration(local)} = {text};")
@@ -184,17 +176,12 @@ class Statements:
                 self._net_statement(s)
 
     def _discard(self, value: Ir) -> None:
-        """Evaluate for what it does, if it can do anything."""
-        if does_nothing(value):
-            return
+        """Evaluate for what it does."""
         text = self._x.inside(value, 14)
         is_call = value.type.rep is Rep.UNIT and text.endswith(")") and not text.startswith("(")
         self.line(f"{text};" if is_call else f"(void){text};")
 
     def _set_global(self, s: ir.SetGlobal) -> None:
-        if s.value.type.rep is Rep.UNIT:
-            self._discard(s.value)
-            return
         name = self._names.value(s.name, self._x.global_hints.get(s.name, s.name))
         if not s.is_reference:
             self.line(f"{name} = {self._x.text(s.value)};")
@@ -208,10 +195,6 @@ class Statements:
         self.line("}")
 
     def _set_contents(self, s: ir.SetContents) -> None:
-        is_unseen = isinstance(s.reference, ir.Use) and s.reference.local.uid not in self.used
-        if s.value.type.rep is Rep.UNIT or is_unseen:
-            self._discard(s.value)
-            return
         star = "*" if s.reference.type.rep is Rep.REF and s.value.type != s.reference.type else ""
         target = f"{star}{self._x.inside(s.reference, 13)}"
         text = self._x.text(s.value)
@@ -225,8 +208,6 @@ class Statements:
 
     def _if(self, s: ir.If, prefix: str = "") -> None:
         condition, then, otherwise = s.condition, s.then, s.otherwise
-        if not then and not otherwise:
-            return
         if not then:
             condition, then, otherwise = ir.Op("Bool.not", (condition,), ir.BOOL), otherwise, ()
         self.line(f"{prefix}if ({self._x.text(condition)}) {{")

@@ -179,7 +179,6 @@ class Transitions(Frame):
             "thresholds": thresholds,
             "thresholds_reach": own.reach(thresholds, is_const=True) if own else [],
             "thresholds_draw": t.effects.thresholds_draw,
-            "searches_marking": mentions("m", "\n".join(search.lines)),
             "fire": fire.lines,
             "fire_reach": own.reach(fire.lines, is_const=False) if own else [],
             "is_counting": False,
@@ -255,11 +254,12 @@ class Transitions(Frame):
                 place_tables=tuple(p.table for p in self._net.places),
                 puts_back=not self._net.has_successors,
             )
-            direct.used, direct.bags, direct.timed = printer.used, printer.bags, printer.timed
+            direct.bags, direct.timed = printer.bags, printer.timed
             direct.tables_of_places = printer.tables_of_places
             direct.token_types = printer.token_types
             direct.slots = self._slots
             direct.references = frozenset(g.name for g in self._net.globals if g.is_reference)
+            direct.constants = self._constants
             direct.sums = self._sums(t)
             direct.otherwise = f"{name}_fire_lists(cx, m, self, b)"
             direct.variable_types = tuple(v.type for v in t.variables)

@@ -11,6 +11,14 @@ SCALARS = frozenset({Rep.BOOL, Rep.INT, Rep.CHAR, Rep.ENUM})
 """Representations whose values C compares with `==`."""
 
 
+def constant(g: ir.Global) -> ir.Const | None:
+    """What a `val` always is, if that is known when it is printed."""
+    setup = g.setup[0] if len(g.setup) == 1 else None
+    if not isinstance(setup, ir.SetGlobal) or g.is_reference or setup.is_reference:
+        return None
+    return setup.value if isinstance(setup.value, ir.Const) else None
+
+
 def is_structural(value: ir.Ir, references: Container[str]) -> bool:
     """Whether a value is put together from constants and variables alone: each evaluation gives the same."""
     match value:

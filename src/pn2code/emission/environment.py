@@ -27,19 +27,19 @@ def c_comment(text: str) -> str:
     return line
 
 
+def _in_string(byte: int) -> str:
+    if byte in b'"?\\':
+        return f"\\{chr(byte)}"  # `?`: no trigraphs
+    # Three digits cannot swallow a digit that follows.
+    return chr(byte) if 0x20 <= byte < 0x7F else f"\\{byte:03o}"
+
+
+_IN_STRING = {byte: _in_string(byte) for byte in range(256)}
+
+
 def c_string(text: str) -> str:
     """A C string literal of the text's UTF-8 bytes."""
-    out = []
-    for byte in text.encode("utf-8"):
-        if byte in b'"\\':
-            out.append("\\" + chr(byte))
-        elif 0x20 <= byte < 0x7F and byte != ord("?"):
-            out.append(chr(byte))
-        elif byte == ord("?"):
-            out.append("\\?")  # no trigraphs
-        else:
-            out.append(f"\\{byte:03o}")  # three digits: cannot swallow a digit that follows
-    return '"' + "".join(out) + '"'
+    return f'"{text.encode("utf-8").decode("latin-1").translate(_IN_STRING)}"'
 
 
 def c_float(value: float) -> str:

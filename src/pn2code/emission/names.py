@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Hashable
+from functools import lru_cache
 
 _KEYWORDS = """
     auto break case char const continue default do double else enum extern float for goto if inline int long
@@ -41,6 +42,7 @@ _TYPES = """
 _MAX_STEM = 48
 
 
+@lru_cache(maxsize=4096)
 def stem(text: str, reserved: frozenset[str] = RESERVED) -> str:
     """A readable C identifier for a name of the net: never empty, never reserved, at most 48 characters.
 

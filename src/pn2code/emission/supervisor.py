@@ -20,8 +20,12 @@ from pn2code.emission import arena_size, c_flags, needs
 from pn2code.emission.arena_size import ArenaSize
 from pn2code.emission.environment import c_float, c_int, render
 from pn2code.emission.output import Block, OutputFile
-from pn2code.ir.nodes import NetIR
+from pn2code.ir.calls import ir_nodes
+from pn2code.ir.nodes import NetIR, Reset
 from pn2code.net.flat import FlatPlace
+
+_ANY = 2**64 - 1
+"""More arcs that empty a place than there are: it is not known how many."""
 
 _INT_MIN, _INT_MAX = -(2**63), 2**63 - 1
 _REAL_MAX = 1.7976931348623157e308
@@ -202,6 +206,7 @@ def emit(
         version=version,
         source=" ".join(source_name.split()),
         has_simulate=True,
+        resets=_resets(compiled) if compiled is not None else _ANY,
         c_flags=c_flags,
         net_flags=" ".join(c_flags.for_size(net_size)),
         needs=required,
@@ -238,3 +243,8 @@ def _channel_row(
         "scalar_count": len(table.scalars),
         "scalars": table.ident,
     }
+
+
+def _resets(net: NetIR) -> int:
+    """How many arcs take all tokens of a place, and so do not need any."""
+    return sum(isinstance(n, Reset) for t in net.transitions for n in ir_nodes(t.fire))

@@ -94,7 +94,7 @@ class _Dump:
         parameters = ", ".join(f"{_local(p)}: {p.type}" for p in f.parameters)
         flags = (" loops" if f.loops else "") + (" recursive" if f.recursive else "")
         flags += ("" if f.is_pure else " impure") + (" context" if f.needs_context else "")
-        flags += self._use(f)
+        flags += self._use(f) + (f" unread {', '.join(map(_local, f.unread))}" if f.unread else "")
         yield f"function {f.key}({parameters}): {f.result}{flags}"
         yield from self._block(f.body, 1)
 

@@ -657,6 +657,7 @@ class Function:
         source: the ML text.
         is_pure: nothing but its arguments and the marking decides about its result.
         needs_context: it takes the context, since it may raise, allocate, or look at the time.
+        unread: parameters that nobody looks at.
     """
 
     key: str
@@ -670,6 +671,7 @@ class Function:
     origin: Origin
     is_pure: bool = False
     needs_context: bool = False
+    unread: tuple[Local, ...] = ()
 
 
 @frozen

@@ -9,6 +9,7 @@ places and transitions of a page the first of a name has it, the others have `_u
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 
 from pn2code.net.flat import FlatNet, PlaceInstance
 
@@ -65,6 +66,7 @@ def sent_name(name: str) -> str:
     return re.sub(r"\s+", "_", found.group().strip()) if found else ""
 
 
+@lru_cache(maxsize=4096)
 def legal_name(text: str) -> str:
     """What the engine makes of a name that no other element has."""
     name = engine_name(text)

@@ -304,7 +304,7 @@ class _Builder:
         return words, 'attributes are written name="value", with quotes'
 
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
-        if len("".join(attributes.values())) > MAX_TEXT:
+        if attributes and sum(map(len, attributes.values())) > MAX_TEXT:
             self._refuse(XML_LIMIT, f"an attribute has more than {MAX_TEXT:,} characters")
         if len(self.open) >= MAX_DEPTH:
             self._refuse(XML_LIMIT, f"elements are nested more than {MAX_DEPTH} levels deep")

@@ -9,6 +9,13 @@ import sys
 from pn2code.robot.backend import Backend, BackendName, BackendUnavailableError
 from pn2code.robot.scene import RobotCell
 
+_COMPILED = (
+    ""
+    if sys.version_info < (3, 12)
+    else ", and compiles it, since there are packages for Python 3.11 at the latest: it takes some minutes, a C++ "
+    "compiler and the headers of Python (on Debian or Ubuntu: sudo apt-get install g++ python3-dev)"
+)
+
 
 def open_backend(
     name: BackendName, cell: RobotCell, *, gui: bool = False, looks: bool = True
@@ -32,7 +39,7 @@ def open_backend(
         )
     if importlib.util.find_spec("pybullet") is None:
         raise BackendUnavailableError(
-            "PyBullet is not installed: `pip install 'pn2code[cell]'` brings it, with Python 3.11 at the latest. "
+            f"PyBullet is not installed: `pip install 'pn2code[cell]'` brings it{_COMPILED}. "
             "`--backend fake` needs none: it moves the arms exactly, without measuring clearances"
         )
     from pn2code.robot.bullet import BulletBackend

@@ -190,7 +190,9 @@ class Monitor:
 
     def _samples(self, name: str, path: Array) -> Iterator[Sample]:
         robot = self._cell.robot(name)
-        path = np.unique(np.asarray(path, float), axis=0)
+        path = np.asarray(path, float)
+        if len(path) > 1:  # for one, NumPy would load its masked arrays for nothing
+            path = np.unique(path, axis=0)
         for q, frame, conditioning in zip(path, *robot.kinematics.states(path), strict=True):
             margin, axis = robot.kinematics.limit_margin(q)
             pose = pose_of(self._bases[name] @ frame)

@@ -17,8 +17,6 @@ from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
-from ruckig import InputParameter, Result, Ruckig
-from ruckig import Trajectory as RuckigTrajectory
 
 from pn2code.robot.commands import Pose
 from pn2code.robot.kinematics import BRANCHES, Branch, Kinematics, condition_text
@@ -137,13 +135,16 @@ class _Law:
     """A jerk-limited law of one parameter from 0 to 1, from rest to rest; `duration` s."""
 
     def __init__(self, velocity: float, acceleration: float, jerk: float) -> None:
+        # Whoever only looks where arms stand needs no time laws.
+        from ruckig import InputParameter, Result, Ruckig, Trajectory
+
         request = InputParameter(1)
         request.current_position = [0.0]
         request.target_position = [1.0]
         request.max_velocity = [velocity]
         request.max_acceleration = [acceleration]
         request.max_jerk = [jerk]
-        self._law = RuckigTrajectory(1)
+        self._law = Trajectory(1)
         result = Ruckig(1).calculate(request, self._law)
         # `Working` is what an offline calculation answers when all is well.
         if result not in (Result.Working, Result.Finished):

@@ -359,8 +359,11 @@ def select(value: Value, label: str, span: Span) -> Value:
             raise UnsupportedError("this value has no fields", span)
 
 
+_REALS = tdl.QUANTITIES | {tdl.Type.REAL}
+
+
 def equal(a: Value, b: Value, span: Span) -> t.Expression:
-    """`a = b`."""
+    """`a = b`, as tokens are: two that are no numbers (NaN) are one."""
     if isinstance(a, Scalar) and isinstance(b, Scalar):
         a, b = common(a, b)
         if a.exp == b.exp:
@@ -371,7 +374,11 @@ def equal(a: Value, b: Value, span: Span) -> t.Expression:
             a, b = b, a  # `k = 1` reads better than `1 = k`
         if a.type is tdl.Type.BOOL and isinstance(b.exp, t.Value):
             return a.exp if b.exp.value else t.Unary("not", a.exp)
-        return t.Binary("=", a.exp, b.exp)
+        same = t.Binary("=", a.exp, b.exp)
+        if a.type not in _REALS or isinstance(b.exp, t.Value | t.Quantity):
+            return same
+        own = t.Binary("=", a.exp, a.exp), t.Binary("=", b.exp, b.exp)
+        return t.Binary("or", same, t.Unary("not", t.Binary("or", *own)))
     if isinstance(a, Rec) and isinstance(b, Rec):
         return conjunction([equal(v, b.get(label), span) for label, v in a.fields])
     raise UnsupportedError("functions cannot be compared", span)

@@ -16,7 +16,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -127,8 +127,8 @@ class RunResult:
     prepared: Prepared
 
 
-Tokens = Callable[[FlatNet, CellConfig, Diagnostics], object]
-"""Reads the input files of a cell and reports what is wrong in them."""
+Tokens = Callable[[FlatNet, CellConfig, Diagnostics, Path | None], object]
+"""Reads the input files of a cell, or others that are given, and reports what is wrong in them."""
 
 
 def prepare(
@@ -140,7 +140,7 @@ def prepare(
     """
 
     def examine(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> None:
-        if config is not None and tokens is not None:
+        if config is not None:
             examine_inputs(net, config, options.input, tokens, d)
 
     generated = pipeline.generate(
@@ -150,6 +150,7 @@ def prepare(
         values=options.values,
         checked=options.checked,
         examine=examine,
+        inputs=options.input,
     )
     if generated is None:
         return None
@@ -353,19 +354,14 @@ def shared_directory(name: str) -> Iterator[Path]:
 
 
 def examine_inputs(
-    net: FlatNet, config: CellConfig, given: Path | None, tokens: Tokens, d: Diagnostics
+    net: FlatNet, config: CellConfig, given: Path | None, tokens: Tokens | None, d: Diagnostics
 ) -> None:
     """Reports what the supervisor would refuse in the input files of a run; `given`: as `RunOptions.input`."""
     if given is not None and not given.is_dir() and len(config.inputs) != 1:
         _tell_number(config, given, d)
         return
-    shown: dict[str, str] = {}
-    entries = []
     for entry in config.inputs:
-        folder = config.folder if given is None else given
-        file = given if given is not None and not given.is_dir() else folder / entry.file
-        shown[str(file.absolute())] = str(file)
-        entries.append(replace(entry, file=str(file.absolute())))
+        file = config.input_path(entry, given)
         if not file.is_file():
             d.error(
                 RUN_INPUT,
@@ -374,12 +370,13 @@ def examine_inputs(
                 notes=[Note(f"the marking of `{entry.place}` comes from this file", entry.origin)],
                 hint=_CORRECT,
             )
+    if tokens is None:
+        return
     own = Diagnostics()
-    tokens(net, replace(config, inputs=tuple(entries)), own)
+    tokens(net, config, own, given)
     for problem in own.errors:
-        at = replace(problem.origin, file=shown.get(problem.origin.file, problem.origin.file))
         what = f"the supervisor would not start: {problem.message}"
-        d.error(RUN_INPUT, what, at, notes=list(problem.notes), hint=_CORRECT)
+        d.error(RUN_INPUT, what, problem.origin, notes=list(problem.notes), hint=_CORRECT)
 
 
 _CORRECT = "correct the input file, or give another one with --input"

@@ -14,7 +14,7 @@ from dataclasses import field
 
 from pn2code.base.frozen import frozen
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.evaluation.effects import Effects, outside
+from pn2code.semantics.evaluation.effects import effects_of, outside
 from pn2code.semantics.evaluation.evaluate import Evaluator
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.multiset import MultiSet, TimedMultiSet
@@ -343,7 +343,7 @@ def _start(net: FlatNet, storage: Mapping[str, str], given: Collection[str]) -> 
     except GameError as error:
         reason = f"the initial marking cannot be evaluated: {error.message}"
         return _Start(None, (None,) * len(net.places), {p.index: reason for p in net.places})
-    effects = Effects(net.program)
+    effects = effects_of(net.program)
     marking: list[MultiSet | TimedMultiSet | None] = list(game.marking.places)
     unknown: dict[int, str] = {}
     for place in net.places:

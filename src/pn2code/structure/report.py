@@ -151,7 +151,7 @@ def proof_text(names: Names, bound: PlaceBound) -> str:
     if not proof.weights:
         return "never marked"
     if proof.kind == "constant":
-        return "never changes"
+        return "the number of tokens never changes"
     left = weighted((names.place(p), w) for p, w in sorted(proof.weights.items()))
     return f"{left} {'=' if proof.kind == 'invariant' else '<='} {proof.initial}"
 

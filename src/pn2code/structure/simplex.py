@@ -130,6 +130,7 @@ class MarkingProgram:
         entry = line.entries.pop(column)
         solved = _Line(-entry, line.constant, {**line.entries, row: -line.scale})
         solved.reduce()
+        self._users.setdefault(row, set())
         for other in tuple(self._users.pop(column, ())):
             target = self._lines[other]
             factor = target.entries.pop(column)
@@ -144,12 +145,14 @@ class MarkingProgram:
         target.constant += factor * solved.constant
         entries = target.entries
         for c, n in solved.entries.items():
-            before = entries.get(c, 0)
+            before = entries.get(c)
+            if before is None:
+                entries[c] = factor * n
+                self._users[c].add(variable)
+                continue
             after = before + factor * n
             if after:
                 entries[c] = after
-                if not before:
-                    self._users.setdefault(c, set()).add(variable)
             else:
                 del entries[c]
                 self._users[c].discard(variable)

@@ -23,7 +23,7 @@ from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import INT, STRING, TCon, TRecord, Type
 from pn2code.net.flat import ArcInscription, FlatNet, FlatTransition, Form
 from pn2code.net.uses import pattern_variables, walk
-from pn2code.semantics.evaluation.effects import Effects
+from pn2code.semantics.evaluation.effects import effects_of
 from pn2code.semantics.evaluation.evaluate import Evaluator
 
 UNFOLDED_DEPTH = 8
@@ -45,9 +45,9 @@ class Atom:
     serial: int = 0
 
 
-@frozen
+@dataclass(frozen=True, slots=True)
 class Part:
-    """A summand.
+    """A summand; it remembers its hash, since it is looked up again and again.
 
     Args:
         conditions: it counts only where all of these are true.
@@ -59,6 +59,16 @@ class Part:
     atom: Atom
     whole: bool
     steps: tuple[Step, ...] = ()
+    _hash: int = field(init=False, repr=False, compare=False)
+
+    def __post_init__(self) -> None:
+        """Computes the hash."""
+        own = hash((self.conditions, self.atom, self.whole, self.steps))
+        object.__setattr__(self, "_hash", own)
+
+    def __hash__(self) -> int:
+        """That of its fields."""
+        return self._hash
 
 
 @frozen
@@ -100,7 +110,7 @@ class Symbolic:
     def __init__(self, net: FlatNet, evaluator: Evaluator | None) -> None:
         self.net = net
         self.evaluator = evaluator
-        self.effects = Effects(net.program)
+        self.effects = effects_of(net.program)
         self._serial = itertools.count(1)
         self._functions: dict[int, core.Lambda] = {}
         for declaration in net.program.declarations:

@@ -96,18 +96,25 @@ def _quotient(x: float, y: float) -> float:
 
 
 def _least(a: float, b: float) -> float:
-    return b if math.isnan(a) or b < a else a
+    """As in nets: the second where both are equal (0.0 and -0.0), the other one where one is NaN."""
+    return a if a < b or math.isnan(b) else b
 
 
 def _greatest(a: float, b: float) -> float:
-    return b if math.isnan(a) or b > a else a
+    return a if a > b or math.isnan(b) else b
+
+
+def _is_equal(a: ScriptValue, b: ScriptValue) -> bool:
+    """Reals as IEEE 754 has them; poses as tokens, whose components are equal where both are NaN."""
+    if isinstance(a, ScriptPose) and isinstance(b, ScriptPose):
+        pairs = zip(astuple(a), astuple(b), strict=True)
+        return all(x == y or (math.isnan(x) and math.isnan(y)) for x, y in pairs)
+    return a == b
 
 
 def _binary(operator: str, a: ScriptValue, b: ScriptValue) -> ScriptValue:
-    if operator == "=":
-        return a == b
-    if operator == "<>":
-        return a != b
+    if operator in ("=", "<>"):
+        return _is_equal(a, b) is (operator == "=")
     if operator == "&":
         return cast(str, a) + cast(str, b)
     if operator in ("<", "<=", ">", ">="):

@@ -113,7 +113,7 @@ MOTION: /\$[A-Za-z_]*/
 QUANTITY.3: /[0-9]+(\.[0-9]+)?([eE][+-]?[0-9]+)?(?![eE][+-]?[0-9])[ \t]*(mm\/s(?!WORD)|m\/s(?!WORD)|%|NAME_PATTERN)/
 REAL.2: /[0-9]+(\.[0-9]+([eE][+-]?[0-9]+)?|[eE][+-]?[0-9]+)/
 INT.1: /[0-9]+/
-STRING: /"([^"\\\n]|\\["\\nt])*"/
+STRING: /"([^"\\\n]|\\["\\ntr])*"/
 NAME: /NAME_PATTERN/
 
 COMMENT: /--[^\n]*/

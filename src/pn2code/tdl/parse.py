@@ -501,7 +501,7 @@ def _unquote(token: Token) -> str:
     for c in characters:
         if c == "\\":
             following = next(characters)
-            out.append({"n": "\n", "t": "\t"}.get(following, following))
+            out.append({"n": "\n", "t": "\t", "r": "\r"}.get(following, following))
         else:
             out.append(c)
     return "".join(out)

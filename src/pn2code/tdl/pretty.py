@@ -11,6 +11,7 @@ from typing import Final, assert_never
 
 from pn2code.tdl import tree as t
 from pn2code.tdl.grammar import KEYWORDS
+from pn2code.tdl.types import MAX_INT, MIN_INT
 
 INDENT: Final = "  "
 
@@ -20,6 +21,7 @@ _LEVEL: Final[dict[str, int]] = {
     "+": 5, "-": 5, "&": 5, "*": 6, "/": 6, "div": 6, "mod": 6,
 }  # fmt: skip
 _NOT, _NEGATE, _POSTFIX = 3, 7, 8
+_ESCAPES: Final = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\t": "\\t", "\r": "\\r"}
 
 
 def is_name(text: str) -> bool:
@@ -28,13 +30,8 @@ def is_name(text: str) -> bool:
 
 
 def quoted(text: str) -> str:
-    """A text in quotes; characters that cannot stand in one become `?`."""
-    out = []
-    for c in text:
-        out.append(
-            {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\t": "\\t"}.get(c) or (c if c != "\r" else "?")
-        )
-    return f'"{"".join(out)}"'
+    """A text in quotes."""
+    return f'"{"".join(_ESCAPES.get(c, c) for c in text)}"'
 
 
 def number(value: int | float) -> str:
@@ -66,6 +63,9 @@ def _expression(e: t.Expression) -> tuple[str, int]:
                 return ("true" if value else "false"), 9
             if isinstance(value, str):
                 return quoted(value), 9
+            if value == MIN_INT and isinstance(value, int):
+                # its magnitude is no literal
+                return f"-{number(MAX_INT)} - 1", _LEVEL["-"]
             if value < 0:
                 return f"-{number(-value)}", _NEGATE
             return number(value), 9

@@ -9,7 +9,8 @@ The translator from nets builds the same trees (with the span `GENERATED`) and `
 
 from __future__ import annotations
 
-from dataclasses import field
+import math
+from dataclasses import dataclass, field
 from enum import Enum
 from typing import Final, Literal
 
@@ -24,21 +25,44 @@ GENERATED: Final = Span(SourceText("", NOWHERE), 0, 0)
 # --- expressions -------------------------------------------------------------------------------
 
 
-@frozen
+def _told_apart(value: float | bool | str) -> tuple[object, ...]:
+    """What two literals have in common only if they mean the same: `0.0` and `-0.0` do not, nor do `1` and `true`."""
+    return type(value), value, isinstance(value, float) and math.copysign(1.0, value)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Value:
     """`12`, `1.5`, `true`, `"text"`; the Python type tells which."""
 
     value: int | float | bool | str
-    span: Span = field(default=GENERATED, compare=False, repr=False)
+    span: Span = field(default=GENERATED, repr=False)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether it is the same literal."""
+        return isinstance(other, Value) and _told_apart(self.value) == _told_apart(other.value)
+
+    def __hash__(self) -> int:
+        return hash(_told_apart(self.value))
 
 
-@frozen
+@dataclass(frozen=True, slots=True, eq=False)
 class Quantity:
     """`100 mm`: the number as written, and the unit."""
 
     number: float
     unit: str
-    span: Span = field(default=GENERATED, compare=False, repr=False)
+    span: Span = field(default=GENERATED, repr=False)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether it is the same literal."""
+        return (
+            isinstance(other, Quantity)
+            and self.unit == other.unit
+            and _told_apart(float(self.number)) == _told_apart(float(other.number))
+        )
+
+    def __hash__(self) -> int:
+        return hash((_told_apart(float(self.number)), self.unit))
 
 
 @frozen

@@ -81,10 +81,10 @@ def build(
     """
     compiler, make = find_compiler(), shutil.which("make")
     if compiler is None or make is None:
-        missing = "a C compiler" if compiler is None else "make"
+        missing = [name for name, tool in (("a C compiler", compiler), ("make", make)) if not tool]
         d.error(
             TOOL_MISSING,
-            f"{missing} is not installed",
+            f"{' and '.join(missing)} {'are' if len(missing) > 1 else 'is'} not installed",
             Origin(str(folder)),
             hint="on Debian or Ubuntu type: sudo apt-get install gcc libc6-dev make"
             + ("" if compiler else f"; {WITHOUT_ROOT}"),

@@ -12,6 +12,7 @@ without room in it, everything is built in a temporary folder that goes with the
 from __future__ import annotations
 
 import atexit
+import errno
 import hashlib
 import os
 import shlex
@@ -24,7 +25,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from fnmatch import fnmatch
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
@@ -116,10 +117,9 @@ class Compiler:
         """The compiler that is there; None after a diagnostic."""
         name = find_compiler()
         if name is not None:
-            command = tuple(shlex.split(name))
-            said = _run([*command, "--version"])
-            if said is not None and said.returncode == 0:
-                return Compiler(command, said.stdout)
+            command = (*shlex.split(name), *c_flags.for_compiler(name))
+            with suppress(OSError):
+                return Compiler(command, _version(command, os.environ.get("PATH", "")))
         d.error(
             TOOL_MISSING,
             "a C compiler is not installed",
@@ -127,6 +127,19 @@ class Compiler:
             hint=f"on Debian or Ubuntu type: sudo apt-get install gcc libc6-dev; {WITHOUT_ROOT}{host.without}",
         )
         return None
+
+
+@lru_cache(maxsize=8)
+def _version(command: tuple[str, ...], _path: str) -> str:
+    """What a compiler that is found on this path says of itself. It is asked once: a command needs several programs.
+
+    Raises:
+        OSError: it says nothing; the next time it is asked again.
+    """
+    said = _run([*command, "--version"])
+    if said is None or said.returncode != 0:
+        raise OSError(errno.ENOEXEC, "no compiler")
+    return said.stdout
 
 
 class _InterruptedError(Exception):

@@ -30,6 +30,7 @@ from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.semantics.codes import TRACE_REFUSED
 from pn2code.semantics.evaluation.evaluate import Limits
 from pn2code.semantics.evaluation.files import Files
+from pn2code.semantics.game.enabling import GivenUpError
 from pn2code.semantics.game.marking import (
     BindingElement,
     Marking,
@@ -69,6 +70,7 @@ class ReplayResult:
         transition: its transition, "" if the line names none.
         ended: the trace's own last word (`why` of its `end` line), None when it just stops.
         game: the game after the last step that was repeated; None when the net itself could not be started.
+        given_up: whether the next step is not known to be wrong: the token game gave up an evaluation.
     """
 
     ok: bool
@@ -78,6 +80,7 @@ class ReplayResult:
     transition: str
     ended: str | None
     game: Game | None
+    given_up: bool = False
 
     @property
     def marking(self) -> Marking | None:
@@ -252,7 +255,8 @@ def replay_lines(
             raise _Wrong("the trace is empty")
     except (_Wrong, GameError) as wrong:
         why = str(wrong) if source == net.name else f"{wrong}; the trace is of net `{source}`"
-        return ReplayResult(False, steps, why, at, transition, ended, game)
+        gave_up = isinstance(wrong, GivenUpError)
+        return ReplayResult(False, steps, why, at, transition, ended, game, gave_up)
     return ReplayResult(True, steps, "", 0, "", ended, game)
 
 

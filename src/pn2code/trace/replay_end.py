@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from pn2code.semantics.game.enabling import GivenUpError
 from pn2code.semantics.game.marking import Marking, PlaceMarking, element_text
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.data import Timed
@@ -157,6 +158,8 @@ def _next(game: Game) -> str:
     """What can occur next, now or later; "": nothing. An exception counts as something."""
     try:
         enabled = game.enabled_in(game.advance_time(game.marking))
+    except GivenUpError:
+        raise
     except GameError as error:
         return str(error)
     return element_text(game.colours, game.net, enabled[0]) if enabled else ""

@@ -24,7 +24,7 @@ from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
 from pn2code.semantics.evaluation.effects import OUTSIDE, Effect, Effects, outside, texts
 from pn2code.semantics.evaluation.evaluate import variables
 from pn2code.semantics.evaluation.references import Held, References
-from pn2code.semantics.game.enabling import Demand, GameError
+from pn2code.semantics.game.enabling import Demand, GameError, GivenUpError
 from pn2code.semantics.game.marking import (
     Binding,
     BindingElement,
@@ -70,6 +70,7 @@ class Followed:
         time: of the last marking.
         rows: the last marking; what is not known of it is as recorded, and so is said in `drawn`.
         drawn: names of the places with tokens that depend on drawn numbers.
+        given_up: whether the next step is not known to be wrong: the token game gave up an evaluation.
         occurrences: (time, binding element) of each step that was repeated.
     """
 
@@ -81,6 +82,7 @@ class Followed:
     rows: list[PlaceRow]
     drawn: tuple[str, ...] = ()
     occurrences: tuple[Occurrence, ...] = ()
+    given_up: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -198,6 +200,7 @@ class _Follower:
             self.game.evaluator.steps = number + 1
             after: dict[State, None] = {}
             reasons: dict[str, None] = {}
+            given_up = False
             for state in states:
                 for t in candidates:
                     try:
@@ -205,9 +208,11 @@ class _Follower:
                             after[found] = None
                     except (_Refused, GameError) as refused:
                         reasons[str(refused)] = None
+                        given_up = given_up or isinstance(refused, GivenUpError)
             if not after:
                 why = f"`{step.transition}`: {' / '.join(list(reasons)[:3])}"
-                return self.refused(states[0], number, why, run)
+                refusal = self.refused(states[0], number, why, run)
+                return replace(refusal, given_up=given_up)
             states = list(after)[:MOST_STATES]
         return self.finished(states, run)
 
@@ -339,6 +344,8 @@ class _Follower:
         for way in self.enabled(state, t, step):
             try:
                 after = self.occur(state, t, way, step)
+            except GivenUpError:
+                raise
             except (_Refused, GameError) as refused:
                 reason = reason or str(refused)
                 continue

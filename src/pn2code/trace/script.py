@@ -18,7 +18,7 @@ from pn2code.semantics.game.marking import PlaceMarking, place_from_json
 from pn2code.semantics.values.colour_json import JsonError, from_json, to_json
 from pn2code.semantics.values.data import Value
 from pn2code.trace.lines import is_number, order_problem, origin_problem, unknown_variable
-from pn2code.trace.parties import SIMULATORS, VERIFY
+from pn2code.trace.parties import RUN, SIMULATORS, VERIFY
 from pn2code.trace.writing import json_text
 
 
@@ -119,7 +119,7 @@ class Trace:
     Args:
         lines: of the file.
         net: the net that it is of.
-        is_shown: whether it is only to be told or drawn: then runs of a cell that `verify` has found will do.
+        is_shown: whether it is only to be told or drawn: then runs of a cell, also those of `verify`, will do.
 
     Raises:
         OSError: it cannot be read.
@@ -128,7 +128,12 @@ class Trace:
 
     def __init__(self, lines: Iterable[str], net: FlatNet, *, is_shown: bool = False) -> None:
         self._net = net
-        self._writers = {*SIMULATORS, VERIFY} if is_shown else SIMULATORS
+        self._writers = {*SIMULATORS, VERIFY, RUN} if is_shown else SIMULATORS
+        self._wanted = (
+            "traces of `simulate`, of `verify`, and `NET.trace.jsonl` of `run`"
+            if is_shown
+            else "only traces of `simulate`, which can be continued,"
+        )
         self._transitions = {t.name: t for t in net.transitions}
         self._lines = _objects(lines)
         first = next(self._lines, None)
@@ -146,7 +151,7 @@ class Trace:
             raise TraceRefusedError('the header of a trace is missing: `"trace": 1`', 1)
         if line.get("by") not in self._writers:
             raise TraceRefusedError(
-                f"the trace is by `{line.get('by')}`; only runs of `simulate` can be continued", 1
+                f"the trace is by `{line.get('by')}`; {self._wanted} are taken here", 1
             )
         seed = line.get("seed")
         if seed is not None and (isinstance(seed, bool) or not isinstance(seed, int)):

@@ -8,12 +8,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from pn2code.arms import Arms
-from pn2code.cell.codes import CELL_MISSING
 from pn2code.cell.config import CellConfig
 from pn2code.cell.load import load as load_cell
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.input_files import tokens
+from pn2code.input_files import begin
 from pn2code.robot import codes, scene
 from pn2code.robot.backend import BackendUnavailableError
 from pn2code.robot.choose_backend import open_backend
@@ -39,15 +38,7 @@ def look_ahead(
         programs: of its robots and devices.
         d: gets the errors.
     """
-    for entry in config.inputs:
-        if not (config.folder / entry.file).is_file():
-            d.error(
-                CELL_MISSING,
-                f"input: there is no file `{entry.file}` beside {config.path.name}",
-                entry.origin,
-                hint="write it, or correct `file`; the supervisor reads it when it starts",
-            )
-    tokens(partition.net, config, d)
+    begin(partition.net, config, d, is_started=True)
     load_sensors(config, partition.net, (config.folder,), None, d)
     for layout in config.layouts or {"": ""}:
         chosen = config if layout == config.layout else load_cell(config.path, d, layout=layout)

@@ -12,7 +12,7 @@ from pn2code.properties import meaning as m
 from pn2code.properties.ltl import TooLargeError
 from pn2code.properties.questions import Questions
 from pn2code.properties.split import NoSplitError, Split, groups, is_about_bindings
-from pn2code.semantics.evaluation.effects import Effect, Effects
+from pn2code.semantics.evaluation.effects import Effect, effects_of
 from pn2code.verdict.opened import OpenNet
 
 _OUTSIDE = frozenset({Effect.DRAW, Effect.LOOK, Effect.WRITE, Effect.COUNT})
@@ -101,7 +101,7 @@ def files(opened: OpenNet, file: Path | None, *, found: bool) -> tuple[Path, ...
 
 def _check_effects(opened: OpenNet, properties: m.Properties, d: Diagnostics) -> None:
     """Conditions follow from the state: the marking, and what references hold."""
-    effects = Effects(opened.flat.program)
+    effects = effects_of(opened.flat.program)
     conditions = [p.exp for p in properties.predicates] + [s.exp for s in properties.steps]
     for exp in conditions:
         own = effects.of(exp)

@@ -212,8 +212,8 @@ PN_NET_SEARCH static bool Pick_fire(pn_ctx_t *cx, void *marking, uint32_t self, 
     fits = BOX_array_64_add(cx, &m->Out, &s_at_Out, &b->b, 1U) && fits;
     if (!fits) {
         /* a place is full: everything is put back */
-        (void)BOX_array_64_take(&m->Out, &b->b, 1U);
-        (void)INT_array_64_take(&m->Count, &Count_token, 1U);
+        BOX_array_64_undo(&m->Out, &b->b, 1U);
+        INT_array_64_undo(&m->Count, &Count_token, 1U);
         (void)INT_array_64_add(cx, &m->Count, &s_at_Count, &b->n, 1U);
         (void)BOX_array_64_add(cx, &m->Buffer, &s_at_Buffer, &b->b, 1U);
         return false;

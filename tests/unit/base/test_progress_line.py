@@ -93,3 +93,21 @@ def test_what_a_run_prints_does_not_mix_with_its_line() -> None:
     shown = stream.getvalue()
     assert "\r\x1b[K    1.50 s  drills\n" in shown
     assert shown.endswith("\r\x1b[K   1.50 s   arm: waits\r\x1b[K")
+
+
+@pytest.mark.parametrize("stream", [Terminal(), io.StringIO()], ids=["terminal", "pipe"])
+def test_an_exploration_without_a_limit_says_once_that_there_is_none(stream: io.StringIO) -> None:
+    with exploration.ProgressLine(stream=stream, is_limited=False, is_timed=True) as line:
+        line.update({"phase": "explore", "states": 7, "seconds": 2.0})
+        assert "--max-seconds" not in stream.getvalue()
+        for seconds in (61.0, 62.0, 300.0):
+            line.update({"phase": "explore", "states": 7, "seconds": seconds})
+    said = stream.getvalue()
+    assert said.count("`--max-seconds S`") == said.count("`--reduce time`") == 1
+
+
+def test_an_exploration_with_a_limit_does_not() -> None:
+    stream = io.StringIO()
+    with exploration.ProgressLine(stream=stream) as line:
+        line.update({"phase": "explore", "states": 7, "seconds": 1000.0})
+    assert "--max-seconds" not in stream.getvalue()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -47,7 +48,7 @@ SESSION = "0123abcd"
     [
         (5750.0, "5750.0000"),
         (0.0, "0.0000"),
-        (-0.0, "0.0000"),
+        (-0.0, "-0.0000"),
         (5802.2072, "5802.2072"),
         (-1e-5, "-1e-05"),
         (0.1 + 0.2, "0.30000000000000004"),
@@ -64,8 +65,8 @@ def test_reals_have_four_decimals_where_that_is_exact(value: float, text: str) -
 def test_every_real_reads_back(value: float) -> None:
     text = format_real(value)
     assert float(text) == value
-    assert text != "-0.0000"
     assert parse_scalars(REALS[:1], text) == (value,)
+    assert math.copysign(1.0, float(text)) == math.copysign(1.0, value)
 
 
 @pytest.mark.parametrize(

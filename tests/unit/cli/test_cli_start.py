@@ -43,6 +43,12 @@ def test_check_of_a_net_loads_no_generator_and_no_simulator(root: Path, tmp_path
     assert not [m for m in modules if m.startswith(("pn2code.lowering", "pn2code.emission"))]
 
 
+def test_check_of_a_cell_loads_nothing_that_only_moving_arms_need(root: Path) -> None:
+    modules = loaded_by("check", str(root / "examples" / "riveting"))
+    assert "numpy" in modules
+    assert not {"ruckig", "numpy.ma", "scipy", "jinja2"} & modules
+
+
 @pytest.mark.parametrize("option", ["--version", "--help"])
 def test_version_and_the_list_of_verbs_load_no_verb(option: str) -> None:
     modules = loaded_by(option)
@@ -103,6 +109,35 @@ def test_with_closed_streams(closed: str) -> None:
     )
     assert (done.returncode, done.stderr) == (0, "")
     assert (done.stdout == "") == (">&- " in f"{closed} ".replace("2>&-", ""))
+
+
+@pytest.mark.parametrize(
+    "words",
+    ["--version", "--help", "explain", "check examples/philosophers", "marking examples/riveting"],
+)
+def test_a_reader_that_has_gone(words: str, root: Path) -> None:
+    """This is neither success, since not all was said, nor a wrong model."""
+    reading, writing = os.pipe()
+    os.close(reading)
+    done = subprocess.run(
+        [sys.executable, "-m", "pn2code", *words.split()],
+        cwd=root, stdout=writing, stderr=subprocess.PIPE, text=True, check=False,
+    )  # fmt: skip
+    os.close(writing)
+    assert (done.returncode, done.stderr) == (141, "")
+
+
+@pytest.mark.parametrize(("code", "left"), [(0, 141), (1, 1), (3, 3)])
+def test_a_verdict_is_kept_when_its_last_words_are_not_read(code: int, left: int) -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    program = f"from pn2code.cli.main import _leave; print('no'); _leave({code})"
+    buffered = {k: v for k, v in os.environ.items() if k != "PYTHONUNBUFFERED"}
+    done = subprocess.run(
+        [sys.executable, "-c", program], stdout=writing, env=buffered, check=False
+    )
+    os.close(writing)
+    assert done.returncode == left
 
 
 def test_a_misspelt_verb_gets_a_suggestion(capsys: pytest.CaptureFixture[str]) -> None:

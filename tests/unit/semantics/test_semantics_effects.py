@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from helpers.netbuilder import flat
-from pn2code.semantics.evaluation.effects import Effect, Effects, outside
+from pn2code.semantics.evaluation.effects import Effect, Effects, effects_of, outside
 
 NET = """
     net Effects
@@ -59,3 +59,10 @@ def test_a_net_that_depends_on_more_than_itself() -> None:
     assert outside(Effects(drawn.program), drawn), "its initial marking is drawn"
     sure = flat(NET.format("n").replace("1`luck", "1`1"))
     assert not outside(Effects(sure.program), sure), "functions that nothing uses do not count"
+
+
+def test_the_effects_of_a_program_are_found_once() -> None:
+    nets = [flat(text.format("n")) for text in (NET, NET.replace("discrete (1, 6)", "6"))]
+    first = [effects_of(net.program) for net in nets]
+    assert all(effects_of(n.program) is found for n, found in zip(nets, first, strict=True))
+    assert [outside(found, net) for found, net in zip(first, nets, strict=True)] == [True, False]

@@ -435,7 +435,7 @@ ERRORS = {
         "raised the exception `Empty`",
     ),
     "delay": (
-        ["trans T delay @+(1073741823 + n)", "  in P : n"],
+        ["place Later : INTT", "trans T delay @+(1073741823 + n)", "  in P : n", "  out Later : n"],
         "delay of `Top.T` raised the exception `Overflow`",
     ),
     "code segment": (
@@ -615,3 +615,25 @@ def test_a_random_play_stays_in_the_state_space() -> None:
     rng = random.Random(7)
     for _ in g.run(rng.choice, steps=50):
         assert g.marking in space.nodes
+
+
+@pytest.mark.parametrize(("colset", "raises"), [("INT", False), ("LATER", True)])
+def test_a_delay_is_evaluated_where_an_output_is_timed(colset: str, raises: bool) -> None:
+    """As by the engine: with untimed outputs alone an exception in the delay does no harm."""
+    g = game(f"""
+        colset LATER = int timed;
+        fun late n = if n > 0 then raise Fail "late" else n
+        var n: INT;
+        place A : INT = 1`1
+        place B : {colset}
+        trans T delay @+(late n)
+          in A : n
+          out B : n
+    """)
+    [element] = g.enabled()
+    if raises:
+        with pytest.raises(GameError, match="late"):
+            g.fire(element)
+    else:
+        g.fire(element)
+        assert len(g.marking.places[1]) == 1

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import os
 import shlex
 import shutil
@@ -11,12 +12,13 @@ from pathlib import Path
 
 import pytest
 
+from pn2code.cli.options import Exit, code_of
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.emission import c_flags
 from pn2code.emission.output import Block, OutputFile
 from pn2code.toolchain import programs
 from pn2code.toolchain.build import build, find_compiler
-from pn2code.toolchain.programs import Host, program
+from pn2code.toolchain.programs import Compiler, Host, program
 
 HOST = Host("nothing", only=("pn_channel.c",))
 MAIN = OutputFile("main.c", "int main(void) { return 0; }\n", ())
@@ -69,6 +71,8 @@ def test_missing_tools_say_what_to_type(tmp_path: Path, monkeypatch: pytest.Monk
     d = Diagnostics()
     assert build(tmp_path, (), d) is None
     assert d.errors[0].code == "tool-missing"
+    assert "a C compiler and make are not installed" in d.errors[0].message
+    assert code_of(d) == Exit.USAGE  # nothing is wrong with the net
     assert "apt-get install" in d.errors[0].hint
     assert "pip install 'pn2code[compiler]'" in d.errors[0].hint
     with program(HOST, (MAIN,), d) as path:
@@ -105,9 +109,50 @@ def test_without_a_compiler_that_of_ziglang_is_used(
     monkeypatch.delenv("CC", raising=False)
     assert shlex.split(find_compiler() or "") == [sys.executable, "-m", "ziglang", "cc"]
     d = Diagnostics()
+    compiler = Compiler.find(HOST, d)
+    assert compiler is not None and compiler.command[-1] == c_flags.ZIG
     with program(HOST, (MAIN,), d) as path:
         assert path is not None and os.access(path, os.X_OK), d.items
     assert not d.items
+
+
+@pytest.mark.cc
+@pytest.mark.parametrize("level", ["-O0", "-Og", "-O1", "-O2"])
+def test_zig_links_a_net_compiled_less_than_its_host(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, level: str
+) -> None:
+    """Below -O2 it would check shifts and sums by calls of a library, which is not linked with -O2."""
+    if importlib.util.find_spec("ziglang") is None:
+        pytest.skip("there is no Python package `ziglang`")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setenv("CC", f"{sys.executable} -m ziglang cc")
+    files = (
+        OutputFile("net.c", "int net(int n);\nint net(int n) { return (n << n) + n / (n - 1); }\n"),
+        OutputFile(
+            "other.c",
+            "int net(int n);\nint main(int n, char **a) { (void)a; return net(n + 1); }\n",
+        ),
+    )
+    d = Diagnostics()
+    with program(Host("none", net=(level,), only=("none.c",)), files, d) as found:
+        assert found is not None, list(d)
+        assert subprocess.run([found], check=False).returncode == 10
+
+
+@pytest.mark.parametrize(
+    ("command", "flags"),
+    [
+        ("gcc", ()),
+        ("clang -m64", ()),
+        ("zig cc", (c_flags.ZIG,)),
+        ("/usr/bin/python3 -m ziglang cc", (c_flags.ZIG,)),
+        ("zig cc -fsanitize=undefined", ()),
+    ],
+)
+def test_what_a_compiler_is_told_because_of_what_it_is(
+    command: str, flags: tuple[str, ...]
+) -> None:
+    assert c_flags.for_compiler(command) == flags
 
 
 @pytest.mark.cc
@@ -140,3 +185,25 @@ def test_a_large_net_is_compiled_quickly(tmp_path: Path, monkeypatch: pytest.Mon
     assert [[f for f in c_flags.QUICKER if f in c] for c in of_net] == [[], [*c_flags.QUICKER]]
     for flag in programs.FLAGS:  # what comes later counts; and a host may have its own word
         assert of_net[1].index(flag) < of_net[1].index("-O1") < of_net[1].index("-DFOR_THE_NET")
+
+
+@pytest.mark.cc
+def test_a_compiler_says_once_what_it_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = tmp_path / "asked"
+    compiler = tmp_path / "cc"
+    compiler.write_text(
+        f'#!/bin/sh\n[ "$1" = --version ] && echo >> {asked}\n[ -e {tmp_path}/broken ] && exit 1\nexec cc "$@"\n'
+    )
+    compiler.chmod(0o755)
+    monkeypatch.setenv("CC", str(compiler))
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "cache"))
+    (tmp_path / "broken").touch()
+    for _ in range(2):
+        assert programs.Compiler.find(HOST, Diagnostics()) is None
+    assert asked.read_text() == "\n\n", "one that says nothing is asked again"
+    (tmp_path / "broken").unlink()
+    for number in range(2):
+        text = MAIN.text.replace("0", str(number))
+        with program(HOST, [OutputFile("main.c", text, ())], Diagnostics()) as found:
+            assert found is not None and subprocess.run([found], check=False).returncode == number
+    assert asked.read_text() == "\n\n\n"

@@ -44,7 +44,17 @@ TIMED = """
         out C : ()
 """
 
+ZERO = """
+      var x: REAL;
+      place Z : REAL = 1`0.0
+      trans Turn guard [1.0 / x > 0.0]
+        in Z : x
+        out Z : x * ~1.0
+        out C : ()
+"""
+
 GROWING = {
+    "a zero that keeps its sign": ZERO.replace("x * ~1.0", "x * 1.0"),
     "a cycle": ROUND,
     "somebody takes from it": ROUND + "      trans Use\n        in C : ()\n        out D : ()\n",
     "an empty place is tested, and stays empty": ROUND.replace(
@@ -73,6 +83,7 @@ BOUNDED = {
     ),
     "a guard that looks at the clock": TIMED.replace("trans Tick", "trans Tick guard [time () < 40]"),
     "colours that never come again": ROUND.replace("out A : n", "out A : n + 1"),
+    "a zero whose sign changes": ZERO,
 }  # fmt: skip
 
 

@@ -91,6 +91,36 @@ def test_rivals_of_an_enabled_transition(left: str, right: str, expected: set[st
     assert rivals("\n".join(lines), "Left") == expected
 
 
+SIGNS = """
+    net Signs
+      colset UNIT = unit;
+      colset REAL = real;
+      colset U = union of_real : REAL + other;
+      colset L = list U;
+      colset PAIR = product REAL * UNIT;
+      place A = 1
+      place C = 1
+      place P : COLSET
+      trans Left
+        in A : ()
+        out P : ZERO
+      trans Right
+        in C : ()
+        out P : OTHER
+"""
+"""Of equal zeros a place keeps the sign of the first."""
+
+
+@pytest.mark.parametrize(
+    ("colset", "zero"),
+    [("REAL", "0.0"), ("L", "[of_real 0.0]"), ("PAIR", "(0.0, ())")],
+)
+def test_who_puts_a_zero_first_matters(colset: str, zero: str) -> None:
+    text = SIGNS.replace("COLSET", colset).replace("ZERO", zero)
+    text = text.replace("OTHER", zero.replace("0.0", "(~0.0)"))
+    assert rivals(text, "Left") == {"Right"} and rivals(text, "Right") == {"Left"}
+
+
 @pytest.mark.parametrize(
     ("left", "right", "expected"),
     [

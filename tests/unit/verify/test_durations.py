@@ -79,6 +79,26 @@ def test_what_may_be_any_number_is_not_known(action: str, what: str, tmp_path: P
 
 
 @pytest.mark.parametrize(
+    ("action", "needs", "what"),
+    [
+        ("(fn f => (f (); f (); f ())) drill", "", "what calls `drill` is computed"),
+        ("(fn f => (f (); f ())) (fn () => drill ())", "", "what calls `fn () => drill ()`"),
+        ("let val g = drill in (g (); g (); g ()) end", "", "what calls `drill`"),
+        ("let val g = fn () => drill () in (g (); g (); g ()) end", "3 s", ""),
+        ("let fun g a b = (drill (); pause b) in (g 1 0.5; g 2 1.0) end", "3.5 s", ""),
+        ("(alias (); alias ())", "", "what `alias` calls is computed"),
+    ],
+)
+def test_functions_that_are_values(action: str, needs: str, what: str, tmp_path: Path) -> None:
+    net = NET.replace("  val MOVE", f"{HEAD}  val MOVE", 1)
+    net = net.replace("  var n, k: INT;", "  val alias = drill;\n  var n, k: INT;", 1)
+    drill = DRILL.replace("code action drill ()", f"code input (k); action {action}")
+    found = of_net(tmp_path, net.replace(DRILL, drill), 60)
+    assert what in found.late and bool(found.late) == bool(what), found
+    assert f"take at most {needs};" in found.premise if needs else found.premise == ""
+
+
+@pytest.mark.parametrize(
     ("delay", "late"),
     [
         ("2", ""),

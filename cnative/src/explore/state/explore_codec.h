@@ -71,6 +71,7 @@ typedef struct ex_codec {
     bool *is_joined;          /* whether it goes on with the place of the word before */
     uint32_t *word_of;        /* by place: its word; UINT32_MAX: packed */
     uint32_t *place_of;       /* by word behind the packed part */
+    bool *is_heap;            /* by place: whether more than `most_heaped` tokens end the exploration; NULL: none */
     uint32_t **touched_words; /* by transition: words of the packed part that an occurrence may change */
     uint32_t *touched_count;
     uint32_t **touched_bags; /* by transition: places */

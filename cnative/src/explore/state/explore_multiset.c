@@ -8,6 +8,7 @@
 #include "../explore_run.h"
 #include "explore_multiset.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 #include "pn/pn_bag.h"
@@ -131,9 +132,53 @@ static bool intern_timed(ex_worker_t *worker, uint32_t place, uint32_t kind, siz
     return ex_intern(worker, kind, &buffer[from], length - from, number);
 }
 
+bool ex_heaps_make(ex_run_t *run)
+{
+    const char *at = run->options.heaps;
+    if (at == NULL) {
+        return true;
+    }
+    run->codec->is_heap = ex_table(&run->memory, pn_net.place_count, sizeof(bool));
+    while ((run->codec->is_heap != NULL) && (*at != '\0')) {
+        char *end = NULL;
+        const unsigned long place = strtoul(at, &end, 10);
+        if ((end != at) && (place < pn_net.place_count)) {
+            run->codec->is_heap[place] = true;
+        }
+        at = (*end == ',') ? (end + 1) : "";
+    }
+    return run->codec->is_heap != NULL;
+}
+
+/* Tokens of one value are one entry however many there are: nothing is ever full. */
+static bool is_heaped(const ex_run_t *run, uint32_t place, const void *marking)
+{
+    const bool *const is_heap = run->codec->is_heap;
+    return (is_heap != NULL) && is_heap[place]
+           && (pn_bag_total(pn_net.place[place].bag, marking) > run->options.most_heaped);
+}
+
+static void fail_heaped(ex_worker_t *worker, uint32_t place)
+{
+    ex_run_t *const run = worker->run;
+    worker->failed = true;
+    (void)pthread_mutex_lock(&run->error_lock);
+    if (run->error.kind == NULL) {
+        run->error.kind = "heap";
+        run->error.place = (int64_t)place;
+        run->error.transition = -1;
+    }
+    (void)pthread_mutex_unlock(&run->error_lock);
+    ex_stop(run, EX_CAPACITY);
+}
+
 bool ex_number_place(ex_worker_t *worker, uint32_t place, uint32_t kind, const void *marking, uint32_t *number)
 {
     ex_scratch_t *scratch = worker->scratch;
+    if ((kind == place) && is_heaped(worker->run, place, marking)) {
+        fail_heaped(worker, place);
+        return false;
+    }
     size_t length = pn_bag_encode(pn_net.place[place].bag, marking, scratch->buffer, scratch->buffer_size);
     while (length > scratch->buffer_size) {
         if (!ex_buffer_grow(worker, length)) {

@@ -4,6 +4,7 @@
  * transition may change of it.
  */
 #include "../explore_run.h"
+#include "explore_multiset.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -350,7 +351,8 @@ bool ex_codec_make(ex_run_t *run)
         mask_plain(codec);
     }
     ex_free_table(&run->memory, cell, most, sizeof *cell);
-    return ex_derived_make(run) && ex_bytes_make(&codec->bytes, &run->memory, &run->team) && ex_codec_number(run);
+    return ex_derived_make(run) && ex_heaps_make(run) && ex_bytes_make(&codec->bytes, &run->memory, &run->team)
+           && ex_codec_number(run);
 }
 
 bool ex_codec_number(ex_run_t *run)

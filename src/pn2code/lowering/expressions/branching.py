@@ -100,6 +100,9 @@ class Branching(Block):
             if known is not None:
                 return known
         if isinstance(e, core.If):
+            known_truth = self.program.truth(e.condition)
+            if known_truth is not None:
+                return self.exp(e.then if known_truth else e.otherwise, env)
             simple = self._simple_if(e, env)
             if simple is not None:
                 return simple
@@ -142,11 +145,13 @@ class Branching(Block):
             then = self.ir(e.then, env)
         with self.block() as second:
             otherwise = self.ir(e.otherwise, env)
-        if not first and not second:
-            return self.choice(condition, then, otherwise)
-        if then.type == ir.UNIT:
+        if (
+            then.type == ir.UNIT
+        ):  # also where neither way does anything: the condition may raise an exception
             self.emit(ir.If(condition, tuple(first), tuple(second)))
             return _UNIT
+        if not first and not second:
+            return self._choice(condition, then, otherwise)
         result = self.local("result", then.type)
         self.emit(ir.Declare(result))
         first.append(ir.Assign(result, then))
@@ -155,10 +160,8 @@ class Branching(Block):
         return ir.Use(result)
 
     @staticmethod
-    def choice(condition: Ir, then: Ir, otherwise: Ir) -> Ir:
+    def _choice(condition: Ir, then: Ir, otherwise: Ir) -> Ir:
         """`if` as an expression."""
-        if then.type == ir.UNIT:
-            return _UNIT
         if isinstance(otherwise, ir.Const) and otherwise.value is False:
             return ir.Op("andalso", (condition, then), ir.BOOL)
         if isinstance(then, ir.Const) and then.value is True:
@@ -168,6 +171,8 @@ class Branching(Block):
     def into(self, e: core.Exp, env: Env, target: Local | None) -> None:
         """Evaluate into a local (None: a unit, nothing to keep)."""
         match e:
+            case core.If() if self.program.truth(e.condition) is not None:
+                self.into(e.then if self.program.truth(e.condition) else e.otherwise, env, target)
             case core.If() if not (is_simple(e.then) and is_simple(e.otherwise)):
                 condition = self.ir(e.condition, env)
                 with self.block() as then:

@@ -53,7 +53,7 @@ from pn2code.lowering.expressions.values import (
 )
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.terms import Symbol
-from pn2code.ml.core.types import TCon, TRecord, Type
+from pn2code.ml.core.types import BOOL, TCon, TRecord, Type
 
 if TYPE_CHECKING:
     from pn2code.lowering.expressions.block import Block
@@ -211,6 +211,22 @@ class Program:
             case core.Var(symbol=symbol) if symbol.uid in self._values:
                 dec = self._values[symbol.uid][1]
                 return self.constant(dec.value) if isinstance(dec.pattern, core.PVar) else None
+        return None
+
+    def truth(self, e: core.Exp) -> bool | None:
+        """What a condition always is: `true`, `false`, a value declared as one of them, `not` of such.
+
+        The way that is never taken is not generated: in C it would be dead code.
+        """
+        match e:
+            case core.Con(constructor=constructor) if e.type == BOOL:
+                return constructor.tag == 1
+            case core.Apply(function=core.Builtin(name="Bool.not"), argument=argument):
+                inner = self.truth(argument)
+                return None if inner is None else not inner
+            case core.Var(symbol=symbol) if symbol.uid in self._values:
+                dec = self._values[symbol.uid][1]
+                return self.truth(dec.value) if isinstance(dec.pattern, core.PVar) else None
         return None
 
     def body(self) -> Body:

@@ -216,7 +216,8 @@ class _Enumeration:
         types = self._program.types
         with self._body.block() as statements:
             self._bound.add(symbol.uid)
-            self._restrict(symbol)
+            if not types.is_small(table):  # the runtime counts no others than the colours
+                self._restrict(symbol)
             self._ready(position)
             self._step(position + 1)
         if types.is_small(table):

@@ -12,11 +12,13 @@ from pn2code.lowering.passes.moves import with_moves
 from pn2code.lowering.passes.reach import Reach
 from pn2code.lowering.passes.slots import with_slots
 from pn2code.lowering.passes.sums import with_sums
+from pn2code.lowering.passes.unseen import with_seen
 from pn2code.lowering.passes.used import with_used
 
 
 def analysed(net: ir.NetIR) -> ir.NetIR:
     """The net, with what all passes find."""
+    net = with_seen(net)
     reach = Reach(net)
     net = with_sums(with_effects(with_moves(net), reach), reach)
     return bounded(with_used(with_context(with_counts(with_direct(net, reach)))))

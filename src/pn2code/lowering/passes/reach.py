@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from functools import cache
 
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import called, ir_nodes
@@ -91,6 +92,29 @@ class Reach:
         return False
 
 
+_TELLING = (
+    ir.FunCall,
+    ir.Fill,
+    ir.Contents,
+    ir.AddressOf,
+    ir.GlobalUse,
+    ir.SetGlobal,
+    ir.SetContents,
+)
+
+
+def telling(nodes: Iterable[object]) -> list[object]:
+    """Those of the pieces that decide what `Reach` answers, for those who ask several questions: they are few."""
+    return [
+        n for n in nodes if isinstance(n, _TELLING) or (isinstance(n, ir.Op) and _tells(n.name))
+    ]
+
+
+@cache
+def _tells(operation: str) -> bool:
+    return is_impure_builtin(operation) or _is_draw_of(operation) or operation == "Time.step"
+
+
 def _is_outside(node: object) -> bool:
     """Whether a piece of IR looks at files or clocks."""
     return isinstance(node, ir.Op) and is_impure_builtin(node.name) and not _is_draw(node)
@@ -106,5 +130,9 @@ def is_assignment(node: object) -> bool:
 def _is_draw(node: object) -> bool:
     """Whether a piece of IR takes numbers from the stream of random numbers."""
     if isinstance(node, ir.Op):
-        return node.name.startswith(("Random.", "prim.do_random")) or node.name == "Ms.random"
+        return _is_draw_of(node.name)
     return isinstance(node, ir.Fill) and node.name == "ran"
+
+
+def _is_draw_of(operation: str) -> bool:
+    return operation.startswith(("Random.", "prim.do_random")) or operation == "Ms.random"

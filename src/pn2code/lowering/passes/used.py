@@ -50,8 +50,9 @@ class _Search:
         self._definitions = {d.name: d for d in net.definitions}
         self._descriptors = {d.name: d for d in net.descriptors}
         self._functions = {f.key: f for f in net.functions}
+        self._called_in: dict[int, list[str]] = {}
         self._mentioned: dict[int, frozenset[str]] = {}
-        """by id of a body, all of which belong to the net"""
+        """both by id of a body, all of which belong to the net"""
 
     def run(self) -> ir.Used:
         """What comes into the program, and after all that what the predicates alone need."""
@@ -74,25 +75,32 @@ class _Search:
         """Those that are called, or that decide about members of subsets, in order."""
         roots: list[str] = []
         for predicate in self._net.predicates if with_predicates else ():
-            roots += called(predicate.body)
+            roots += self._calls_in(predicate.body)
         for t in self._net.transitions:
-            roots += called(t.enumerate) + called(t.fire) + called(t.thresholds)
+            roots += [k for b in (t.enumerate, t.fire, t.thresholds) for k in self._calls_in(b)]
         for p in self._net.places:
-            roots += called(p.initial)
+            roots += self._calls_in(p.initial)
         for g in self._net.globals:
-            roots += called(g.setup)
+            roots += self._calls_in(g.setup)
         found: set[str] = set()
         while True:
             while roots:
                 key = roots.pop()
                 if key not in found:
                     found.add(key)
-                    roots += called(self._functions[key].body)
+                    roots += self._calls_in(self._functions[key].body)
             functions = [f for f in self._net.functions if f.key in found]
             tables = self._tables(functions, self._net.predicates if with_predicates else ())
             roots = [m for key in tables if (m := self._descriptors[key].member) and m not in found]
             if not roots:
                 return functions
+
+    def _calls_in(self, body: object) -> list[str]:
+        """The functions that a body calls itself."""
+        known = self._called_in.get(id(body))
+        if known is None:
+            known = self._called_in[id(body)] = called(body)
+        return known
 
     def _tables(
         self, functions: Iterable[ir.Function], predicates: Iterable[ir.Predicate] = ()

@@ -1,6 +1,6 @@
 """What evaluating an expression may do besides giving a value: draw random numbers, read or write references, count.
 
-    effects = Effects(net.program)
+    effects = effects_of(net.program)
     Effect.DRAW in effects.of(arc.inscription.value)
 
 A safe guess from the text: a function that is mentioned counts as applied, both branches of an `if` as taken.
@@ -65,6 +65,22 @@ def _builtin(name: str) -> Found:
     if name.startswith("Ref.") or name in _ARRAY_WRITING:
         return frozenset({Effect.READ, Effect.WRITE})
     return NONE
+
+
+_latest: tuple[tuple[core.Program, Effects], ...] = ()
+"""Programs that were asked about last."""
+_MOST = 4
+
+
+def effects_of(program: core.Program) -> Effects:
+    """Those of a program, which many ask for in turn."""
+    global _latest
+    for known, effects in _latest:
+        if known is program:
+            return effects
+    made = Effects(program)
+    _latest = ((program, made), *_latest[: _MOST - 1])
+    return made
 
 
 class Effects:

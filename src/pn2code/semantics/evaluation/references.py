@@ -8,7 +8,7 @@ from typing import Any
 
 from pn2code.ml.core import terms as core
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.evaluation.effects import Effect, Effects
+from pn2code.semantics.evaluation.effects import Effect, Effects, effects_of
 from pn2code.semantics.evaluation.evaluate import Evaluator
 from pn2code.semantics.values.data import (
     Array,
@@ -124,7 +124,7 @@ def tracked(net: FlatNet, evaluator: Evaluator) -> tuple[References | None, froz
     None where no transition changes any, and where the search for bindings does: how often a net does that is not
     determined, so that they follow from no sequence of occurrences.
     """
-    effects = Effects(net.program)
+    effects = effects_of(net.program)
     changing = frozenset(t.index for t in net.transitions if _writes(effects, *occurring(t)))
     if not changing or searching(net, effects):
         return None, frozenset()
@@ -137,7 +137,7 @@ def tracked(net: FlatNet, evaluator: Evaluator) -> tuple[References | None, froz
 
 def searching(net: FlatNet, effects: Effects | None = None) -> tuple[int, ...]:
     """The transitions that may change references while bindings are searched for."""
-    effects = effects or Effects(net.program)
+    effects = effects or effects_of(net.program)
     return tuple(t.index for t in net.transitions if _writes(effects, *_searched(t)))
 
 

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 from pn2code.ml.core.colsets import Colset
 from pn2code.net.flat import ArcKind, BindEquation, FlatNet, FlatTransition
-from pn2code.semantics.evaluation.effects import Effects
+from pn2code.semantics.evaluation.effects import Effects, effects_of
 from pn2code.semantics.game.enabling import Enabling
 from pn2code.semantics.game.marking import Binding, Marking, PlaceMarking
 
@@ -24,7 +24,7 @@ class EnablingCache:
 
     def __init__(self, net: FlatNet, enabling: Enabling) -> None:
         self._enabling = enabling
-        effects = Effects(net.program)
+        effects = effects_of(net.program)
         self._places = {t.index: _examined(t, effects) for t in net.transitions}
         self._known: dict[int, tuple[int | float, list[PlaceMarking], list[Binding]]] = {}
 

@@ -55,7 +55,7 @@ def state_space(game: Game, *, max_nodes: int = 10_000, max_arcs: int | None = N
     Raises:
         GameError: an inscription raises an exception somewhere on the way.
     """
-    node = _Nodes(game.net)
+    node = Nodes(game.net)
     index = {node.key(game.marking): 0}
     nodes = [game.marking]
     arcs: dict[StateArc, None] = {}
@@ -88,7 +88,7 @@ def state_space(game: Game, *, max_nodes: int = 10_000, max_arcs: int | None = N
 _Key = tuple[Marking, frozenset[tuple[int, str]]]
 
 
-class _Nodes:
+class Nodes:
     """Tells the markings of a net apart: by what they hold, and by the signs of zeros in it."""
 
     def __init__(self, net: FlatNet) -> None:
@@ -97,7 +97,11 @@ class _Nodes:
 
     def key(self, marking: Marking) -> _Key:
         """Equal for the markings that no inscription can tell apart."""
-        return marking, frozenset(
+        return marking, self.signs(marking)
+
+    def signs(self, marking: Marking) -> frozenset[tuple[int, str]]:
+        """The tokens that have negative zeros."""
+        return frozenset(
             (place, repr(token))
             for place in self._places
             for token in marking.places[place]

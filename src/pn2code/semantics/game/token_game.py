@@ -295,11 +295,15 @@ class Game:
         return dict(zip(outputs, result, strict=True)) if outputs else {}
 
     def delay(self, t: FlatTransition, binding: Binding) -> Any:
-        """The delay of the transition."""
-        if t.delay is None:
+        """The delay of the transition; it is not evaluated where no output arc leads to a timed place."""
+        if t.delay is None or not any(map(self._puts_stamps, t.arcs)):
             return 0
         with running(t.origin, f"the delay of `{t.name}`", "delay"):
             return self.evaluator.value(t.delay, binding)
+
+    def _puts_stamps(self, arc: FlatArc) -> bool:
+        is_output = arc.kind in (ArcKind.OUTPUT, ArcKind.BOTH)
+        return is_output and self.net.places[arc.place].colset.timed
 
     def put(
         self,

@@ -17,6 +17,7 @@ from typing import Any
 from pn2code.cell.partition import Partition
 from pn2code.properties import meaning as m
 from pn2code.properties.silent import means_the_same
+from pn2code.properties.universal import is_universal
 from pn2code.verify.answers.properties import Answer, Evidence, answers
 from pn2code.verify.answers.reasons import clause
 from pn2code.verify.controller.control_answers import can_more, has_own_priorities
@@ -65,7 +66,7 @@ def is_about_all(asked: m.Asked) -> bool:
         case m.Linear():
             return not asked.fair
         case m.Branching(formula):
-            return _is_universal(formula, True)
+            return is_universal(formula, True)
 
 
 def _is_shown(answer: Answer) -> bool:
@@ -77,28 +78,9 @@ def _is_shown(answer: Answer) -> bool:
         case m.Invariant():
             return True
         case m.Branching(m.Op("EF", (part,))):
-            return _is_universal(part, True) and _is_universal(part, False)
+            return is_universal(part, True) and is_universal(part, False)
         case _:
             return False
-
-
-def _is_universal(f: m.Formula, positive: bool) -> bool:
-    if isinstance(f, m.Atom):
-        return f.kind in ("true", "pred", "initial")
-    match f.operator:
-        case "not":
-            return _is_universal(f.parts[0], not positive)
-        case "implies":
-            a, b = f.parts
-            return _is_universal(a, not positive) and _is_universal(b, positive)
-        case "iff":
-            return all(_is_universal(x, sign) for x in f.parts for sign in (True, False))
-        case operator if operator.startswith("E"):
-            return not positive and all(_is_universal(x, positive) for x in f.parts)
-        case operator if operator.startswith("A"):
-            return positive and all(_is_universal(x, positive) for x in f.parts)
-        case _:
-            return all(_is_universal(x, positive) for x in f.parts)
 
 
 def is_kept(p: m.Property) -> bool:

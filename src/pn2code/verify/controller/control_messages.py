@@ -33,18 +33,21 @@ def formats(
     sent = messages.examine(partition, found, d)
     if sent.answer == "unknown":
         return [unknown(MESSAGES, {"why": why if found is None else found.why})]
-    if sent.channel is None:
+    if not sent.wrong:
         return [Check(MESSAGES, sent.answer, sent.says, sent.count)]
-    place = partition.net.places[sent.channel.place]
+    tokens = [(x.channel.place, x.value) for x in sent.wrong]
     asked = "".join(f"{line}\n" for line in own_priorities(partition))
     with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
         to = (plan.folder or Path(name)) / f"{plan.stem}.controller-{MESSAGES}.trace.jsonl"
-        run = token_run(partition.net, plan.storage, asked, place.index, sent.value, to, d)
+        run = token_run(partition.net, plan.storage, asked, tokens, to, d)
+    # After the message that comes first the cell would have stopped.
+    first = sent.wrong[run.token if run is not None else 0]
     evidence: tuple[Evidence, ...] = ()
     if run is not None:
         kept = None if plan.folder is None else run.file
         evidence = (Evidence(run.steps, None, run.node, run.transitions, kept),)
-    return [Check(MESSAGES, "no", sent.says, sent.count, evidence=evidence, place=place.name)]
+    place = partition.net.places[first.channel.place]
+    return [Check(MESSAGES, "no", first.says, sent.count, evidence=evidence, place=place.name)]
 
 
 def own_priorities(partition: Partition) -> Iterator[str]:

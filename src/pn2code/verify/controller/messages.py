@@ -35,14 +35,22 @@ class Format:
         answer: "yes", "no" or "unknown".
         says: in words.
         count: values that were put through the codecs.
-        channel, value: of "no": the message, its value in the form of traces.
+        wrong: of "no": the messages; `says` is about the first of them.
     """
 
     answer: str
     says: str
     count: int
-    channel: Channel | None = None
-    value: Any = None
+    wrong: tuple[Unsendable, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Unsendable:
+    """A message that cannot be sent: its channel, its value in the form of traces, and that in words."""
+
+    channel: Channel
+    value: Any
+    says: str
 
 
 def longest(colset: Colset) -> int | None:
@@ -95,18 +103,21 @@ def examine(partition: Partition, found: Exploration | None, d: Diagnostics) -> 
         is_open = is_open or (bound is not None and len(multiset or ()) < bound.upper_colours)
         asked += [(index, value) for _, value in multiset or ()]
     errors = len(d.errors)
-    wrong = next(_wrong(partition, asked, d), None) if asked else None
-    if wrong is not None:
-        channel, value, why = wrong
-        text = _shown(net.places[channel.place].colset, value)
-        says = f"the message {text} of channel `{channel.name}` cannot be sent: {why}"
-        return Format("no", says, len(asked), channel, value)
+    wrong = tuple(_unsendable(partition, *x) for x in _wrong(partition, asked, d)) if asked else ()
+    if wrong:
+        return Format("no", wrong[0].says, len(asked), wrong)
     if is_open or len(d.errors) > errors:  # no C compiler
         return Format("unknown", "", len(asked))
     own = f"each of the {len(asked):,} values that come into channels" if asked else "every value"
     why = "" if asked else ", by the colour sets of the channels"
     says = f"{own} can be written into its file and read back{why}"
     return Format("yes", says, len(asked))
+
+
+def _unsendable(partition: Partition, channel: Channel, value: Any, why: str) -> Unsendable:
+    text = _shown(partition.net.places[channel.place].colset, value)
+    says = f"the message {text} of channel `{channel.name}` cannot be sent: {why}"
+    return Unsendable(channel, value, says)
 
 
 def _shown(colset: Colset, value: Any) -> str:

@@ -25,7 +25,7 @@ from pn2code.net.flat import ArcKind, FlatTransition
 from pn2code.net.uses import NetVariables
 from pn2code.primitive_calls import Calls, Listener
 from pn2code.robot.commands import MoveJoint, MoveLinear
-from pn2code.semantics.evaluation.effects import Effect, Effects
+from pn2code.semantics.evaluation.effects import Effect, Effects, effects_of
 from pn2code.semantics.game.marking import Binding, Marking, place_of
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.colour_json import from_json
@@ -154,7 +154,7 @@ class Poses:
         game = Game(free, self._storage)
         marking = self._together(game, found, told)
         listener = Listener(game, self._primitives)
-        effects = Effects(net.program)
+        effects = effects_of(net.program)
         poses: tuple[set[object], set[object]] = set(), set()
         for t in self.moving:
             outside = self._outside(effects, t)

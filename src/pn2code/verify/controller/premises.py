@@ -14,11 +14,13 @@ from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.cell.reach import Reach
 from pn2code.properties import meaning as m
+from pn2code.properties.universal import is_universal
 from pn2code.tdl.interpret import MOST_AT_ONCE
 from pn2code.verify.controller.replies import Replies
 
 _DURATIONS = (
-    "it can happen for some durations of commands; known durations are not compared with timers"
+    "it can happen for some durations of commands; known durations are compared neither with timers nor with those of "
+    "other commands"
 )
 
 NOTHING_GIVEN: Mapping[int, str] = MappingProxyType({})
@@ -44,7 +46,7 @@ class Premises:
     Args:
         replies: what is known of answers that are owed.
         states: premises of whatever rests on the states of the cell.
-        durations: whether timers and what programs do go on side by side.
+        durations: whether timers and commands go on side by side: what comes first depends on how long they take.
         sensors: whether programs ask sensors.
         moving: whether a run in lock-step might do too much in one moment if moves took no time.
         moves: whether programs move arms: a move that is not possible stops its program.
@@ -77,7 +79,7 @@ class Premises:
         return Premises(
             replies,
             tuple(states),
-            partition.net.timed,
+            partition.net.timed or bool(used),
             bool(config.sensors),
             moves=not _MOTIONS.isdisjoint(used.values()),
         )
@@ -115,14 +117,14 @@ def _is_possibility(asked: m.Asked) -> bool:
     match asked:
         case m.Invariant(wanted=wanted):
             return not wanted
-        case m.Branching():
-            return True
+        case m.Branching(formula):
+            return not is_universal(formula, True)
         case _:
             return False
 
 
 def _used(partition: Partition, config: CellConfig) -> dict[str, str]:
-    """The functions by which robots do something, each with its command."""
+    """The functions by which robots and devices do something, each with its command."""
     program = partition.net.program
     known = {
         program.globals[name].uid: name for name in config.primitives if name in program.globals
@@ -130,7 +132,7 @@ def _used(partition: Partition, config: CellConfig) -> dict[str, str]:
     reach = Reach(program)
     found: set[str] = set()
     for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True):
-        if t.code is not None and partition.owners[owner].kind is OwnerKind.ROBOT:
+        if t.code is not None and partition.owners[owner].kind is not OwnerKind.SUPERVISOR:
             reach.add_locals(t.code.action)
             found |= {known[uid] for uid in reach.everything(t.code.action) if uid in known}
     return {name: config.primitives[name].command for name in sorted(found)}

@@ -106,7 +106,7 @@ def prove(
     if looked is None:
         return None
     for check in looked.failed:
-        _refuse(check, partition, config, d)
+        _refuse(check, partition, config, tokens, d)
     if looked.open and not looked.failed:
         _warn_open(looked, config, d)
     space = looked.found
@@ -183,7 +183,13 @@ def _look(partition: Partition, plan: Plan, d: Diagnostics) -> Control | None:
     return found
 
 
-def _refuse(check: Check, partition: Partition, config: CellConfig, d: Diagnostics) -> None:
+def _refuse(
+    check: Check,
+    partition: Partition,
+    config: CellConfig,
+    tokens: Mapping[int, str],
+    d: Diagnostics,
+) -> None:
     net = partition.net
     places = {p.name: p.origins[0] for p in net.places}
     transitions = {t.name: t.origin for t in net.transitions}
@@ -200,6 +206,7 @@ def _refuse(check: Check, partition: Partition, config: CellConfig, d: Diagnosti
     ]
     for run in check.evidence[:1]:
         notes.append(_last_steps(run))
+    notes += tokens.values()
     d.error(
         CONTROL_FAILED,
         f"{check.name}: {check.says}",

@@ -12,7 +12,7 @@ replies.premise   # what a "yes" rests on otherwise
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from pn2code.base.frozen import frozen
@@ -21,6 +21,7 @@ from pn2code.cell.partition import ChannelKind, Partition
 from pn2code.cell.reach import Reach
 from pn2code.lowering.expressions.values import children
 from pn2code.ml.core import terms as core
+from pn2code.ml.core.types import TFun
 from pn2code.net.dump import text_of
 from pn2code.robot_scripts.machine import Machine
 from pn2code.verify.controller.commands import lasts
@@ -190,16 +191,14 @@ class _Commands:
 
     def _of(self, e: core.Exp, inside: frozenset[int], known: Known) -> Time:
         match e:
-            case core.Apply(core.Var(symbol=symbol), argument) if symbol.uid in self._primitives:
-                spent = self._of(argument, inside, known)
-                return spent + self._command(symbol, argument, known)
-            case core.Apply(core.Var(symbol=symbol), argument):
-                spent = self._of(argument, inside, known)
-                return spent + self._function(symbol, argument, inside, known)
-            case core.Var(symbol=symbol) if symbol.uid in self._primitives:
-                return self._command(symbol, None, known)
-            case core.Var(symbol=symbol):
-                return self._function(symbol, None, inside, known)
+            case core.Apply():
+                return self._application(e, inside, known)
+            case core.Var(symbol=symbol, type=TFun()) if self._acts(e):
+                return Time(computed=f"what calls `{symbol.name}`")
+            case core.Lambda() if self._acts(e):
+                return Time(computed=f"what calls `{text_of(e)}`")
+            case core.Var() | core.Lambda():
+                return Time()
             case core.If(condition, then, otherwise):
                 chosen = Time.longest(
                     (self._of(then, inside, known), self._of(otherwise, inside, known))
@@ -216,29 +215,55 @@ class _Commands:
                 for declaration in declarations:
                     # Functions are counted where they are mentioned.
                     if isinstance(declaration, core.ValBind):
-                        spent += self._of(declaration.value, inside, known)
+                        if not _is_named_function(declaration):
+                            spent += self._of(declaration.value, inside, known)
                         known = self._durations.bind(declaration.pattern, declaration.value, known)
                 return spent + self._of(body, inside, known)
         return sum((self._of(part, inside, known) for part in children(e)), Time())
 
-    def _function(
+    def _acts(self, e: core.Exp) -> bool:
+        """Whether its meaning depends on a primitive."""
+        return not self._primitives.keys().isdisjoint(self._reach.everything(e))
+
+    def _application(self, e: core.Apply, inside: frozenset[int], known: Known) -> Time:
+        """A function, and what it is applied to, one argument after the other."""
+        arguments: list[core.Exp] = []
+        function: core.Exp = e
+        while isinstance(function, core.Apply):
+            arguments.insert(0, function.argument)
+            function = function.function
+        spent = sum((self._of(x, inside, known) for x in arguments), Time())
+        match function:
+            case core.Var(symbol=symbol) if symbol.uid in self._primitives:
+                return spent + self._command(symbol, arguments[0], known)
+            case core.Var(symbol=symbol):
+                body = self._reach.body(symbol)
+                if isinstance(body, core.Lambda) and symbol.uid not in inside:
+                    return spent + self._call(body, arguments, inside | {symbol.uid}, known)
+                # A parameter: whoever says what it stands for is asked.
+                open_ = body is not None and not isinstance(body, core.Lambda) and self._acts(body)
+                return spent + Time(computed=f"what `{symbol.name}` calls" if open_ else "")
+            case core.Lambda():
+                return spent + self._call(function, arguments, inside, known)
+        return spent + self._of(function, inside, known)
+
+    def _call(
         self,
-        symbol: core.Symbol,
-        argument: core.Exp | None,
+        function: core.Lambda,
+        arguments: Sequence[core.Exp],
         inside: frozenset[int],
         known: Known,
     ) -> Time:
-        """A function that is called; `argument` None: nobody knows with what."""
-        body = self._reach.body(symbol)
-        if not isinstance(body, core.Lambda) or symbol.uid in inside:
-            return Time()
-        around = inside | {symbol.uid}
-        if argument is None:
-            return self._of(body, around, known)
-        return Time.longest(
-            self._of(rule.body, around, self._durations.bind(rule.pattern, argument, known))
-            for rule in body.rules
-        )
+        """The body of a function, and of those that it gives for the further arguments."""
+        first, *others = arguments
+        ways = []
+        for rule in function.rules:
+            within = self._durations.bind(rule.pattern, first, known)
+            if others and isinstance(rule.body, core.Lambda):
+                ways.append(self._call(rule.body, others, inside, within))
+            else:  # a function that is computed is a value there
+                ways.append(self._of(rule.body, inside, within))
+        return Time.longest(ways)
 
     def _command(self, symbol: core.Symbol, argument: core.Exp | None, known: Known) -> Time:
         primitive = self._primitives[symbol.uid]
@@ -250,3 +275,8 @@ class _Commands:
                 shown = "" if argument is None else f" `{text_of(argument)}`"
                 return Time(computed=f"the time{shown} of `{symbol.name}`")
         return OPEN if found is None else Time(max(found, 0.0))
+
+
+def _is_named_function(declaration: core.ValBind) -> bool:
+    """`val f = fn ..`: it is counted where it is called."""
+    return isinstance(declaration.pattern, core.PVar) and isinstance(declaration.value, core.Lambda)

@@ -32,9 +32,10 @@ from itertools import islice
 from pathlib import Path
 
 from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
-from pn2code.semantics.evaluation.effects import Effects
+from pn2code.semantics.evaluation.effects import Effects, effects_of
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.enabling import GameError
+from pn2code.semantics.game.graph import Nodes
 from pn2code.semantics.game.marking import BindingElement, Marking, PlaceMarking
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.data import MlException, MlLimit, Timed
@@ -113,8 +114,9 @@ class Search:
     ) -> None:
         self.net = net
         self.game = Game(net, storage, files=Files(None))
+        self._nodes = Nodes(net)
         self._among = None if among is None else frozenset(among)
-        effects = Effects(net.program)
+        effects = effects_of(net.program)
         self._pure = frozenset(t.index for t in net.transitions if _is_pure(t, net, effects))
         self._takes = {
             t.index: frozenset(a.place for a in t.arcs if a.kind in _TAKING)
@@ -190,10 +192,16 @@ class Search:
             return None
         if self._among is not None and not self._among.intersection(added):
             return None
+        # Markings whose zeros have other signs are equal, but inscriptions can tell them apart.
+        signs = self._nodes.signs(before)
+        if self._nodes.signs(after) != signs:
+            return None
         marking = after
         for _ in range(2):
             again = self._played(marking, turn)
             if again is None or _added(marking, again) != added:
+                return None
+            if self._nodes.signs(again) != signs:
                 return None
             marking = again
         grows = sorted(((p, len(more)) for p, more in added.items()), key=lambda x: (-x[1], x[0]))

@@ -22,8 +22,10 @@ below are enough for D1 and D2:
   bindings; not where the place has one colour and t demands a known number of tokens: more of the same is
   nothing new), all that put tokens where it must find none, or the other way round, all at a place that one of
   the two clears, and all that change a reference that it reads or changes, or the other way round. Two that put tokens
-  into the same place, or test one there, commute. Of two that need a token of a place, and need it to be empty, only
-  one is ever enabled; before the other can be, something of the set occurs.
+  into the same place, or test one there, commute; but not where tokens have reals, since of 0.0 and ~0.0, which are
+  one token, a place keeps the sign of what was there first: at such a place all that change it are rivals. Of two
+  that need a token of a place, and need it to be empty, only one is ever enabled; before the other can be, something
+  of the set occurs.
 * A *disabled* transition remains disabled as long as an input place lacks tokens, or an inhibiting one has some. So it
   is enough to have with it what puts tokens into one such place, or takes from it. If this is not why it is
   disabled, with it come all that put tokens into any of its input places, take from the inhibiting ones, or
@@ -50,7 +52,7 @@ from dataclasses import dataclass, field
 
 from pn2code.base.frozen import frozen
 from pn2code.ml.core import terms as core
-from pn2code.ml.core.colsets import Kind
+from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.net.flat import (
     ArcKind,
     BindAll,
@@ -60,7 +62,7 @@ from pn2code.net.flat import (
     FlatNet,
     FlatTransition,
 )
-from pn2code.semantics.evaluation.effects import Effect, Effects
+from pn2code.semantics.evaluation.effects import Effect, Effects, effects_of
 from pn2code.semantics.evaluation.references import occurring
 from pn2code.verify.controller.unsure import is_total
 from pn2code.verify.exploring.elements import NotPossibleError, colours
@@ -94,6 +96,11 @@ class _Use:
     def demands(self) -> bool:
         """Whether tokens of the place are needed."""
         return self.takes or self.tests
+
+    @property
+    def changes(self) -> bool:
+        """Whether the place may hold something else afterwards."""
+        return self.takes or self.puts or self.clears
 
     def add(self, arc: FlatArc) -> None:
         """One more arc."""
@@ -195,7 +202,7 @@ def dependency(net: FlatNet) -> Dependency:
     Raises:
         NotPossibleError: something stands in the way.
     """
-    effects = Effects(net.program)
+    effects = effects_of(net.program)
     check(net, effects)
     found = _Relation(net, effects)
     return Dependency(len(net.places), tuple(map(found.member, net.transitions)))
@@ -244,6 +251,7 @@ class _Relation:
     def __init__(self, net: FlatNet, effects: Effects) -> None:
         self.net = net
         self.single = [colours(p.colset) == 1 for p in net.places]
+        self.signed = [has_reals(p.colset) for p in net.places]
         self.uses: list[dict[int, _Use]] = []
         self.at = [_Touching() for _ in net.places]
         self.reach = [_reach(t, effects) for t in net.transitions]
@@ -277,7 +285,8 @@ class _Relation:
     def _rivals(self, i: int) -> Iterator[int]:
         for p, use in self.uses[i].items():
             for j, other in self.at[p].uses.items():
-                if self._conflicts(use, other, is_single=self.single[p]):
+                is_order_kept = self.signed[p] and (use.changes or other.changes)
+                if is_order_kept or self._conflicts(use, other, is_single=self.single[p]):
                     yield j
         if self.reach[i].writes:
             yield from (j for j, r in enumerate(self.reach) if r.reads or r.writes)
@@ -325,6 +334,12 @@ class _Relation:
             r.searches and self.net.transitions[j].priority < t.priority
             for j, r in enumerate(self.reach)
         )
+
+
+def has_reals(colset: Colset) -> bool:
+    """Whether there are reals in its tokens."""
+    own = colset.resolved
+    return own.kind is Kind.REAL or any(has_reals(c) for c in own.components if c is not None)
 
 
 def recurring(consumed: Sequence[Sequence[frozenset[int]]], count: int) -> frozenset[int]:

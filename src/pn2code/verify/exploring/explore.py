@@ -53,6 +53,7 @@ _TABLES = {
 HEAPED = "messages"
 """Why an exploration has ended: a place of `ExploreOptions.heaps` holds more than `MOST_HEAPED` tokens."""
 MOST_HEAPED = 64
+"""Tokens in it, of one value or of several; of a place with counters (`Sizes`), of one colour."""
 INFINITE = "infinite"
 """Why an exploration has ended: a covering run was found, so there is no end of markings."""
 _LIMITS = (*REACHED, INFINITE)
@@ -243,6 +244,8 @@ def _explored(
         if error and error["kind"] == "mismatch":
             _differs(net, error, d)
             return None
+        if error and error["kind"] == "heap":
+            return Exploration.of(net, {**found, "error": None, "why": HEAPED}, compiling)
         if not error or error["kind"] not in ("capacity", "memory"):
             return replace(
                 Exploration.of(net, found, compiling), symmetries=chosen.symmetry_names()
@@ -331,6 +334,8 @@ def _options(limits: Limits, chosen: Chosen, sizes: Sizes, wishes: ExploreOption
         ("--write-limit", wishes.graph_limit),
         ("--multiset-limit", wishes.colours),
         ("--whole", ",".join(map(str, wishes.whole)) or None),
+        ("--heaps", ",".join(map(str, sorted(wishes.heaps))) or None),
+        ("--most-heaped", MOST_HEAPED if wishes.heaps else None),
         ("--progress-every", wishes.pace),
         *(("--reduce", reduction.value) for reduction in chosen.reductions),
     ]

@@ -7,7 +7,7 @@ from typing import Any
 
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet, FlatTransition
-from pn2code.semantics.evaluation.effects import Effect, Effects, outside
+from pn2code.semantics.evaluation.effects import Effect, effects_of, outside
 from pn2code.semantics.evaluation.references import occurring, searching
 from pn2code.verify.codes import (
     CHANGES_REFERENCES,
@@ -22,7 +22,7 @@ _ORDER = (Effect.DRAW, Effect.LOOK, Effect.COUNT)
 
 def warn(net: FlatNet, d: Diagnostics) -> None:
     """Warns of transitions that draw random numbers, look at files, count steps, or change references."""
-    effects = Effects(net.program)
+    effects = effects_of(net.program)
     found = [(t, effects.of(*_texts(t))) for t in net.transitions]
     changing = [t for t in net.transitions if Effect.WRITE in effects.of(*occurring(t))]
     if changing:
@@ -59,7 +59,7 @@ def warn(net: FlatNet, d: Diagnostics) -> None:
 
 def draws(net: FlatNet) -> bool:
     """Whether random numbers or files decide anything, the initial marking included."""
-    return outside(Effects(net.program), net)
+    return outside(effects_of(net.program), net)
 
 
 def refuse(net: FlatNet, d: Diagnostics) -> bool:

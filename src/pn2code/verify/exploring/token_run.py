@@ -1,6 +1,6 @@
-"""A shortest run to a marking with a certain token, from the graph that the explorer writes.
+"""A shortest run to a marking with one of certain tokens, from the graph that the explorer writes.
 
-found = token_run(net, storage, questions, place, value, Path("net.trace.jsonl"), d)      # Run(steps=4, node=5, ...)
+found = token_run(net, storage, questions, [(place, value)], Path("net.trace.jsonl"), d)   # Run(steps=4, node=5, ...)
 
 It is played by the token game, which writes the trace.
 """
@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
 from pathlib import Path
 from typing import Any
@@ -31,19 +31,21 @@ MOST_NODES = 200_000
 
 @frozen
 class Run:
-    """A run. `file` is None if the trace could not be written."""
+    """A run. `token`: which one it leads to, by number. `file` is None if the trace could not be written."""
 
     steps: int
     node: int
     transitions: tuple[str, ...]
     file: Path | None
+    token: int = 0
 
 
 @frozen
 class _Graph:
-    """What is needed of a graph: the node with the token, and by which arc each node was reached first."""
+    """What is needed of a graph: the node with a token, and by which arc each node was reached first."""
 
     node: int
+    token: int
     parent: Mapping[int, tuple[int, Mapping[str, Any]]]
 
     def way(self) -> list[Mapping[str, Any]]:
@@ -60,8 +62,7 @@ def token_run(
     net: FlatNet,
     storage: Mapping[str, str],
     questions: str,
-    place: int,
-    value: Any,
+    tokens: Sequence[tuple[int, Any]],
     trace: Path,
     d: Diagnostics,
 ) -> Run | None:
@@ -71,8 +72,7 @@ def token_run(
         net: the net.
         storage: as for `Game`.
         questions: for the explorer: under which rules the net is explored.
-        place: index of the place.
-        value: of the token, in the form of traces.
+        tokens: each with the index of its place, and its value in the form of traces.
         trace: where the trace goes.
         d: gets the errors.
     """
@@ -89,22 +89,27 @@ def token_run(
         found = explore(net, storage, limits, d, wishes)
         if found is None or not file.exists():
             return None
-        graph = _read(file, net.places[place].name, value)
+        graph = _read(file, [(net.places[place].name, value) for place, value in tokens])
     return None if graph is None else _played(net, storage, graph, trace)
 
 
-def _read(file: Path, place: str, value: Any) -> _Graph | None:
-    """Nodes are numbered breadth first: the first one with the token is one of the nearest."""
-    goal = None
+def _read(file: Path, tokens: Sequence[tuple[str, Any]]) -> _Graph | None:
+    """Nodes are numbered breadth first: the first one with a token is one of the nearest."""
+    wanted: dict[str, dict[str, int]] = {}
+    for number, (place, value) in enumerate(tokens):
+        wanted.setdefault(place, {}).setdefault(json.dumps(value), number)
+    goal: tuple[int, int] | None = None
     parent: dict[int, tuple[int, Mapping[str, Any]]] = {}
     for row in _rows(file):
         if "node" in row:
-            tokens = row["marking"][place]
-            if goal is None and any(token[1] == value for token in tokens):
-                goal = row["node"]
+            for place, values in wanted.items() if goal is None else ():
+                held = (json.dumps(token[1]) for token in row["marking"][place])
+                found = next((values[text] for text in held if text in values), None)
+                if found is not None and goal is None:
+                    goal = row["node"], found
         elif row["to"] != 1 and row["to"] not in parent and row["from"] < row["to"]:
             parent[row["to"]] = row["from"], row
-    return None if goal is None else _Graph(goal, parent)
+    return None if goal is None else _Graph(*goal, parent)
 
 
 def _rows(file: Path) -> Iterator[dict[str, Any]]:
@@ -136,4 +141,4 @@ def _played(net: FlatNet, storage: Mapping[str, str], graph: _Graph, path: Path)
         kept = None
     except GameError:
         return None
-    return Run(len(graph.way()), graph.node, tuple(named), kept)
+    return Run(len(graph.way()), graph.node, tuple(named), kept, graph.token)

@@ -16,13 +16,35 @@ _PHASES = {
 }
 
 
-class ProgressLine(Line):
-    """Shows states, rate, frontier, depth and memory; a few plain lines where the stream is no terminal."""
+ENDLESS_S = 60.0
+"""Of an exploration without a limit: after them it is said that there is none."""
+_ENDLESS = (
+    "no limit is set, and there may be no end of markings: `--max-seconds S` or `--max-states N` ends it with what is "
+    "known by then, as Ctrl-C does now"
+)
+_TIMED = "; `--reduce time` counts markings that differ in the time alone as one"
 
-    def __init__(self, *, shown: bool = True, stream: IO[str] | None = None) -> None:
+
+class ProgressLine(Line):
+    """Shows states, rate, frontier, depth and memory; a few plain lines where the stream is no terminal.
+
+    Args:
+        is_limited: whether a limit of states or time is set; if not, it is said once that one helps.
+        is_timed: whether markings may differ in the time alone, and are not counted as one.
+    """
+
+    def __init__(
+        self,
+        *,
+        shown: bool = True,
+        stream: IO[str] | None = None,
+        is_limited: bool = True,
+        is_timed: bool = False,
+    ) -> None:
         super().__init__(
             shown=shown, stream=stream, first="compiling and exploring the net ...", plain=True
         )
+        self._advice = "" if is_limited else _ENDLESS + (_TIMED if is_timed else "")
 
     def update(self, said: Mapping[str, Any]) -> None:
         """What the explorer says of itself, twice a second."""
@@ -37,3 +59,6 @@ class ProgressLine(Line):
             f"{said.get('seconds', 0):.0f} s",
         ]
         self.say(f"{phase}: " + "  ".join(parts))
+        if self._advice and said.get("phase") == "explore" and said.get("seconds", 0) >= ENDLESS_S:
+            self.keep(self._advice)
+            self._advice = ""

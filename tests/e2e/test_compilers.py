@@ -1,0 +1,48 @@
+"""Supervisors and simulators compiled by gcc, clang and `zig cc`: their traces are the same, digit for digit.
+
+Each compiler is used where it is there: on Debian `gcc` and `clang`, and the Python package `ziglang`.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+
+from helpers.traced_runs import make, traces
+from pn2code import pipeline
+from pn2code.diagnostics import Diagnostics
+from pn2code.emission.write import write
+
+pytestmark = pytest.mark.cc
+
+
+def _there() -> list[str]:
+    """The compilers of this machine, as `CC` of make."""
+    found = [name for name in ("gcc", "clang") if shutil.which(name)]
+    if importlib.util.find_spec("ziglang") is not None:
+        found.append(f"{sys.executable} -m ziglang cc")
+    return found
+
+
+@pytest.mark.parametrize("name", ["sorting", "timed"])
+def test_traces_are_the_same(name: str, root: Path, tmp_path: Path) -> None:
+    compilers = _there()
+    if len(compilers) < 2:
+        pytest.skip(f"nothing to compare with: of gcc, clang and ziglang there is {compilers}")
+    d = Diagnostics()
+    made = pipeline.generate(root / "examples" / name, d)
+    assert made is not None, [str(i) for i in d]
+    found = {}
+    for number, compiler in enumerate(compilers):
+        folder = tmp_path / str(number)
+        write(folder, made.files)
+        make(folder, f"CC={compiler}")
+        found[compiler] = traces(folder)
+
+    first = found[compilers[0]]
+    assert all(trace.count(b"\n") > 20 for trace in first)
+    assert [c for c in compilers if found[c] != first] == []
