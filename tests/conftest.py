@@ -67,7 +67,7 @@ def quick_programs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """Explorers and simulators are compiled without optimization, which takes a third of the time.
 
     Not so for those who use `as_delivered`, nor in `make thorough`. Their runtime is compiled by one worker; others
-    that want the same wait for it.
+    that want the same wait for it. The tests compile more nets than a user does, and come back to them later.
     """
     folder = common(tmp_path_factory)
     library = programs._Builder._library
@@ -78,6 +78,7 @@ def quick_programs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
     with pytest.MonkeyPatch.context() as changed:
         changed.setattr(programs._Builder, "_library", one_library)
+        changed.setattr(programs, "MOST_PROGRAMS", 512)
         changed.setattr(proofs, "MOST_SECONDS", 3600.0)  # what is known does not depend on time
         if not THOROUGH:
             flags = tuple("-O0" if flag == "-O2" else flag for flag in DELIVERED)

@@ -2,13 +2,16 @@
 
     python -m tools.misra [FOLDER]         # or `make misra`
 
-cppcheck's addon (the wheel `cppcheck-py`) looks at the generated `net.c` and `cell_config.c`, the supervisor's own
-sources and the channels. The rows of docs/misra.md name a rule, a file and a reason; a finding without a row and a row
-without a finding are both mistakes. Findings of advisory rules are counted, not listed.
+cppcheck's addon (the wheel `cppcheck-py`; `tools/misra_addon.py`) looks at the generated `net.c` and `cell_config.c`,
+the supervisor's own sources and the channels. The rows of docs/misra.md name a rule, a file and a reason; a finding
+without a row and a row without a finding are both mistakes. Findings of advisory rules are counted, not listed.
 """
 
 from __future__ import annotations
 
+import importlib.util
+import json
+import os
 import re
 import subprocess
 import sys
@@ -17,6 +20,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "misra.md"
+ADDON = Path(__file__).with_name("misra_addon.py")
+"""It also compares files with each other (ctu), which cppcheck asks of its own addon without being told."""
 SOURCES = (
     "net.c",
     "cell_config.c",
@@ -66,11 +71,23 @@ def findings(folder: Path) -> tuple[Counter[tuple[str, str]], Counter[str]]:
     makefile = (folder / "Makefile").read_text(encoding="utf-8")
     needs = re.findall(r"-DPN_\w+", re.findall(r"^NEEDS :=.*$", makefile, re.MULTILINE)[0])
     command = [
-        *(str(Path(sys.executable).with_name("cppcheck")), "-q", "--enable=style", "--addon=misra"),
+        *(str(Path(sys.executable).with_name("cppcheck")), "-q", "--enable=style"),
+        f"--addon={json.dumps({'script': str(ADDON), 'ctu': True})}",
         *("--library=posix", "--std=c11", "--template={file}:{line}:{column}: {id}"),
         *("-Iruntime/include", "-I.", "-DPN_OWN_ONLY", *needs, *SYSTEM, "-j2", *SOURCES),
     ]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    found_at = importlib.util.find_spec("cppcheck")
+    if found_at is None or found_at.origin is None:
+        raise RuntimeError("cppcheck is not installed: ./dev setup")
+    addons = Path(found_at.origin).parent / "data" / "addons"
+    done = subprocess.run(
+        command,
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "MISRA_ADDONS": str(addons)},
+    )
     required: Counter[tuple[str, str]] = Counter()
     advisory: Counter[str] = Counter()
     for line in dict.fromkeys(done.stderr.splitlines()):

@@ -27,6 +27,7 @@ from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics, render
 from pn2code.emission.write import write
 from pn2code.net import front
+from pn2code.toolchain import build
 from pn2code.verify.controller import control, control_types, proofs
 from pn2code.verify.controller.control import ownership
 from pn2code.verify.controller.control_answers import has_own_priorities
@@ -37,7 +38,7 @@ from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.programs import Sizes
 from pn2code.verify.exploring.result import Exploration
 
-pytestmark = pytest.mark.cc
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
 
 # --- random graphs -------------------------------------------------------------------------------
@@ -587,13 +588,7 @@ def test_more_than_the_bound_stops_the_supervisor(tmp_path: Path) -> None:
     assert generated is not None, render.report(d)
     out = tmp_path / "out"
     write(out, generated.files)
-    made = subprocess.run(
-        ["make", "-C", out, "CFLAGS=-O0", "supervisor.traced"],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert made.returncode == 0, made.stderr
+    assert build.build(out, generated.files, d, target="supervisor.traced"), render.report(d)
     done = subprocess.run(
         [out / "supervisor.traced", "--dry-run"],
         cwd=out,

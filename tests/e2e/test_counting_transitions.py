@@ -15,11 +15,6 @@ from pn2code.lowering.passes import counting
 pytestmark = pytest.mark.cc
 
 
-@pytest.fixture(scope="module")
-def explorers(tmp_path_factory: pytest.TempPathFactory) -> Explorers:
-    return Explorers.open(tmp_path_factory.mktemp("counting"))
-
-
 def _text(tables: Tables, copies: int = 1) -> str:
     """The net in the short form, with so many copies of each transition."""
     lines = ["net Cell", "  standard"]

@@ -15,7 +15,7 @@ import typer
 from helpers.documents import Block, Desk, blocks, documents, mentions, without_comment
 from helpers.netbuilder import write
 from helpers.processes import pn2code
-from helpers.session import once
+from helpers.session import common, once
 from helpers.small_cell import write as write_cell
 from helpers.thorough import THOROUGH
 from pn2code.cli.main import VERBS, app
@@ -188,7 +188,7 @@ def test_as_printed(
         pytest.skip("no C compiler")
     if document in LARGE:
         request.getfixturevalue("as_delivered")
-    desk = Desk(tmp_path, ROOT)
+    desk = Desk(tmp_path, ROOT, common(tmp_path_factory) / "objects")
     own = once(tmp_path_factory, "reader", lay_out)
     shutil.copytree(own, desk.project, dirs_exist_ok=True)
     PLACES.get(document, lambda _: None)(desk)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 from pathlib import Path
 
@@ -12,9 +11,10 @@ import pytest
 from helpers.netbuilder import flat, write
 from pn2code.diagnostics import Diagnostics
 from pn2code.pipeline import generate
+from pn2code.toolchain import build
 from pn2code.trace.replay import replay
 
-pytestmark = pytest.mark.cc
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
 COUNTED = """
     net Counted
@@ -68,8 +68,7 @@ def dry_run(text: str, folder: Path) -> tuple[Path, subprocess.CompletedProcess[
         path = folder / file.path
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(file.text, encoding="utf-8")
-    make = ["make", "-s", "-C", folder, f"-j{os.cpu_count()}", "CFLAGS=-O0", "supervisor.traced"]
-    subprocess.run(make, capture_output=True, check=True)
+    assert build.build(folder, made.files, d, target="supervisor.traced") is not None
     trace = folder / "trace.jsonl"
     program = [folder / "supervisor.traced", "--dry-run", "--trace", trace]
     return trace, subprocess.run(program, capture_output=True, text=True, check=False)

@@ -23,8 +23,10 @@ from pn2code.channels import (
     Written,
     specs_of,
 )
+from pn2code.diagnostics import Diagnostics, render
 from pn2code.pipeline import Generated
 from pn2code.run.supervisor import SupervisorProcess
+from pn2code.toolchain import build
 
 pytestmark = pytest.mark.cc
 
@@ -50,12 +52,14 @@ def built(riveting_program: Path, tmp_path_factory: pytest.TempPathFactory) -> P
     shutil.copytree(riveting_program, folder)
     sanitizers = "-fsanitize=address,undefined -fno-sanitize-recover=all"
     assert re.search(
-        f"^SANITIZE := .*{sanitizers}", (folder / "Makefile").read_text(), re.MULTILINE
+        rf"^SANITIZE \?= .*{sanitizers}", (folder / "Makefile").read_text(), re.MULTILINE
     )
     # As it is, but not optimized: that would take five times as long.
-    command = ["make", "-C", folder, "sanitize", f"SANITIZE=-g1 -O0 {sanitizers}"]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    d = Diagnostics()
+    with pytest.MonkeyPatch.context() as changed:
+        changed.setenv("SANITIZE", f"-g1 -O0 {sanitizers}")
+        made = build.build(folder, (), d, target="supervisor.sanitize")
+    assert made is not None, render.report(d)
     return folder
 
 

@@ -13,8 +13,9 @@ from helpers.netbuilder import cpn
 from helpers.processes import pn2code
 from pn2code.diagnostics import Diagnostics
 from pn2code.pipeline import generate
+from pn2code.toolchain import build
 
-pytestmark = pytest.mark.cc
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
 STOCK = """
 net cell
@@ -103,7 +104,7 @@ def made(folder: Path, to: Path, d: Diagnostics | None = None) -> Path:
         path = to / file.path
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(file.text, encoding="utf-8")
-    subprocess.run(["make", "-s", "CFLAGS=-O0", "supervisor.traced"], cwd=to, check=True)
+    assert build.build(to, found.files, Diagnostics(), target="supervisor.traced") is not None
     return to
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import subprocess
 from pathlib import Path
 
@@ -11,8 +10,9 @@ import pytest
 from helpers.netbuilder import write
 from pn2code.diagnostics import Diagnostics
 from pn2code.pipeline import generate
+from pn2code.toolchain import build
 
-pytestmark = pytest.mark.cc
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
 NET = """
     net Kept
@@ -43,8 +43,7 @@ def test_what_references_hold_is_looked_at(tmp_path: Path) -> None:
         path.write_text(file.text, encoding="utf-8")
 
     def monitored() -> subprocess.CompletedProcess[str]:
-        make = ["make", "-s", "-C", folder, f"-j{os.cpu_count()}", "CFLAGS=-O0", "monitor"]
-        subprocess.run(make, capture_output=True, check=True)
+        assert build.build(folder, made.files, d, target="supervisor.monitor") is not None
         return subprocess.run(
             [folder / "supervisor.monitor"], capture_output=True, text=True, check=False
         )

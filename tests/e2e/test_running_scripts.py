@@ -15,6 +15,7 @@ from pn2code.cell.divide import divide
 from pn2code.cli.main import app
 from pn2code.cli.nets import open_net
 from pn2code.diagnostics import Diagnostics
+from pn2code.run import engine
 from pn2code.verify.controller import control, moments
 from pn2code.verify.controller.commands import Commands
 from pn2code.verify.controller.control_types import Plan
@@ -398,8 +399,11 @@ def test_messages_that_are_exchanged_in_one_moment(
     assert not is_said(check)
 
 
-def test_a_cell_without_an_end_that_stands_still_in_time(tmp_path: Path) -> None:
+def test_a_cell_without_an_end_that_stands_still_in_time(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """In lock-step the run stops; so this is no "yes", and the run that is repeated is shown."""
+    monkeypatch.setattr(engine, "MOST_AT_ONCE", 500)  # it goes round for ever
     text = asking(3, ECHO).replace("n + 1", "n")
     folder = write(tmp_path / "cell", text, toml(["A"]).replace('final = ["Finished"]\n', ""))
     check = checks(folder)["non-blocking"]

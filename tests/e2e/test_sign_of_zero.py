@@ -10,11 +10,6 @@ from helpers.netbuilder import flat
 pytestmark = pytest.mark.cc
 
 
-@pytest.fixture(scope="module")
-def explorers(tmp_path_factory: pytest.TempPathFactory) -> Explorers:
-    return Explorers.open(tmp_path_factory.mktemp("zeros"))
-
-
 # What holds a zero, the two inscriptions that make it, the one that takes it, and a guard that sees the sign.
 HOLDERS = {
     "a real": ("REAL", "0.0", "~1.0 * 0.0", "x", "1.0 / x < 0.0"),

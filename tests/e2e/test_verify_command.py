@@ -75,7 +75,7 @@ def test_truncated(net: Path, tmp_path: Path) -> None:
     """Of a space without end: so many states, so many seconds, so much memory."""
     for option, value, why in (
         ("--max-states", "100", "states"),
-        ("--max-seconds", "4", "seconds"),  # with what comes before the exploration
+        ("--max-seconds", "2", "seconds"),  # with what comes before the exploration
         ("--memory", "16", "memory"),
     ):
         done = pn2code("verify", net, option, value, "--json", "--most-traces", "0")

@@ -13,10 +13,12 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
+from helpers import objects
 from helpers.processes import Command
 
 COMMANDS = (
@@ -118,6 +120,7 @@ class Desk:
     Args:
         folder: where the copy is made.
         root: the project.
+        kept: where `make` finds the runtime's object files that were compiled before (`helpers.objects`).
     """
 
     PARTS = (
@@ -131,7 +134,8 @@ class Desk:
         "generated",
     )
 
-    def __init__(self, folder: Path, root: Path) -> None:
+    def __init__(self, folder: Path, root: Path, kept: Path) -> None:
+        self.kept = kept
         self.project = folder / "pn2code"
         self.project.mkdir(parents=True)
         for part in self.PARTS:
@@ -160,11 +164,30 @@ class Desk:
             self._shell("\n".join([*lines, "ended=$?; wait; exit $ended"]))
             return
         for line in lines:
-            words = shlex.split(line)
-            if words[0] == "pn2code" and not any(w in words for w in ("&&", "|", ">", ";")):
-                self._command(words[1:])
-            else:
+            if any(word in ("|", ">", ";") for word in shlex.split(line)):
                 self._shell(line)
+                continue
+            for part in line.split(" && "):
+                words = shlex.split(part)
+                if words[0] == "pn2code":
+                    self._command(words[1:])
+                elif words[0] == "make":
+                    with self._objects(words):
+                        self._shell(part)
+                else:
+                    self._shell(part)
+
+    @contextmanager
+    def _objects(self, words: Sequence[str]) -> Iterator[None]:
+        """What `make` has compiled before, and keeps, if it is called in a generated folder."""
+        folder = self.at / words[words.index("-C") + 1] if "-C" in words else self.at
+        if not (folder / "runtime").is_dir():
+            yield
+            return
+        own = self.kept / objects.key(folder)
+        objects.put(own, folder)
+        yield
+        objects.keep(own, folder)
 
     def _command(self, words: list[str]) -> None:
         at = self.at

@@ -21,7 +21,7 @@ from pn2code.emission.output import OutputFile
 from pn2code.toolchain.build import find_compiler
 
 Build = Callable[..., Path | None]
-FLAGS = ("CFLAGS", "LDFLAGS", "CC", "MAKEFLAGS", "CPATH", "C_INCLUDE_PATH")
+FLAGS = ("CFLAGS", "SANITIZE", "LDFLAGS", "CC", "MAKEFLAGS", "CPATH", "C_INCLUDE_PATH")
 """What `make` and compilers look up in the environment."""
 
 
@@ -41,7 +41,7 @@ class Objects:
         self, folder: Path, files: Iterable[OutputFile], d: Diagnostics, **options: str
     ) -> Path | None:
         files = tuple(files)
-        kept = self._folder / _key(folder)
+        kept = self._folder / key(folder)
         put(kept, folder)
         made = self._build(folder, files, d, **options)
         if made is not None:
@@ -70,8 +70,8 @@ def keep(kept: Path, folder: Path) -> None:
             Path(room.name).replace(target)
 
 
-def _key(folder: Path) -> str:
-    """All that goes into them."""
+def key(folder: Path) -> str:
+    """The name of all that goes into the object files of a generated folder."""
     rules = (folder / "Makefile").read_text(encoding="utf-8").splitlines()
     compiler = find_compiler() or ""
     found = shutil.which(shlex.split(compiler)[0]) if compiler else None

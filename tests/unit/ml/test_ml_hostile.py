@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from helpers.ml import Ml
+from pn2code.ml import library
 from pn2code.ml.parsing.lexer import MAX_TOKENS
 from pn2code.ml.typing.inference import MAX_WORK
 
@@ -63,6 +64,22 @@ def test_deep_nesting_is_refused(text: str) -> None:
 )
 def test_long_texts_are_checked(text: str) -> None:
     assert codes_of(text) == []
+
+
+def test_a_text_is_searched_for_names_of_the_library_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """However many declarations it has."""
+    pattern = library._pattern()
+    searched: list[int] = []
+
+    class Watched:
+        def findall(self, text: str) -> list[str]:
+            searched.append(len(text))
+            return pattern.findall(text)
+
+    monkeypatch.setattr(library, "_pattern", Watched)
+    text = " ".join(f"val once{i} = {i}" for i in range(50))
+    assert codes_of(text) == []
+    assert searched.count(len(text)) == 1
 
 
 def _twice(n: int, form: str) -> str:

@@ -43,8 +43,16 @@ while [ "$1" != -o ]; do shift; done
 
 
 @pytest.mark.cc
+@pytest.mark.parametrize(
+    ("target", "flags"),
+    [
+        ("supervisor.traced", "CFLAGS"),
+        ("supervisor.monitor", "CFLAGS"),
+        ("supervisor.sanitize", "SANITIZE"),
+    ],
+)
 def test_the_runtime_is_compiled_once(
-    cell: Generated, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    cell: Generated, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, target: str, flags: str
 ) -> None:
     log, compiler = tmp_path / "log", tmp_path / "compiler"
     compiler.write_text(COMPILER.format(log=shlex.quote(str(log))))
@@ -62,8 +70,8 @@ def test_the_runtime_is_compiled_once(
         header.write_text(header.read_text() + change)
         log.unlink(missing_ok=True)
         d = Diagnostics()
-        assert objects(folder, cell.files, d, target="supervisor.traced"), render.report(d)
-        assert (folder / "supervisor.traced").exists()
+        assert objects(folder, cell.files, d, target=target), render.report(d)
+        assert (folder / target).exists()
         calls = [shlex.split(line) for line in log.read_text().splitlines()]
         return {Path(words[-1]).name for words in calls if "-o" in words and "-c" in words}
 
@@ -72,5 +80,5 @@ def test_the_runtime_is_compiled_once(
     assert {"pn_list.c", "supervisor.c"} | own <= first
     assert compiled("second") - {"null"} == own
     assert compiled("changed", "/* changed */\n") == first
-    monkeypatch.setenv("CFLAGS", "-O0 -DOTHER")
+    monkeypatch.setenv(flags, "-O0 -DOTHER")
     assert compiled("otherwise") == first

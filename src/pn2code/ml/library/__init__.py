@@ -9,7 +9,7 @@ mentioned: `List.mapi`.
 from __future__ import annotations
 
 import re
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 FOLDER = Path(__file__).resolve().parent
@@ -71,10 +71,14 @@ def _more() -> dict[str, re.Pattern[str]]:
     return found
 
 
-def mentioned(text: str) -> list[str]:
-    """Names of the library in a text, each once, in order; structures that have more as `more/NAME`."""
+@lru_cache(maxsize=64)
+def mentioned(text: str) -> tuple[str, ...]:
+    """Names of the library in a text, each once, in order; structures that have more as `more/NAME`.
+
+    It is asked for each declaration of a text, and the texts of a net are many.
+    """
     more = [f"more/{name}" for name, pattern in _more().items() if pattern.search(text)]
-    return [*more, *dict.fromkeys(_pattern().findall(text))]
+    return (*more, *dict.fromkeys(_pattern().findall(text)))
 
 
 @cache
