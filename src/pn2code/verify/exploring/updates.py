@@ -30,7 +30,8 @@ round one of the two raises one at the latest where the sum is out of range. Of 
 second may keep the first from raising an exception: these commute only where no number is out of range, in
 `intinf` without bounds. So only a single addition of a constant counts, and not `n + 1 - 1`, which may raise an
 exception although its sum is in range. Maximum, minimum and constants raise one because of their amount, whatever the
-token is. This is so in ranges of numbers; of subsets nothing is said. And a variable takes any token of the place: its colour set is that of the place.
+token is. This is so in ranges of numbers; of sums, maxima and minima in subsets nothing is said. And a variable takes
+any token of the place: its colour set is that of the place.
 
 Sums of reals depend on their order, and equal reals may differ in the sign of a zero, so nothing is said of them.
 """
@@ -72,9 +73,7 @@ class How(Enum):
     CHANGES = "changes"
 
 
-_SAME = frozenset(
-    {How.READS, How.GROWS, How.SHRINKS, How.ADDS, How.RAISES, How.LOWERS, How.SETS}
-)
+_SAME = frozenset({How.READS, How.GROWS, How.SHRINKS, How.ADDS, How.RAISES, How.LOWERS, How.SETS})
 """Two transitions that do the same commute."""
 _BLIND = frozenset(How) - {How.READS, How.CHANGES}
 """A transition that does one of these takes any token."""
