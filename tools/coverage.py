@@ -34,23 +34,37 @@ TESTS = (
     "test_running_ends", "test_who_waits", "test_order_of_asking",
 )  # fmt: skip
 WRAPPER = """\
-#!/bin/sh
-# Compiles what is to be counted with --coverage, in a folder of its own, so that each compilation has its own counts.
-object= source= is_next= is_part=
-for word in "$@"; do
-    [ -z "$is_next" ] || object=$word
-    is_next=
-    case $word in
-        -o) is_next=yes ;;
-        -c) is_part=yes ;;
-        */src/supervisor/*.c | */src/channel/*.c | */src/port/*.c) source=$word ;;
-    esac
-done
-[ -n "$is_part" ] || exec {compiler} "$@" -lgcov
-[ -n "$source" ] && [ -n "$object" ] || exec {compiler} "$@"
-folder=$(mktemp -d "{store}/XXXXXXXX")
-name=$(basename "$source" .c)
-{compiler} "$@" -O0 -fno-sanitize=all --coverage -o "$folder/$name.o" && cp "$folder/$name.o" "$object"
+#!{python}
+# A compiler that compiles what is to be counted with --coverage, each source in a folder of its own.
+import re, shutil, subprocess, sys, tempfile
+from pathlib import Path
+
+COMPILER, STORE = {compiler!r}, {store!r}
+PART = re.compile(r"(^|/)src/({parts})/\\w+\\.c$")
+words = sys.argv[1:]
+sources = [w for w in words if PART.search(w)]
+target = words[words.index("-o") + 1] if "-o" in words else None
+flags, rest, after = [], [], False
+for word in words:
+    if after or word == "-o":
+        after = word == "-o"
+    elif not word.endswith((".c", ".o", ".so", ".a")) and word != "-c" and not word.startswith(("-l", "-Wl,")):
+        flags.append(word)
+for word in words:
+    if word not in sources:
+        rest.append(word)
+        continue
+    made = str(Path(tempfile.mkdtemp(dir=STORE)) / (Path(word).stem + ".o"))
+    counting = ["-O0", "-fno-sanitize=all", "--coverage", "-c", word, "-o", made]
+    if code := subprocess.call([COMPILER, *flags, *counting]):
+        sys.exit(code)
+    if "-c" in words:
+        shutil.copyfile(made, target or Path(made).name)
+    else:
+        rest.append(made)
+if "-c" in words and sources and not any(w.endswith(".c") for w in rest):
+    sys.exit(0)
+sys.exit(subprocess.call([COMPILER, *rest, *([] if "-c" in words else ["-lgcov"])]))
 """
 
 
@@ -143,10 +157,14 @@ def run_tests(store: Path, tests: list[str], options: list[str]) -> int:
         sys.exit("coverage: gcc is not installed")
     for name in ("gcc", "cc"):
         path = programs / name
-        path.write_text(WRAPPER.format(compiler=compiler, store=store), encoding="utf-8")
+        text = WRAPPER.format(
+            python=sys.executable, compiler=compiler, store=str(store), parts="|".join(PARTS)
+        )
+        path.write_text(text, encoding="utf-8")
         path.chmod(0o755)
     env = {**os.environ, "PATH": f"{programs}{os.pathsep}{os.environ['PATH']}", "CC": "gcc"}
-    env["PN2CODE_COUNTING"] = "1"
+    # Programs that pn2code remembers are not to be mixed with those that count.
+    env |= {"PN2CODE_COUNTING": "1", "XDG_CACHE_HOME": str(store / "cache")}
     return subprocess.run(
         [sys.executable, "-m", "pytest", "-q", *tests, *options], cwd=ROOT, env=env, check=False
     ).returncode

@@ -35,11 +35,11 @@ static bool fails(const char *name)
 
 /* A function of the C library, of the type of what stands in its place. */
 #define NEXT(function) ((__typeof__(&function))dlsym(RTLD_NEXT, #function))
-#define FAILING(type, function, parameters, arguments)                  \
-    type function parameters;                                           \
-    type function parameters                                            \
-    {                                                                   \
-        return fails(#function) ? (type)(-1) : NEXT(function)arguments; \
+#define FAILING(type, function, parameters, arguments)                   \
+    type function parameters;                                            \
+    type function parameters                                             \
+    {                                                                    \
+        return fails(#function) ? (type)(-1) : NEXT(function) arguments; \
     }
 
 FAILING(int, pipe, (int ends[2]), (ends))
