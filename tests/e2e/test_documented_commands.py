@@ -58,6 +58,7 @@ NEVER = {
     "./dev bench --states": "the same",
     "./dev bench --monitor": "the same",
     "./dev bench --compile": "the same",
+    "./dev bench --against CHECKOUT": "the same, and another checkout",
     "./dev bench --database-15": "the same, and gigabytes",
     "./dev contest --seconds 10 --examinations ReachabilityDeadlock UpperBounds --log contest.jsonl": "hours; "
     "test_contest_command does it for one net",

@@ -637,3 +637,21 @@ def test_a_delay_is_evaluated_where_an_output_is_timed(colset: str, raises: bool
     else:
         g.fire(element)
         assert len(g.marking.places[1]) == 1
+
+
+def test_a_binding_has_the_zero_of_the_token() -> None:
+    """Which of the two the guard sees decides whether it is true."""
+    g = game("""
+        var x: REAL;
+        place A : REAL = 1`(~0.0)
+        trans T guard [1.0 / x > 0.0]
+          in A : x
+        trans U guard [1.0 / x < 0.0]
+          in A : x
+    """)
+    assert [e.transition for e in g.enabled()] == [1]
+    t = g.net.transitions[0]
+    element = BindingElement.make(t, dict.fromkeys(t.variables, 0.0))
+    assert g.why_disabled(g.marking, element) == "the sign of a zero is not that of the token"
+    [element] = g.enabled()
+    g.fire(element)

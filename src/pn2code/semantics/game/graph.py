@@ -14,7 +14,7 @@ from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.marking import BindingElement, Marking
 from pn2code.semantics.game.token_game import Game
-from pn2code.semantics.values.data import Data, Timed, Value, is_negative_zero
+from pn2code.semantics.values.data import zero_signs
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,7 +105,7 @@ class Nodes:
             (place, repr(token))
             for place in self._places
             for token in marking.places[place]
-            if _has_negative_zero(token)
+            if any(zero_signs(token))
         )
 
 
@@ -113,16 +113,3 @@ def _has_reals(c: Colset) -> bool:
     return c.kind is Kind.REAL or any(
         part is not None and _has_reals(part) for part in c.components
     )
-
-
-def _has_negative_zero(value: Value) -> bool:
-    match value:
-        case float():
-            return is_negative_zero(value)
-        case tuple():
-            return any(map(_has_negative_zero, value))
-        case Data(argument=argument):
-            return argument is not None and _has_negative_zero(argument)
-        case Timed(value=inner, stamp=stamp):
-            return _has_negative_zero(inner) or _has_negative_zero(stamp)
-    return False

@@ -15,7 +15,7 @@ each in the order of `enabling`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import replace
 from typing import Any
 
@@ -39,7 +39,7 @@ from pn2code.semantics.game.marking import (
     place_text,
 )
 from pn2code.semantics.values.colours import NotFinite
-from pn2code.semantics.values.data import Timed, Value
+from pn2code.semantics.values.data import Timed, Value, zero_signs
 from pn2code.semantics.values.multiset import MultiSet, TimedMultiSet
 
 __all__ = ["Binding", "BindingElement", "Game", "GameError", "Marking", "NotEnabled"]
@@ -198,6 +198,8 @@ class Game:
         self._enter(marking)
         t = self.net.transitions[element.transition]
         reason = self.enabling.why_disabled(t, marking, element.binding)
+        if reason is None and not self._has_signs_of_tokens(t, marking, element.binding):
+            reason = "the sign of a zero is not that of the token"
         if reason is not None or not priorities:
             return reason
         for other in self.net.transitions:
@@ -207,6 +209,17 @@ class Game:
                     text = element_text(self.colours, self.net, BindingElement.make(other, binding))
                     return f"{text} has a higher priority and is enabled"
         return None
+
+    def _has_signs_of_tokens(self, t: FlatTransition, marking: Marking, binding: Binding) -> bool:
+        """Whether the zeros in an enabled binding are those that a search finds: equal ones may differ in the sign."""
+        mine = _signs(binding, binding)
+        if not any(mine):
+            return True
+        return any(
+            all(binding[name] == value for name, value in found.items())
+            and _signs(found, found) == _signs(binding, found)
+            for found in self.enabling.enabled(t, marking)
+        )
 
     def advance_time(self, marking: Marking) -> Marking:
         """The marking at the earliest time, from its own on, at which something is enabled.
@@ -385,6 +398,11 @@ class Game:
             checked = [self._checked(token, place.colset, origin) for token in tokens]
             places[place.index] = self._stamped(place.colset, checked)
         return replace(own, places=tuple(places))
+
+
+def _signs(binding: Binding, names: Iterable[Symbol]) -> list[tuple[bool, ...]]:
+    """For each of the variables the signs of the zeros in its value."""
+    return [tuple(zero_signs(binding[name])) for name in names]
 
 
 def reset(tokens: PlaceMarking, now: float) -> PlaceMarking:

@@ -24,7 +24,7 @@ from __future__ import annotations
 import math
 import struct
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -43,6 +43,21 @@ MIN_INT = -(2**30)
 def is_negative_zero(value: float) -> bool:
     """Whether it is the zero that equals 0.0, but of which `Real.signBit` is true."""
     return value == 0.0 and math.copysign(1.0, value) < 0.0
+
+
+def zero_signs(value: Value) -> Iterator[bool]:
+    """For each zero in a value, in order, whether it is negative."""
+    match value:
+        case float() if value == 0.0:
+            yield is_negative_zero(value)
+        case tuple():
+            for part in value:
+                yield from zero_signs(part)
+        case Data(argument=argument) if argument is not None:
+            yield from zero_signs(argument)
+        case Timed(value=inner, stamp=stamp):
+            yield from zero_signs(inner)
+            yield from zero_signs(stamp)
 
 
 @frozen
