@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: MIT
- * failing.c - preloaded (LD_PRELOAD), makes one call of the operating system fail: FAILING=NAME:N:ERRNO, the N-th call of
- * that name in the program.
+ * failing.c - preloaded (LD_PRELOAD), makes one call of the operating system fail: FAILING=NAME:N:ERRNO, the N-th
+ * call of that name in the program.
  */
 #define _GNU_SOURCE
 

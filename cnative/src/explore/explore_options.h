@@ -70,8 +70,8 @@ typedef enum ex_why {
 typedef struct ex_error {
     char message[256];
     char where[512];
-    const char *
-        kind; /* "capacity": of the place; "heap": it holds more than `most_heaped`; "memory": of lists and strings; "exception" */
+    /* "capacity": of the place; "heap": it has more than `most_heaped`; "memory": of lists and strings; "exception" */
+    const char *kind;
     int64_t place;      /* index, -1: none */
     int64_t transition; /* index, -1: none */
 } ex_error_t;
