@@ -112,7 +112,7 @@ def test_files_that_cannot_be_written_are_refused_first(
     """Before anything is explored or unfolded, which this net would take long for."""
     net = write(MANY.replace("400", "5000"), tmp_path / "many.cpn")
     for name in ("nowhere/net", "folder"):
-        ending = ".pnml" if verb == "convert" else ".svg"
+        ending = {"-o": ".pnml", "--report": ".html"}.get(option, ".svg")
         path = tmp_path / f"{name}{ending}"
         if name == "folder":
             path.mkdir()

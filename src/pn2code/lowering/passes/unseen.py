@@ -44,11 +44,12 @@ def with_seen(net: ir.NetIR) -> ir.NetIR:
 
 def seen(statements: tuple[Stmt, ...]) -> tuple[Stmt, ...]:
     """The statements without those that no evaluation can tell from none."""
+    read = _read(statements)
     while True:
-        less = _without(statements, _read(statements))
-        if less == statements:
-            return less
-        statements = less
+        statements = _without(statements, read)
+        before, read = read, _read(statements)
+        if read == before:
+            return statements
 
 
 def does_nothing(value: Ir) -> bool:
