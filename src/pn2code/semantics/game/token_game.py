@@ -216,7 +216,8 @@ class Game:
         if not any(mine):
             return True
         return any(
-            all(binding[name] == value for name, value in found.items())
+            # As tuples: what is no number is found again, as in a multi-set.
+            tuple(binding[name] for name in found) == tuple(found.values())
             and _signs(found, found) == _signs(binding, found)
             for found in self.enabling.enabled(t, marking)
         )
