@@ -74,7 +74,7 @@ class Commands:
                 return 0 if self._takes_time(self._primitives[symbol.uid], None) else 1
             case core.Var(symbol):
                 body = self._reach.body(symbol)
-                if not isinstance(body, core.Lambda) or symbol.uid in inside:
+                if body is None or symbol.uid in inside:
                     return 0
                 return self._at_once(body, inside | {symbol.uid})
             case core.If(condition, then, otherwise):
