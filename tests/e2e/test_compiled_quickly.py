@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import secrets
+
 import pytest
 
 from helpers.netbuilder import flat
@@ -23,10 +25,11 @@ LOOP = "  fun down n = if n > 0 then 1 + down (n - 1) else 0;\n"
 
 
 def ring(transitions: int, more: str = "", text: str = "n + 1") -> FlatNet:
-    """A token with a number that goes around once, and a switch."""
+    """A token with a number that goes around once, and a switch: of a name for which no program has been kept."""
+    own = secrets.token_hex(8)
     lines = ["net Ring", "  standard", "  colset N = int;", "  var n : N;", *more.splitlines()]
     lines += [f"  place P{i} : N{' = 1`0' * (i == 0)}" for i in range(transitions)]
-    lines += ["  place Off = 1", "  place On"]
+    lines += ["  place Off = 1", "  place On", f"  place Own{own}"]
     for i in range(transitions - 1):
         lines += [f"  trans T{i}", f"    in P{i} : n", f"    out P{i + 1} : {text}"]
     lines += ["  trans Switch", "    in Off : ()", "    out On : ()"]
