@@ -16,7 +16,8 @@ from typing import Any
 
 from pn2code.base.frozen import frozen
 from pn2code.ml.core.colsets import Colset, Kind
-from pn2code.ml.core.types import REAL, UNIT, TCon, TFun, TRecord, Type
+from pn2code.ml.core.reals import may_hold_reals
+from pn2code.ml.core.types import UNIT, TCon, TFun, TRecord, Type
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.evaluation.evaluate import Evaluator
 from pn2code.semantics.values.data import MlException, MlLimit, MlUnavailable, Value
@@ -122,12 +123,13 @@ class _Search:
                 if delta:
                     self._deltas[place][t] = delta
         self._functions = symbolic.functions()
+        datatypes = net.program.datatypes
         self._rows: dict[Type, dict[Projection, dict[int, int]]] = {}
         for p in net.places:
             if p.index in skeleton.resets or p.colset.type == UNIT or not self._deltas[p.index]:
                 continue
             for steps, kind in self._projections(p.colset.type, ()):
-                if not (narrowed and has_real(kind)) and kind != UNIT:
+                if not (narrowed and may_hold_reals(kind, datatypes)) and kind != UNIT:
                     projection = Projection(p.index, steps)
                     self._rows.setdefault(kind, {})[projection] = self._row(projection)
 
@@ -242,17 +244,6 @@ def _component(c: Colset, step: Component) -> Colset | None:
     if c.kind is Kind.RECORD:
         return c.components[c.labels.index(step.label)]
     return None
-
-
-def has_real(t: Type) -> bool:
-    """Whether values of a type may have reals in them, of which equal ones may differ in the sign of a zero."""
-    match t:
-        case TRecord(fields):
-            return any(has_real(x) for _, x in fields)
-        case TCon(_, args):
-            return t == REAL or any(has_real(x) for x in args)
-        case _:
-            return True
 
 
 # --- values --------------------------------------------------------------------------------------

@@ -25,13 +25,13 @@ from typing import Any
 
 from pn2code.base.frozen import frozen
 from pn2code.ml.core import terms as core
+from pn2code.ml.core.reals import may_hold_reals
 from pn2code.ml.core.types import INT
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.values.multiset import MultiSet, TimedMultiSet
 from pn2code.structure import flows
 from pn2code.structure.analysis import start_of, without_resets
 from pn2code.structure.bounds import constant_of, place_bounds
-from pn2code.structure.coloured import has_real
 from pn2code.structure.skeleton import TOKEN, Counter, Flow, Mode, Skeleton, counted, skeleton
 from pn2code.structure.symbolic import Part, Sum, Symbolic, add, scaled
 
@@ -168,7 +168,7 @@ def _kept(net: FlatNet, t: int, flow: Flow, skel: Skeleton) -> frozenset[int]:
         p
         for p, taken in flow.take.items()
         if taken == flow.put.get(p)
-        and not has_real(net.places[p].colset.type)
+        and not may_hold_reals(net.places[p].colset.type, net.program.datatypes)
         and t not in skel.resets.get(p, ())
     )
 
@@ -176,7 +176,8 @@ def _kept(net: FlatNet, t: int, flow: Flow, skel: Skeleton) -> frozenset[int]:
 def _constants(net: FlatNet, flow: Flow, single: frozenset[int]) -> dict[int, core.Exp]:
     found: dict[int, core.Exp] = {}
     for p, taken in flow.take.items():
-        if p in single and len(taken) == 1 and not has_real(net.places[p].colset.type):
+        is_signed = may_hold_reals(net.places[p].colset.type, net.program.datatypes)
+        if p in single and len(taken) == 1 and not is_signed:
             ((part, n),) = taken.items()
             value = part.atom.value
             is_one = n == 1 and not (part.conditions or part.whole or part.steps)

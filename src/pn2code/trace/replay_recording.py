@@ -18,7 +18,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from pn2code.ml.core.colsets import Colset, Kind
+from pn2code.ml.core.reals import may_hold_reals
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
 from pn2code.semantics.evaluation.effects import OUTSIDE, Effect, Effects, outside, texts
@@ -508,7 +508,8 @@ class _Follower:
         action = t.code.action if t.code else None
         full = {**way.binding, **self.outputs(unknown, t, way.binding, step)}
         drawn = self.vague(unknown, action)
-        printed = {s for s in t.variables if _has_real(s.colset)} if way.read or drawn else set()
+        # Reals are printed with fewer digits than they have.
+        printed = {s for s in t.variables if self.is_rounded(s)} if way.read or drawn else set()
         unknown = self.remember(unknown, drawn, action)
         late = unknown.clock or self.vague(unknown, t.delay)
         delay = 0 if late else game.delay(t, full)
@@ -543,6 +544,9 @@ class _Follower:
         path = (state.path, (now, BindingElement.make(t, full)))
         return State(self.game.with_references(after), unknown, self.references.contents(), path)
 
+    def is_rounded(self, s: Symbol) -> bool:
+        return may_hold_reals(s.type, self.net.program.datatypes)
+
     def remember(self, unknown: PartialMarking, drawn: bool, *parts: Any) -> PartialMarking:
         """Evaluating something that is drawn may have put drawn values into references."""
         if drawn and Effect.WRITE in self.effects.of(*parts):
@@ -575,13 +579,6 @@ class _Follower:
                     f"recorded is {_line(step.binding[s.name])}"
                 )
         return found
-
-
-def _has_real(c: Colset | None) -> bool:
-    """Whether values of the colour set are printed with fewer digits than they have."""
-    if c is None:
-        return False
-    return c.kind is Kind.REAL or any(_has_real(part) for part in c.components)
 
 
 def _time(text: str, real: bool) -> int | float | None:

@@ -131,6 +131,32 @@ def test_who_puts_a_zero_first_matters(colset: str, zero: str) -> None:
 
 
 @pytest.mark.parametrize(
+    ("colset", "zero"),
+    [("REAL", "0.0"), ("U", "of_real 0.0"), ("L", "[of_real 0.0]")],
+)
+def test_who_puts_a_token_back_may_change_its_sign(colset: str, zero: str) -> None:
+    text = f"""
+        net Signs
+          colset REAL = real;
+          colset U = union of_real : REAL + other;
+          colset L = list U;
+          var x, y: {colset};
+          place A : {colset} = 1`{zero.replace("0.0", "(~0.0)")}
+          place P : {colset} = 1`{zero}
+          place Q : {colset}
+          trans Left
+            in A : x
+            in P : x
+            out P : x
+          trans Right
+            in P : y
+            out P : y
+            out Q : y
+    """
+    assert rivals(text, "Left") == {"Right"} and rivals(text, "Right") == {"Left"}
+
+
+@pytest.mark.parametrize(
     ("left", "right", "expected"),
     [
         ("seen := 1", "seen := 2", {"Right"}),

@@ -8,9 +8,8 @@ inscription may tell them apart (`Real.signBit`, `1.0 / x`).
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
 
-from pn2code.ml.core.colsets import Colset, Kind
+from pn2code.ml.core.reals import may_hold_reals
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.marking import BindingElement, Marking
 from pn2code.semantics.game.token_game import Game
@@ -92,8 +91,8 @@ class Nodes:
     """Tells the markings of a net apart: by what they hold, and by the signs of zeros in it."""
 
     def __init__(self, net: FlatNet) -> None:
-        has_reals = cache(_has_reals)
-        self._places = [p.index for p in net.places if has_reals(p.colset)]
+        datatypes = net.program.datatypes
+        self._places = [p.index for p in net.places if may_hold_reals(p.colset.type, datatypes)]
 
     def key(self, marking: Marking) -> _Key:
         """Equal for the markings that no inscription can tell apart."""
@@ -107,9 +106,3 @@ class Nodes:
             for token in marking.places[place]
             if any(zero_signs(token))
         )
-
-
-def _has_reals(c: Colset) -> bool:
-    return c.kind is Kind.REAL or any(
-        part is not None and _has_reals(part) for part in c.components
-    )

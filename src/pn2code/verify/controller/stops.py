@@ -10,12 +10,13 @@ that never occurs, and while it is enabled holds back the stop, which comes last
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Set
+from collections.abc import Callable, Iterator, Mapping, Set
 
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.ml.core import terms as core
-from pn2code.ml.core.types import BOOL, REAL, TCon, TFun, TRecord, Type, tuple_of
+from pn2code.ml.core.reals import may_hold_reals
+from pn2code.ml.core.types import BOOL, TFun, tuple_of
 from pn2code.net.builder import Arc
 from pn2code.net.flat import ArcKind, BindEquation, FlatArc, FlatTransition, Form
 from pn2code.net.uses import NetVariables
@@ -87,13 +88,14 @@ def _asked(
     uses = NetVariables(partition.net.program.variables)
     kept = [a for a in inputs if a.place not in late]
     arcs: list[Arc] = []
-    own = [a for a in kept if not _is_condition(a)]
+    datatypes = partition.net.program.datatypes
+    own = [a for a in kept if not _is_condition(a, datatypes)]
     known = _variables(uses, *(a.inscription.value for a in own if a.inscription))
     asked: list[tuple[core.Exp, core.Exp]] = []
     for i, a in enumerate(kept):
         assert a.inscription is not None
         value = a.inscription.value
-        if _is_condition(a):
+        if _is_condition(a, datatypes):
             found = token(a.place, f"found{i}")
             asked.append((found, value))
             value = found
@@ -108,7 +110,7 @@ def _asked(
     return arcs, [*guards, *of_arcs]
 
 
-def _is_condition(arc: FlatArc) -> bool:
+def _is_condition(arc: FlatArc, datatypes: Mapping[str, core.DatatypeDec]) -> bool:
     """Whether the inscription says which token it must be by an expression that binds nothing and may raise."""
     inscription = arc.inscription
     if inscription is None or inscription.form is not Form.TOKEN:
@@ -116,17 +118,9 @@ def _is_condition(arc: FlatArc) -> bool:
     (term,) = inscription.terms
     value = inscription.value
     # Numbers of type `real` have no equality in CPN ML.
-    return term.pattern is None and not is_total(value) and not _has_reals(value.type)
-
-
-def _has_reals(t: Type) -> bool:
-    match t:
-        case TRecord(fields):
-            return any(_has_reals(x) for _, x in fields)
-        case TCon(_, arguments):
-            return t == REAL or any(map(_has_reals, arguments))
-        case _:
-            return True
+    return (
+        term.pattern is None and not is_total(value) and not may_hold_reals(value.type, datatypes)
+    )
 
 
 def _equal(a: core.Exp, b: core.Exp) -> core.Apply:

@@ -58,7 +58,8 @@ from dataclasses import dataclass, field
 
 from pn2code.base.frozen import frozen
 from pn2code.ml.core import terms as core
-from pn2code.ml.core.colsets import Colset, Kind
+from pn2code.ml.core.colsets import Kind
+from pn2code.ml.core.reals import may_hold_reals
 from pn2code.net.flat import (
     ArcKind,
     BindAll,
@@ -284,7 +285,8 @@ class _Relation:
         self.net = net
         self.known = known
         self.single = [colours(p.colset) == 1 for p in net.places]
-        self.signed = [has_reals(p.colset) for p in net.places]
+        datatypes = net.program.datatypes
+        self.signed = [may_hold_reals(p.colset.type, datatypes) for p in net.places]
         self.uses: list[dict[int, _Use]] = []
         self.at = [_Touching() for _ in net.places]
         self.reach = [_reach(t, effects) for t in net.transitions]
@@ -401,12 +403,6 @@ class _Relation:
             r.searches and self.net.transitions[j].priority < t.priority
             for j, r in enumerate(self.reach)
         )
-
-
-def has_reals(colset: Colset) -> bool:
-    """Whether there are reals in its tokens."""
-    own = colset.resolved
-    return own.kind is Kind.REAL or any(has_reals(c) for c in own.components if c is not None)
 
 
 def recurring(consumed: Sequence[Sequence[frozenset[int]]], count: int) -> frozenset[int]:

@@ -45,6 +45,7 @@ from enum import Enum
 
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
+from pn2code.ml.core.reals import may_hold_reals
 from pn2code.net.flat import (
     ArcKind,
     BindAll,
@@ -56,7 +57,6 @@ from pn2code.net.flat import (
     Form,
 )
 from pn2code.net.uses import pattern_variables, walk
-from pn2code.structure.coloured import has_real
 
 
 class How(Enum):
@@ -142,7 +142,8 @@ def accesses(net: FlatNet, t: FlatTransition, place: int) -> Accesses | None:
     colset = net.places[place].colset
     arcs = {a.kind: a for a in t.arcs if a.place == place}
     count = sum(a.place == place for a in t.arcs)
-    if has_real(colset.type) or colset.timed or count != len(arcs):
+    is_signed = may_hold_reals(colset.type, net.program.datatypes)
+    if is_signed or colset.timed or count != len(arcs):
         return None
     match arcs:
         case {ArcKind.BOTH: FlatArc() as tested} if count == 1:
