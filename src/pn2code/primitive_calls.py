@@ -106,7 +106,7 @@ def command(primitive: Primitive, argument: Any) -> commands.Command:
         case "measure":
             return commands.Measure(_pose(argument))
         case "tool":
-            return commands.ToolAction(primitive.action, primitive.duration_s)
+            return commands.ToolAction(primitive.action, primitive.duration_s, primitive.handling)
         case "wait":
             seconds = argument if isinstance(argument, int | float) else primitive.duration_s
             return commands.Wait(float(seconds))

@@ -17,7 +17,7 @@ ALLOWED: dict[str, set[str]] = {
     "pnml": {"diagnostics", "ml", "reading"},
     "tdl": {"diagnostics", "robot"},
     "net": {"diagnostics", "ml", "pnml", "reading"},
-    "cell": {"diagnostics", "ml", "net"},
+    "cell": {"diagnostics", "ml", "net", "robot"},
     "arms": {"cell", "diagnostics", "robot"},
     "semantics": {"diagnostics", "ml", "net"},
     "channels": {"cell"},
@@ -64,6 +64,7 @@ EVERYWHERE = {"base"}
 
 # Of `robot`, the script language and the proofs may know the commands (plain values) only.
 ONLY = {
+    ("cell", "robot"): {"pn2code.robot.commands"},
     ("tdl", "robot"): {"pn2code.robot.commands"},
     ("verify", "robot"): {"pn2code.robot.commands"},
     ("primitive_calls", "robot"): {"pn2code.robot.commands"},

@@ -12,6 +12,7 @@ from pn2code.base.frozen import frozen
 from pn2code.cell.partition import ChannelKind
 from pn2code.cell.toml_file import Locator
 from pn2code.diagnostics import Origin
+from pn2code.robot.commands import Handling
 
 CommandName = Literal["move_joint", "move_linear", "move_home", "measure", "tool", "wait"]
 COMMANDS: tuple[CommandName, ...] = (
@@ -34,6 +35,7 @@ class Primitive:
         frame: of move_linear: "world" (absolute) or "tool" (incremental); None: of the others.
         action: of tool: its name.
         duration_s: of tool: seconds.
+        handling: of tool: what it does to a part.
     """
 
     function: str
@@ -41,6 +43,7 @@ class Primitive:
     frame: Literal["world", "tool"] | None = None
     action: str = ""
     duration_s: float = 0.0
+    handling: Handling | None = None
 
 
 @frozen

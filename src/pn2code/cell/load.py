@@ -31,6 +31,7 @@ from pn2code.cell.tables import KeyPath, Tables
 from pn2code.cell.toml_file import Locator, read
 from pn2code.diagnostics import Diagnostics, Origin, PlacedText
 from pn2code.diagnostics.suggestions import did_you_mean
+from pn2code.robot.commands import EFFECTS, Handling
 
 _TOP = {
     "net",
@@ -46,10 +47,15 @@ _TOP = {
     "sensors",
     "motion",
     "scene",
+    "parts",
+    "places",
     "report",
     "layouts",
     "property",
 }
+
+
+_IN_LAYOUTS = ("robots", "motion", "scene", "parts", "places")
 
 
 def load(path: Path, d: Diagnostics, *, layout: str | None = None) -> CellConfig | None:
@@ -113,8 +119,7 @@ def _config(
                 for name, table in _table(merged.get("robots")).items()
                 if isinstance(table, dict)
             },
-            "motion": merged.get("motion", {}),
-            "scene": merged.get("scene", {}),
+            **{key: merged.get(key, {}) for key in ("motion", "scene", "parts", "places")},
         },
         layouts={
             name: str(t.get("description", ""))
@@ -138,10 +143,10 @@ def _apply_layout(
             r.d.error(codes.CELL_VALUE, f"layout `{name}` must be a table", r.at("layouts", name))
             return "", data
         at: KeyPath = ("layouts", name)
-        r.keys(table, at, {"description", "robots", "motion", "scene"})
+        r.keys(table, at, {"description", *_IN_LAYOUTS})
         r.get(table, at, "description", str, "a text", "")
         known = _table(data.get("robots"))
-        for key in ("robots", "motion", "scene"):
+        for key in _IN_LAYOUTS:
             r.get(table, at, key, dict, "a table", {})
         robots = _table(table.get("robots"))
         for robot in robots:
@@ -342,7 +347,7 @@ def _primitives(r: Tables, data: dict[str, Any]) -> dict[str, Primitive]:
             continue
         own = {
             "move_linear": {"frame"},
-            "tool": {"action", "duration_s"},
+            "tool": {"action", "duration_s", "at", *EFFECTS},
             "wait": {"duration_s"},
         }.get(command, set())
         r.keys(table, at, {"command", *own})
@@ -357,8 +362,46 @@ def _primitives(r: Tables, data: dict[str, Any]) -> dict[str, Primitive]:
             cast(Literal["world", "tool"], frame) if frame else None,
             action,
             r.number(table, at, "duration_s", 0.0, required=tool),
+            _handling(r, data, table, at) if tool else None,
         )
     return out
+
+
+def _handling(
+    r: Tables, data: dict[str, Any], table: dict[str, Any], at: KeyPath
+) -> Handling | None:
+    """What an action does to a part: at most one of the effects, of a kind that is there, at a place that is there."""
+    given = [effect for effect in EFFECTS if effect in table]
+    for effect in given[1:]:
+        r.d.error(
+            codes.CELL_VALUE,
+            f"an action that `{given[0]}` a part cannot be one that `{effect}` a part, too",
+            r.at(*at, effect),
+            hint="make two functions of it, which the net calls one after the other",
+        )
+    is_placed = bool(given) and given[0] in ("creates", "removes")
+    place = r.get(table, at, "at", str, "the name of a place of `[places]`", "", required=is_placed)
+    if "at" in table and not is_placed:
+        r.d.error(
+            codes.CELL_KEY,
+            "`at` says where a part comes into the cell or leaves it, but the action does neither",
+            r.at(*at, "at"),
+            hint="a tool takes and releases parts where it is; remove `at`, or add `creates` or `removes`",
+        )
+    if not given:
+        return None
+    part = r.get(table, at, given[0], str, "a kind of parts", "")
+    for name, key, section in ((part, given[0], "parts"), (place, "at", "places")):
+        known = _table(data.get(section))
+        if name and name not in known:
+            r.d.error(
+                codes.CELL_VALUE,
+                f"`{key}` names `{name}`, but there is no `[{section}.{name}]`",
+                r.at(*at, key),
+                hint=did_you_mean(name, known)
+                or f"add a table `[{section}.{name}]` (docs/robots.md)",
+            )
+    return Handling(given[0], part, place)
 
 
 def _robots(r: Tables, data: dict[str, Any]) -> Iterable[RobotConfig]:

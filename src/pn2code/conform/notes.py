@@ -9,7 +9,8 @@ net orders in the later step; of each variable that the net leaves open there, a
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
 
@@ -40,6 +41,12 @@ class RunNotes:
         self._owner = partition.transition_owner
         self._names = [o.name for o in partition.owners]
         self._actions: dict[str, list[_Action]] = {name: [] for name in self._names[1:]}
+        self._handled: dict[str, list[tuple[str, str]]] = {name: [] for name in self._names[1:]}
+        kinds = config.geometry["parts"]
+        self._created = Counter({kind: len(table.get("at", ())) for kind, table in kinds.items()})
+        self._holder = {
+            f"{kind}.{i + 1}": "" for kind, count in self._created.items() for i in range(count)
+        }
         self._busy_until = dict.fromkeys(self._names[1:], 0.0)
         self._said: dict[str, dict[str, Any]] = {name: {} for name in self._names[1:]}
         self._calls = Calls()
@@ -64,12 +71,31 @@ class RunNotes:
             self._busy_until[robot] = begun + duration
             self._actions[robot].append((str(line.get("action")), duration))
             return None
+        if line["event"] == "part":
+            return self._part(robot, str(line["effect"]), str(line["part"]))
         variable = self._variables.get(str(line.get("sensor")))
         if variable is None:
             return f"there is no sensor `{line.get('sensor')}`"
         if variable in self._said[robot]:
             return f"sensor `{line['sensor']}` gave two values for one step of `{robot}`"
         self._said[robot][variable] = line.get("value")
+        return None
+
+    def _part(self, robot: str, effect: str, part: str) -> str | None:
+        """What has become of a part: it has the next number of its kind, and one holder at most."""
+        kind = part.rpartition(".")[0]
+        if effect == "creates":
+            self._created[kind] += 1
+            if part != f"{kind}.{self._created[kind]}":
+                return f"the next part `{kind}` is `{kind}.{self._created[kind]}`, not `{part}`"
+        elif part not in self._holder:
+            return f"`{robot}` {effect} part `{part}`, which is not there"
+        holder = self._holder.pop(part, "")
+        if holder != (robot if effect == "releases" else ""):
+            return f"`{robot}` {effect} part `{part}`, which {f'`{holder}`' if holder else 'nobody'} holds"
+        if effect != "removes":
+            self._holder[part] = robot if effect == "takes" else ""
+        self._handled[robot].append((effect, kind))
         return None
 
     @contextmanager
@@ -92,6 +118,17 @@ class RunNotes:
         noted, self._actions[robot] = self._actions[robot], []
         if noted != ordered:
             return f"the net makes `{robot}` do {_text(ordered)}, the notes before it say {_text(noted)}"
+        handled, self._handled[robot] = self._handled[robot], []
+        wanted = [
+            (c.handling.effect, c.handling.part)
+            for c in self._calls
+            if isinstance(c, ToolAction) and c.handling
+        ]
+        if handled != wanted:
+            return (
+                f"the net makes `{robot}` do this to parts: {_parts_text(wanted)}; the notes before it say: "
+                f"{_parts_text(handled)}"
+            )
         if ordered and line["t"] < self._busy_until[robot] - _ROUNDING_S:
             return (
                 f"it ends at {line['t']:g} s, but the last action of the tool of `{robot}` in it only at "
@@ -130,6 +167,10 @@ class RunNotes:
 
 def _equal(a: object, b: object) -> bool:
     return a == b and isinstance(a, bool) == isinstance(b, bool)
+
+
+def _parts_text(handled: Sequence[tuple[str, str]]) -> str:
+    return ", ".join(f"it {effect} a `{kind}`" for effect, kind in handled) or "nothing"
 
 
 def _text(actions: list[_Action]) -> str:

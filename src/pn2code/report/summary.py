@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping
 from typing import Any
 
@@ -16,6 +17,8 @@ from pn2code.report.activities import activities, busy_seconds
 from pn2code.robot.kinematics import condition_text
 from pn2code.run.record import RunRecord, merged_rows, summary_counts
 
+MOST_PARTS = 12
+"""on one screen"""
 KINDS = ("joint", "home", "linear", "tool", "measure", "wait")
 
 
@@ -80,10 +83,28 @@ def summarise(
         "conditioning": _conditioning(record, robots, dict(report.count)),
         "accuracy": record.accuracy,
         "pictures": record.pictures,
+        **({"parts": _parts(record)} if record.parts else {}),
         "warnings": [
             {"t": round(w.t, 6), "robot": w.robot, "text": w.text} for w in record.warnings
         ],
     }
+
+
+def _parts(record: RunRecord) -> dict[str, list[dict[str, Any]]]:
+    """Of each part what has become of it: when, by whom, and where it was then (m, degrees)."""
+    out: dict[str, list[dict[str, Any]]] = {}
+    for entry in record.parts:
+        p = entry.change.pose
+        out.setdefault(entry.change.part, []).append(
+            {
+                "t": round(entry.t, 6),
+                "robot": entry.robot,
+                "effect": entry.change.effect,
+                "at": [round(v, 6) for v in (p.x, p.y, p.z)],
+                "turned": [round(math.degrees(v), 4) for v in (p.rx, p.ry, p.rz)],
+            }
+        )
+    return dict(sorted(out.items()))
 
 
 def _minima(record: RunRecord) -> dict[str, Any]:
@@ -162,6 +183,11 @@ def page(summary: dict[str, Any]) -> RenderableType:
             f"conditioning, {robot}",
             f"worst {condition_text(entry['worst'], 1)} at {entry['t']:.2f} s{each}",
         )
+    for part, changes in list(summary.get("parts", {}).items())[:MOST_PARTS]:
+        told = (f"{c['robot']} {c['effect']} it at {c['t']:.2f} s" for c in changes)
+        facts.add_row(f"part {part}", ", ".join(told))
+    if len(summary.get("parts", {})) > MOST_PARTS:
+        facts.add_row("further parts", f"{len(summary['parts']) - MOST_PARTS}, see summary.json")
     for name, value in summary["accuracy"].items():
         facts.add_row(name, f"{value:.2e} mm")
 

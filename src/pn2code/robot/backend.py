@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pn2code.base.frozen import frozen
+from pn2code.robot.parts import Part
 from pn2code.robot.transforms import Array
 
 ClearanceKind = Literal["robots", "scene", "self"]
@@ -57,8 +58,23 @@ class Camera:
     field_of_view: float = 45.0
 
 
+@frozen
+class Beside:
+    """What a part is near to.
+
+    Args:
+        name: of the other thing.
+        distance: m; negative when they overlap.
+        is_below: whether the part lies on it there, or above it.
+    """
+
+    name: str
+    distance: float
+    is_below: bool
+
+
 class Backend(Protocol):
-    """Robots at joint positions, distances, pictures."""
+    """Robots at joint positions, parts, distances, pictures."""
 
     @property
     def name(self) -> BackendName:
@@ -75,6 +91,18 @@ class Backend(Protocol):
 
         Pairs that may touch (`allowed`) are listed as well, each on its own, when they are near. None:
         this backend does not measure distances.
+        """
+
+    def set_part(self, part: Part) -> None:
+        """Shows a part where it is from now on: in the world, or in the tool of the robot that carries it."""
+
+    def remove_part(self, name: str) -> None:
+        """The part has left the cell."""
+
+    def around(self, name: str, limit: float) -> tuple[Beside, ...] | None:
+        """The closest points of a part and each thing that stands, nearer than `limit` (m); the robots are left out.
+
+        None: this backend does not measure distances.
         """
 
     def render(self, camera: Camera, width: int, height: int) -> Picture | None:

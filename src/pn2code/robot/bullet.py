@@ -14,7 +14,7 @@ import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -22,16 +22,26 @@ from typing import Any
 import numpy as np
 from lxml import etree
 
+from pn2code.base.frozen import frozen
 from pn2code.robot import urdf
-from pn2code.robot.backend import BackendName, Camera, Clearance, ClearanceKind, Picture
+from pn2code.robot.backend import (
+    BackendName,
+    Beside,
+    Camera,
+    Clearance,
+    ClearanceKind,
+    Picture,
+)
 from pn2code.robot.commands import Pose
-from pn2code.robot.geometry import Body, Solid, bodies
+from pn2code.robot.geometry import Body, Solid, bodies, body_of
 from pn2code.robot.looks import Look
+from pn2code.robot.parts import Part
 from pn2code.robot.scene import CellRobot, RobotCell
-from pn2code.robot.transforms import Array
+from pn2code.robot.transforms import Array, pose_of
 
 _SKY = (148.0, 166.0, 186.0)
 _HORIZON = (236.0, 239.0, 242.0)
+_UPRIGHT = 0.7  # of the normal where a part lies on something: at most 45 degrees steep
 _FIRST_GUESS = 0.05  # m: searched first; most queries find their answer this near to the last one
 
 
@@ -75,6 +85,40 @@ class _Standing:
     id: int
 
 
+@dataclass(slots=True)
+class _Placed:
+    """A part in PyBullet."""
+
+    part: Part
+    id: int
+
+
+@frozen
+class _Side:
+    """One of two bodies between which something is measured.
+
+    Args:
+        robot: whose it is, "" if it stands.
+        links: names by index, of a robot; whole: the name of a body without links.
+        base: the robot whose base link it has; ignored_by: robots that stand on it.
+    """
+
+    robot: str
+    id: int
+    links: dict[int, str]
+    whole: str = ""
+    base: str = ""
+    ignored_by: tuple[str, ...] = ()
+
+    @property
+    def key(self) -> str:
+        return self.whole or self.robot
+
+    def link(self, index: int) -> str:
+        """The name of a link."""
+        return self.whole or self.links[index]
+
+
 class BulletBackend:
     """PyBullet without a window, or with one (`gui`)."""
 
@@ -108,6 +152,8 @@ class BulletBackend:
                 )
             self._robots = {r.name: self._load_robot(r, looks) for r in cell.robots}
             self._scene = [self._load_body(b, looks) for b in bodies(cell)]
+        self._looks = looks
+        self._parts: dict[str, _Placed] = {}
         self._guess: dict[tuple[str, ...], float] = {}
         # What was measured since the robots concerned moved last: (kind, robots...) -> answer.
         self._known: dict[tuple[str, ...], list[Clearance]] = {}
@@ -207,6 +253,51 @@ class BulletBackend:
         self._p.resetJointStatesMultiDof(
             loaded.body, loaded.joints, [[float(v)] for v in q], physicsClientId=self._client
         )
+        for placed in self._parts.values():
+            if placed.part.holder == robot:
+                self._move(placed)
+
+    def set_part(self, part: Part) -> None:
+        """Shows a part where it is from now on."""
+        placed = self._parts.get(part.name)
+        if placed is None:
+            shape = replace(part.kind.shape, name=part.name)
+            with _silent():
+                placed = _Placed(part, self._load_body(body_of(shape), self._looks).id)
+            self._parts[part.name] = placed
+        placed.part = part
+        self._known = {}
+        self._move(placed)
+
+    def _move(self, placed: _Placed) -> None:
+        frame = placed.part.frame
+        if placed.part.holder:
+            frame = self.tcp(placed.part.holder) @ frame
+        pose = pose_of(frame)
+        self._p.resetBasePositionAndOrientation(
+            placed.id,
+            (pose.x, pose.y, pose.z),
+            self._p.getQuaternionFromEuler((pose.rx, pose.ry, pose.rz)),
+            physicsClientId=self._client,
+        )
+
+    def remove_part(self, name: str) -> None:
+        """The part has left the cell."""
+        self._p.removeBody(self._parts.pop(name).id, physicsClientId=self._client)
+        self._known = {}
+
+    def around(self, name: str, limit: float) -> tuple[Beside, ...] | None:
+        """The closest points of a part and each thing that stands."""
+        own = self._parts[name]
+        out = []
+        for side in self._standing():
+            if side.id == own.id:
+                continue
+            found = self._p.getClosestPoints(own.id, side.id, limit, physicsClientId=self._client)
+            if found:
+                c = min(found, key=lambda point: float(point[8]))
+                out.append(Beside(side.whole, float(c[8]), float(c[7][2]) > _UPRIGHT))
+        return tuple(sorted(out, key=lambda b: b.distance))
 
     def tcp(self, robot: str) -> Array:
         """`T_world_tcp` as PyBullet has it."""
@@ -234,53 +325,68 @@ class BulletBackend:
             for b in robots[i + 1 :]:
                 key = ("robots", me, b.robot.name)
                 if key not in self._known:
-                    self._known[key] = self._between(
-                        "robots", a, f"{b.robot.name}/", b.body, b.links, limit, skip_base=False
-                    )
+                    self._known[key] = self._robots_apart(a, b, limit)
                 out += self._known[key]
             if ("scene", me) not in self._known:
                 self._known["scene", me] = [
                     gap
-                    for s in self._scene
-                    for gap in self._between(
-                        "scene",
-                        a,
-                        s.body.name,
-                        s.id,
-                        None,
-                        limit,
-                        skip_base=me in s.body.ignored_by,
-                    )
+                    for side in self._sides(a)
+                    for other in self._standing()
+                    for gap in self._between("scene", side, other, limit)
                 ]
-                self._known["self", me] = self._self(a, limit)
+                self._known["self", me] = [*self._self(a, limit), *self._carried(a, limit)]
             out += self._known["scene", me] + self._known["self", me]
         return tuple(_closest(out))
 
-    def _between(
-        self, kind: ClearanceKind, a: _Loaded, other: str, body: int,
-        links: dict[int, str] | None, limit: float, *, skip_base: bool,
-    ) -> list[Clearance]:  # fmt: skip
-        key = (kind, a.robot.name, other)
+    def _robots_apart(self, a: _Loaded, b: _Loaded, limit: float) -> list[Clearance]:
+        """Between two robots, with what they carry."""
+        return [
+            gap
+            for one in self._sides(a)
+            for other in self._sides(b)
+            for gap in self._between("robots", one, other, limit)
+        ]
+
+    def _sides(self, a: _Loaded) -> Iterator[_Side]:
+        """A robot, and the part that it carries."""
+        name = a.robot.name
+        links = {i: f"{name}/{link}" for i, link in a.links.items()}
+        yield _Side(name, a.body, links, "", a.robot.name)
+        for part in self._parts.values():
+            if part.part.holder == name:
+                whole = f"{name}/{part.part.name}"
+                yield _Side(name, part.id, {}, whole)
+
+    def _standing(self) -> Iterator[_Side]:
+        """What stands: the scene, and parts that nobody carries."""
+        for thing in self._scene:
+            yield _Side("", thing.id, {}, thing.body.name, ignored_by=thing.body.ignored_by)
+        for part in self._parts.values():
+            if not part.part.holder:
+                yield _Side("", part.id, {}, part.part.name)
+
+    def _between(self, kind: ClearanceKind, a: _Side, b: _Side, limit: float) -> list[Clearance]:
+        key = (kind, a.key, b.key)
         reach = min(limit, self._guess.get(key, _FIRST_GUESS))
+        skip_base = a.base != "" and a.base in b.ignored_by
         while True:
-            found = self._p.getClosestPoints(a.body, body, reach, physicsClientId=self._client)
+            found = self._p.getClosestPoints(a.id, b.id, reach, physicsClientId=self._client)
             best: Clearance | None = None
             touching: dict[tuple[str, str], Clearance] = {}
             for c in found:
                 if skip_base and c[3] == -1:
                     continue
-                name_a = f"{a.robot.name}/{a.links[c[3]]}"
-                name_b = other if links is None else other + links[c[4]]
+                name_a, name_b = a.link(c[3]), b.link(c[4])
                 allowed = self._allowed(name_a, name_b)
                 if allowed is not None:
                     old = touching.get((name_a, name_b))
                 elif best is None or c[8] < best.distance:
-                    best = Clearance(kind, a.robot.name, name_a, name_b, c[8], None, c[5])
+                    best = Clearance(kind, a.robot, name_a, name_b, c[8], None, c[5])
                     continue
                 else:
                     continue
                 if old is None or c[8] < old.distance:
-                    item = Clearance(kind, a.robot.name, name_a, name_b, c[8], allowed, c[5])
+                    item = Clearance(kind, a.robot, name_a, name_b, c[8], allowed, c[5])
                     touching[name_a, name_b] = item
             if best is not None or reach >= limit:
                 break
@@ -289,6 +395,24 @@ class BulletBackend:
         near = limit if best is None else max(best.distance, 0.0)
         self._guess[key] = near + _FIRST_GUESS
         return [*touching.values(), best] if best is not None else list(touching.values())
+
+    def _carried(self, a: _Loaded, limit: float) -> list[Clearance]:
+        """Between the part that a robot carries and the robot itself, but for its tool and the last axis."""
+        name = a.robot.name
+        last = a.joints[-1]
+        near = {i for i, link in a.links.items() if link.startswith("tool_") or i >= last}
+        best: Clearance | None = None
+        for side in self._sides(a):
+            for i in a.links if not side.links else ():
+                if i in near:
+                    continue
+                for c in self._p.getClosestPoints(
+                    side.id, a.body, limit, -1, i, physicsClientId=self._client
+                ):
+                    if best is None or c[8] < best.distance:
+                        other = f"{name}/{a.links[i]}"
+                        best = Clearance("self", name, side.whole, other, c[8], None, c[5])
+        return [] if best is None else [best]
 
     def _self(self, a: _Loaded, limit: float) -> list[Clearance]:
         key = ("self", a.robot.name)

@@ -43,6 +43,12 @@ ROBOT_HOME = register(
     "Each run begins with all robots at HOME. An arm that touches another one, the scene or itself there would stop "
     "the run at once. Distances are measured with PyBullet; without it a note says that they are not checked.",
 )
+ROBOT_PART = register(
+    "robot-part",
+    "a part overlaps something at the start",
+    "The poses of `at` in `[parts.KIND]` say where parts are when a run begins. Overlaps above 1 mm are measured "
+    "with PyBullet, as at HOME.",
+)
 ROBOT_REACH = register(
     "robot-reach",
     "a robot cannot reach a constant pose",

@@ -10,6 +10,8 @@ from typing import Literal
 from pn2code.base.frozen import frozen
 
 Frame = Literal["world", "tool"]
+Effect = Literal["takes", "releases", "creates", "removes"]
+EFFECTS: tuple[Effect, ...] = ("takes", "releases", "creates", "removes")
 
 
 @frozen
@@ -52,11 +54,31 @@ class MoveLinear:
 
 
 @frozen
+class Handling:
+    """What an action does to a part, at its end.
+
+    Args:
+        effect: the tool takes it, or lets it go; or a part comes into the cell, or leaves it.
+        part: the kind of part.
+        place: where it comes or leaves, a name of `[places]`; "" for what a tool does: at its TCP.
+    """
+
+    effect: Effect
+    part: str
+    place: str = ""
+
+    def __str__(self) -> str:
+        """As in a script."""
+        return f"{self.effect} {self.part}" + (f" at {self.place}" if self.place else "")
+
+
+@frozen
 class ToolAction:
-    """An action of the end effector (drill, insert, ...) that takes `duration` seconds."""
+    """An action of the end effector (drill, insert, ...) that takes `duration` seconds, and what it does to a part."""
 
     action: str
     duration: float
+    handling: Handling | None = None
 
 
 @frozen

@@ -6,7 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from pn2code.robot.backend import BackendName, Camera, Clearance, Picture
+from pn2code.robot.backend import BackendName, Beside, Camera, Clearance, Picture
+from pn2code.robot.parts import Part
 from pn2code.robot.scene import RobotCell
 from pn2code.robot.transforms import Array
 
@@ -30,6 +31,16 @@ class FakeBackend:
         return np.asarray(r.T_world_base @ r.kinematics.forward(self._q[robot]))
 
     def clearances(self, limit: float) -> tuple[Clearance, ...] | None:
+        """None: distances are not known here."""
+        return None
+
+    def set_part(self, part: Part) -> None:
+        """Nothing is shown or measured."""
+
+    def remove_part(self, name: str) -> None:
+        """Nothing is shown or measured."""
+
+    def around(self, name: str, limit: float) -> tuple[Beside, ...] | None:
         """None: distances are not known here."""
         return None
 

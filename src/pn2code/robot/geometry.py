@@ -20,7 +20,8 @@ from pn2code.robot import looks
 from pn2code.robot.commands import Pose
 from pn2code.robot.looks import Look
 from pn2code.robot.panel import FLANGE, cut, frame, stand_parts, stand_places, stringers
-from pn2code.robot.scene import PanelConfig, RobotCell, SceneObject
+from pn2code.robot.scene import PanelConfig, RobotCell
+from pn2code.robot.scene_objects import SceneObject
 from pn2code.robot.transforms import Array, matrix_of, pose_of
 
 
@@ -67,7 +68,7 @@ def bodies(cell: RobotCell) -> tuple[Body, ...]:
             out.append(_pedestal(robot.name, robot.base))
     if scene.panel is not None:
         out += panel_bodies(scene.panel)
-    out += [_object(o) for o in scene.objects]
+    out += [body_of(o) for o in scene.objects]
     return tuple(out)
 
 
@@ -153,7 +154,8 @@ def _stands(p: PanelConfig) -> Body:
     return Body("panel/stand", tuple(solids), partial(looks.stands, p))
 
 
-def _object(o: SceneObject) -> Body:
+def body_of(o: SceneObject) -> Body:
+    """An object as a body."""
     if o.kind == "box":
         return Body(o.name, (Solid("box", o.pose, o.size),), partial(looks.thing, o))
     if o.kind == "cylinder":

@@ -11,26 +11,28 @@ from __future__ import annotations
 
 import fnmatch
 import math
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
 from pn2code.base.frozen import frozen
-from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.diagnostics.keys import in_words
+from pn2code.diagnostics import Diagnostics
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes
 from pn2code.robot.commands import Pose
 from pn2code.robot.kinematics import BRANCH_NAMES, Branch, Kinematics
 from pn2code.robot.model import AXES, Arm, Tool, find_arm, find_tool
 from pn2code.robot.motion import MotionLimits
+from pn2code.robot.parts_table import PartKind, read_kinds, read_places
+from pn2code.robot.scene_objects import SceneObject, read_object
+from pn2code.robot.scene_table import Locate, SceneTable, is_number, read_pose
 from pn2code.robot.transforms import Array, matrix_of
 
-Locate = Callable[..., Origin]
-"""Origin of a key, given its path: `Locator.origin` of `pn2code.cell.toml_file`."""
+PART_CONTACT = 1e-3
+"""m: parts are taken from what they rest on, and tools touch them: so deep they may overlap."""
 
 
 @frozen
@@ -87,31 +89,6 @@ class PanelConfig:
     stringer_height: float = 0.025
     stands: bool = True
     joint: bool = False
-
-
-Colour = tuple[float, float, float, float]
-
-
-@frozen
-class SceneObject:
-    """A further thing in the cell: a box, a cylinder along its z, or a mesh.
-
-    Args:
-        size: of a box: full lengths.
-        radius: of a cylinder; length likewise.
-        mesh: path of an OBJ or STL file; collisions are checked against its convex hull.
-        scale: of a mesh.
-    """
-
-    name: str
-    kind: Literal["box", "cylinder", "mesh"]
-    pose: Pose
-    colour: Colour = (0.6, 0.6, 0.62, 1.0)
-    size: tuple[float, float, float] = (0.0, 0.0, 0.0)
-    radius: float = 0.0
-    length: float = 0.0
-    mesh: Path | None = None
-    scale: float = 1.0
 
 
 @frozen
@@ -179,11 +156,18 @@ class SceneConfig:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class RobotCell:
-    """Robots, motion limits and scene: what backends, monitor and executors are built from."""
+    """Robots, motion limits, scene and parts: what backends, monitor and executors are built from.
+
+    Args:
+        parts: the kinds of parts that are carried, by name.
+        places: poses in the world that have a name.
+    """
 
     robots: tuple[CellRobot, ...]
     motion: MotionConfig
     scene: SceneConfig
+    parts: Mapping[str, PartKind] = field(default_factory=dict)
+    places: Mapping[str, Pose] = field(default_factory=dict)
 
     def robot(self, name: str) -> CellRobot:
         """The robot of that name; KeyError if there is none."""
@@ -209,146 +193,28 @@ def load(
         partial: robots of which nothing is said are left out; without, it is an error.
     """
     before = len(d.errors)
-    motion = _motion(_Table(geometry.get("motion", {}), ("motion",), at, d, geometry))
+    motion = _motion(SceneTable(geometry.get("motion", {}), ("motion",), at, d, geometry))
     robots = tuple(
         robot
         for name, table in geometry.get("robots", {}).items()
         if (table or not partial)
-        and (robot := _robot(_Table(table, ("robots", name), at, d, geometry), name, folder))
+        and (robot := _robot(SceneTable(table, ("robots", name), at, d, geometry), name, folder))
         is not None
     )
     names = tuple(geometry.get("robots", {}))
+    kinds = read_kinds(SceneTable(geometry.get("parts", {}), ("parts",), at, d, geometry), folder)
+    places = read_places(SceneTable(geometry.get("places", {}), ("places",), at, d, geometry))
     scene = _scene(
-        _Table(geometry.get("scene", {}), ("scene",), at, d, geometry), robots, names, folder
+        SceneTable(geometry.get("scene", {}), ("scene",), at, d, geometry),
+        robots,
+        names,
+        kinds,
+        folder,
     )
-    return RobotCell(robots, motion, scene) if len(d.errors) == before else None
+    return RobotCell(robots, motion, scene, kinds, places) if len(d.errors) == before else None
 
 
-class _Table:
-    """Typed access to one table, reporting what is wrong; unknown keys by `done`."""
-
-    def __init__(
-        self, data: Any, path: tuple[str | int, ...], at: Locate, d: Diagnostics, whole: object
-    ) -> None:
-        self.path, self._at, self.d, self._whole = path, at, d, whole
-        self._used: list[str] = []
-        self.data: Mapping[str, Any] = data if isinstance(data, Mapping) else {}
-        if not isinstance(data, Mapping):
-            d.error(codes.ROBOT_VALUE, f"{self._words()} must be a table", at(*path))
-
-    def at(self, key: str = "") -> Origin:
-        return self._at(*self.path, key) if key else self._at(*self.path)
-
-    def _words(self, *key: str) -> str:
-        return in_words((*self.path, *key), self._whole)
-
-    def wrong(self, key: str, expected: str, hint: str = "") -> None:
-        self.d.error(
-            codes.ROBOT_VALUE,
-            f"{self._words(key)} is `{self.data[key]}`, but {expected} is expected",
-            self.at(key),
-            hint=hint,
-        )
-
-    def has(self, key: str, required: bool, expected: str) -> bool:
-        self._used.append(key)
-        if key not in self.data and required:
-            self.d.error(
-                codes.ROBOT_KEY,
-                f"{self._words(key)} is missing",
-                self.at(),
-                hint=f"add `{key} = ...`: {expected}",
-            )
-        return key in self.data
-
-    def number(
-        self,
-        key: str,
-        default: float | None = None,
-        *,
-        low: float = -math.inf,
-        high: float = math.inf,
-        open_low: bool = False,
-    ) -> float:
-        bounds = f" {'above' if open_low else 'from'} {low:g}" if low > -math.inf else ""
-        bounds += f" to {high:g}" if high < math.inf else ""
-        expected = f"a number{bounds}"
-        fallback = 1.0 if default is None else default
-        if not self.has(key, default is None, expected):
-            return fallback
-        value = self.data[key]
-        if not _is_number(value) or not (low < value if open_low else low <= value) or value > high:
-            self.wrong(key, expected)
-            return fallback
-        return float(value)
-
-    def positive(self, key: str, default: float | None = None, *, high: float = math.inf) -> float:
-        return self.number(key, default, low=0.0, high=high, open_low=True)
-
-    def numbers(self, key: str, count: int | None, default: tuple[float, ...]) -> tuple[float, ...]:
-        expected = "a list of numbers" if count is None else f"a list of {count} numbers"
-        if not self.has(key, False, expected):
-            return default
-        value = self.data[key]
-        if (
-            not isinstance(value, list)
-            or not all(map(_is_number, value))
-            or len(value) != (len(value) if count is None else count)
-        ):
-            self.wrong(key, expected)
-            return default
-        return tuple(map(float, value))
-
-    def text(self, key: str, default: str | None = None, expected: str = "a name") -> str:
-        if not self.has(key, default is None, expected):
-            return default or ""
-        value = self.data[key]
-        if not isinstance(value, str) or not value:
-            self.wrong(key, expected)
-            return default or ""
-        return value
-
-    def flag(self, key: str, default: bool) -> bool:
-        if not self.has(key, False, "true or false"):
-            return default
-        if not isinstance(self.data[key], bool):
-            self.wrong(key, "`true` or `false`")
-            return default
-        return bool(self.data[key])
-
-    def table(self, key: str) -> _Table:
-        self._used.append(key)
-        return _Table(self.data[key], (*self.path, key), self._at, self.d, self._whole)
-
-    def tables(self, key: str) -> list[_Table]:
-        self._used.append(key)
-        value = self.data.get(key, [])
-        if not isinstance(value, list):
-            self.wrong(key, "a list of tables")
-            return []
-        return [
-            _Table(v, (*self.path, key, i), self._at, self.d, self._whole)
-            for i, v in enumerate(value)
-        ]
-
-    def done(self) -> None:
-        for key in self.data:
-            if key not in self._used:
-                self.d.error(
-                    codes.ROBOT_KEY,
-                    f"unknown key `{key}` in {self._words()}",
-                    self.at(key),
-                    hint=did_you_mean(
-                        key, self._used, f"known keys: {', '.join(sorted(set(self._used)))}"
-                    ),
-                )
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-
-
-def _motion(t: _Table) -> MotionConfig:
+def _motion(t: SceneTable) -> MotionConfig:
     out = MotionConfig(
         joint_speed=t.positive("joint_speed", 0.5, high=1.0),
         joint_acceleration=math.radians(t.positive("joint_acceleration_deg_s2", 200.0)),
@@ -364,23 +230,13 @@ def _motion(t: _Table) -> MotionConfig:
     return out
 
 
-def _pose(t: _Table, key: str, *, required: bool = False) -> Pose:
-    if not t.has(key, required, "a table { x, y, z, roll, pitch, yaw }: m, degrees"):
-        return Pose(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    p = t.table(key)
-    x, y, z = (p.number(k, 0.0) for k in ("x", "y", "z"))
-    rx, ry, rz = (math.radians(p.number(k, 0.0)) for k in ("roll", "pitch", "yaw"))
-    p.done()
-    return Pose(x, y, z, rx, ry, rz)
-
-
-def _robot(t: _Table, name: str, folder: Path) -> CellRobot | None:
+def _robot(t: SceneTable, name: str, folder: Path) -> CellRobot | None:
     t.has("instance", False, "")  # the pages of the net are not our business
     model = t.text("model", None, "the name of a robot model, or a .urdf file")
     arm = find_arm(model, folder, t.at("model"), t.d) if model else None
     tool_name = t.text("tool", "none", "the name of an end effector, or a .urdf file")
     tool = None if tool_name == "none" else find_tool(tool_name, folder, t.at("tool"), t.d)
-    base = _pose(t, "base", required=True)
+    base = read_pose(t, "base", required=True)
     home_deg = t.numbers("home", AXES, (0.0, -90.0, 90.0, 0.0, 0.0, 0.0))
     branch_name = t.text("branch", "any")
     if branch_name != "any" and branch_name not in BRANCH_NAMES:
@@ -405,14 +261,19 @@ def _robot(t: _Table, name: str, folder: Path) -> CellRobot | None:
 
 
 def _scene(
-    t: _Table, robots: tuple[CellRobot, ...], names: tuple[str, ...], folder: Path
+    t: SceneTable,
+    robots: tuple[CellRobot, ...],
+    names: tuple[str, ...],
+    kinds: Mapping[str, PartKind],
+    folder: Path,
 ) -> SceneConfig:
     panel = _panel(t.table("panel")) if t.has("panel", False, "") else None
     depth = t.number("tool_contact_depth", 0.0, low=0.0)
     contacts = _default_contacts(robots, depth) if depth > 0.0 else []
-    objects = tuple(o for e in t.tables("objects") if (o := _object(e, folder)) is not None)
-    _named_once(t, objects)
-    things = [*names, "panel", "floor", *(o.name for o in objects)]
+    objects = tuple(o for e in t.tables("objects") if (o := read_object(e, folder)) is not None)
+    contacts += _gripping(robots, kinds, objects)
+    _named_once(t, objects, kinds)
+    things = [*names, "panel", "floor", *(o.name for o in objects), *(f"{k}.1" for k in kinds)]
     for c in t.tables("contacts"):
         contacts.append(_contact(c, things))
     out = SceneConfig(
@@ -426,7 +287,7 @@ def _scene(
     return out
 
 
-def _contact(t: _Table, things: list[str]) -> ContactRule:
+def _contact(t: SceneTable, things: list[str]) -> ContactRule:
     """A rule for parts of things that are there."""
     rule = ContactRule(t.text("a"), t.text("b"), t.number("depth", 0.0, low=0.0))
     t.done()
@@ -456,7 +317,25 @@ def _default_contacts(robots: tuple[CellRobot, ...], depth: float) -> list[Conta
     return touching + meeting
 
 
-def _panel(t: _Table) -> PanelConfig:
+def _gripping(
+    robots: tuple[CellRobot, ...],
+    kinds: Mapping[str, PartKind],
+    objects: tuple[SceneObject, ...],
+) -> list[ContactRule]:
+    """The tools' contact links may touch parts, and parts that are carried what they are taken from and put on."""
+    tips = [f"{r.name}/tool_{x}" for r in robots if r.tool for x in r.tool.contact_links]
+    things = ["floor", "panel/*", *(o.name for o in objects), *(f"{kind}.*" for kind in kinds)]
+    return [
+        rule
+        for kind in kinds
+        for rule in (
+            *(ContactRule(tip, f"{kind}.*", PART_CONTACT) for tip in tips),
+            *(ContactRule(f"*/{kind}.*", thing, PART_CONTACT) for thing in things),
+        )
+    ]
+
+
+def _panel(t: SceneTable) -> PanelConfig:
     out = PanelConfig(
         radius=t.positive("radius"),
         axis_y=t.number("axis_y"),
@@ -478,23 +357,14 @@ def _panel(t: _Table) -> PanelConfig:
     t.done()
     for low, high in (("x_from", "x_to"), ("arc_from", "arc_to")):
         both = (t.data.get(low), t.data.get(high))
-        if all(map(_is_number, both)) and not getattr(out, low) < getattr(out, high):
+        if all(map(is_number, both)) and not getattr(out, low) < getattr(out, high):
             t.wrong(high, f"a number above `{low}`")
     return out
 
 
-def _colour(t: _Table) -> Colour:
-    """Red, green, blue, and how opaque."""
-    grey = (0.6, 0.6, 0.62)
-    found = t.numbers("colour", None, grey)
-    if len(found) not in (3, 4) or not all(0.0 <= v <= 1.0 for v in found):
-        t.wrong("colour", "a list of three or four numbers from 0 to 1")
-        found = grey
-    r, g, b = found[:3]
-    return (r, g, b, found[3] if len(found) == 4 else 1.0)
-
-
-def _named_once(t: _Table, objects: tuple[SceneObject, ...]) -> None:
+def _named_once(
+    t: SceneTable, objects: tuple[SceneObject, ...], kinds: Mapping[str, PartKind]
+) -> None:
     """Reports names that two objects have: messages and contact rules name them."""
     seen: set[str] = set()
     for o in objects:
@@ -506,31 +376,10 @@ def _named_once(t: _Table, objects: tuple[SceneObject, ...]) -> None:
                 hint="give each a name of its own",
             )
         seen.add(o.name)
-
-
-def _object(t: _Table, folder: Path) -> SceneObject | None:
-    name = t.text("name")
-    kind = t.text("kind", "box", "`box`, `cylinder` or `mesh`")
-    pose = _pose(t, "pose")
-    colour = _colour(t)
-    out: SceneObject | None = None
-    if kind == "box":
-        t.has("size", True, "three numbers: full lengths, m")
-        x, y, z = t.numbers("size", 3, (1.0, 1.0, 1.0))
-        if min(x, y, z) <= 0.0:
-            t.wrong("size", "three numbers above 0")
-        out = SceneObject(name, "box", pose, colour, size=(x, y, z))
-    elif kind == "cylinder":
-        radius, length = t.positive("radius"), t.positive("length")
-        out = SceneObject(name, "cylinder", pose, colour, radius=radius, length=length)
-    elif kind == "mesh":
-        file = folder / t.text("file", None, "an OBJ or STL file, relative to cell.toml")
-        if "file" in t.data and not (file.is_file() and file.suffix.lower() in (".obj", ".stl")):
-            t.wrong("file", "the path of an OBJ or STL file that exists")
-        scale = t.positive("scale", 1.0)
-        out = SceneObject(name, "mesh", pose, colour, mesh=file, scale=scale)
-    else:
-        t.wrong("kind", "`box`, `cylinder` or `mesh`")
-        return None
-    t.done()
-    return out
+        if o.name.split(".")[0] in kinds:
+            t.d.error(
+                codes.ROBOT_VALUE,
+                f"an object of the scene and a kind of parts are called `{o.name.split('.')[0]}`",
+                t.at("objects"),
+                hint="give each a name of its own",
+            )

@@ -277,6 +277,17 @@ class StepTranslator:
                 span,
                 codes.PRIMITIVE,
             )
+        handling = primitive.handling
+        if (
+            self.machine.owner.kind is OwnerKind.DEVICE
+            and handling
+            and handling.effect in ("takes", "releases")
+        ):
+            raise UnsupportedError(
+                f"`{name}` {handling.effect} a part, but device `{self.machine.owner.name}` has no arm",
+                span,
+                codes.PRIMITIVE,
+            )
         if command in ("move_joint", "move_linear", "measure"):
             if not (isinstance(argument, Scalar) and argument.type is tdl.Type.POSE):
                 raise UnsupportedError(
@@ -301,7 +312,7 @@ class StepTranslator:
             self._nodes.append(Line(t.Move(t.Motion.JOINT, None)))
         elif command == "tool":
             duration = t.Quantity(primitive.duration_s, "s")
-            self._nodes.append(Line(t.Tool(primitive.action, duration)))
+            self._nodes.append(Line(t.Tool(primitive.action, duration, handling)))
         else:
             if argument == Rec(()):
                 duration_exp: t.Expression = t.Quantity(primitive.duration_s, "s")

@@ -28,6 +28,7 @@ from pn2code.emission.output import Block, OutputFile
 from pn2code.robot.backend import Backend
 from pn2code.robot.commands import (
     Command,
+    Handling,
     Measure,
     MoveHome,
     MoveJoint,
@@ -39,12 +40,20 @@ from pn2code.robot.commands import (
 from pn2code.robot.executor import Motion, RobotExecutor
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion import MotionFault
+from pn2code.robot.parts import PartFault
 from pn2code.robot.scene import RobotCell
-from pn2code.robot.transforms import Array, pose_of
+from pn2code.robot.transforms import Array, matrix_of, pose_of
 from pn2code.run.accuracy import distance, distance_to_line
 from pn2code.run.device import DeviceExecutor
 from pn2code.run.files import RobotFiles
-from pn2code.run.record import ActionRecord, ActivityRecord, MessageRecord, RunRecord
+from pn2code.run.handling import PartKeeper
+from pn2code.run.record import (
+    ActionRecord,
+    ActivityRecord,
+    MessageRecord,
+    PartRecord,
+    RunRecord,
+)
 from pn2code.run.sensors import Sensors
 from pn2code.run.supervisor import SupervisorProcess
 from pn2code.tdl.check import CheckedProgram
@@ -164,6 +173,7 @@ class Engine:
     observers: list[Observer] = field(default_factory=list)
     now: float = 0.0
     activity: str = ""
+    parts: PartKeeper = field(init=False)
     _next_model_time: float | None = None
     _answer_due: float = math.inf
     _steps: Iterator[int] = field(default_factory=lambda: itertools.count(1))
@@ -175,12 +185,13 @@ class Engine:
 
     def __post_init__(self) -> None:
         """Of each transition by name: its XML id, and to whom it writes messages."""
-        parts = self.partition
-        readers = {c.place: parts.owners[c.reader].name for c in parts.channels}
-        self._ids = {t.name: t.id for t in parts.net.transitions}
+        divided = self.partition
+        readers = {c.place: divided.owners[c.reader].name for c in divided.channels}
+        self.parts = PartKeeper(self.cell, self.backend)
+        self._ids = {t.name: t.id for t in divided.net.transitions}
         self._commanded = {
             t.name: tuple({readers[a.place] for a in t.arcs if a.place in readers})
-            for t in parts.net.transitions
+            for t in divided.net.transitions
         }
 
     def add_robot(
@@ -232,6 +243,10 @@ class Engine:
         return [r for r in self.robots if r.arm is not None]
 
     def _begin_run(self) -> None:
+        try:
+            self.parts.begin()
+        except PartFault as fault:
+            raise CellStoppedError(str(fault)) from None
         self._sample(0.0, {r.name: r.joints(0.0) for r in self._arms()})
         for observer in self.observers:
             observer.begun(self)
@@ -439,7 +454,29 @@ class Engine:
             arm = robot.arm.robot
             reached = pose_of(arm.T_world_base @ arm.kinematics.forward(robot.arm.q))
             self.record.note_error("TCP off the commanded pose", distance(reached, motion.target))
+        if isinstance(motion.command, ToolAction) and motion.command.handling is not None:
+            self._handle(robot, motion.command.handling)
         self._follow(robot, motion.result)
+
+    def _handle(self, robot: RobotRunner, handling: Handling) -> None:
+        """What an action that has ended has done to a part."""
+        tcp = matrix_of(robot.arm.pose) if robot.arm is not None else None
+        try:
+            change = self.parts.handle(robot.name, handling, tcp)
+        except PartFault as fault:
+            where = robot.element_at(robot.line)
+            at = f" (net transition {where})" if where else ""
+            raise CellStoppedError(f"{robot.script}:{robot.line}{at}: {fault}") from None
+        self.record.parts.append(PartRecord(self.now, robot.name, change))
+        self.record.events.append(
+            {
+                "t": self.now,
+                "event": "part",
+                "robot": robot.name,
+                "effect": change.effect,
+                "part": change.part,
+            }
+        )
 
     def _heard(self, event: Event) -> None:
         """Events of an interpreter: occurrences of net transitions, messages consumed and written."""

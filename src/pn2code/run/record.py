@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from pn2code.robot.monitor import Verdict
+from pn2code.robot.parts import PartChange
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -46,6 +47,15 @@ class MessageRecord:
     t: float
     channel: str
     values: tuple[float | int | str | bool, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class PartRecord:
+    """What has become of a part: time (s), robot or device, what it did."""
+
+    t: float
+    robot: str
+    change: PartChange
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +107,7 @@ class RunRecord:
     messages: list[MessageRecord] = field(default_factory=list)
     traffic: list[tuple[str, MessageRecord]] = field(default_factory=list)
     """what was "taken" and "written" by robots and devices, in order"""
+    parts: list[PartRecord] = field(default_factory=list)
     activities: list[ActivityRecord] = field(default_factory=list)
     warnings: list[RunWarning] = field(default_factory=list)
     sample_t: list[float] = field(default_factory=list)

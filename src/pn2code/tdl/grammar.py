@@ -10,7 +10,8 @@ from typing import Final
 KEYWORDS: Final = (
     "program", "input", "output", "const", "var", "procedure", "begin", "end", "single",
     "move", "home", "in", "at", "speed", "default", "wait", "until", "read", "into", "clear", "write", "signal",
-    "tool", "for", "measure", "sense", "mark", "with", "null", "stop", "call", "return", "goto", "exit", "when",
+    "tool", "takes", "releases", "creates", "removes", "for",
+    "measure", "sense", "mark", "with", "null", "stop", "call", "return", "goto", "exit", "when",
     "if", "then", "elsif", "else", "while", "loop",
     "and", "or", "not", "div", "mod", "true", "false",
 )  # fmt: skip
@@ -41,7 +42,8 @@ read: "read" NAME "into" NAME ("," NAME)*
 clear: "clear" NAME
 write: "write" NAME (SIGNAL | expression ("," expression)*)
 assign: NAME ":=" expression
-tool: TOOL (NAME | STRING) "for" expression
+tool: TOOL (NAME | STRING) handling? "for" expression
+handling: EFFECT (NAME | STRING) ("at" (NAME | STRING))?
 measure: "measure" expression "into" NAME
 sense: "sense" (NAME | STRING) "into" NAME
 mark: "mark" (NAME ("." NAME)* | STRING) ("with" binding ("," binding)*)?
@@ -91,6 +93,7 @@ TRUE: "true"
 FALSE: "false"
 HOME: "home"
 TOOL: "tool"
+EFFECT: "takes" | "releases" | "creates" | "removes"
 SPEED: "speed"
 SIGNAL: "signal"
 SINGLE: "single"

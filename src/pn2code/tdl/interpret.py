@@ -437,8 +437,8 @@ class Interpreter:
                 )
             case t.WaitTime(duration):
                 return commands.Wait(self._duration(duration))
-            case t.Tool(action, duration):
-                return commands.ToolAction(action, self._duration(duration))
+            case t.Tool(action, duration, handling):
+                return commands.ToolAction(action, self._duration(duration), handling)
             case t.Measure(nominal):
                 pose = cast(ScriptPose, evaluate(nominal, self))
                 self._measuring = (s, pose, self._pose(nominal))

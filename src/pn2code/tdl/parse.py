@@ -18,6 +18,7 @@ from lark.tree import Meta
 from pn2code.base.parser_cache import kept_lark
 from pn2code.diagnostics import Diagnostics, Origin, SourceText, Span
 from pn2code.diagnostics.expected import listed, literal
+from pn2code.robot.commands import Effect, Handling
 from pn2code.tdl import codes
 from pn2code.tdl import tree as t
 from pn2code.tdl.grammar import GRAMMAR, KEYWORDS
@@ -349,7 +350,10 @@ class _Builder(Transformer[Token, Any]):
         return t.Assign(self._target(c[0]), c[1], self._span(meta))
 
     def tool(self, meta: Meta, c: list[Any]) -> t.Tool:
-        return t.Tool(_word(c[1]), c[2], self._span(meta))
+        return t.Tool(_word(c[1]), c[-1], c[2] if len(c) > 3 else None, self._span(meta))
+
+    def handling(self, _meta: Meta, c: list[Token]) -> Handling:
+        return Handling(cast(Effect, str(c[0])), _word(c[1]), *map(_word, c[2:]))
 
     def measure(self, meta: Meta, c: list[Any]) -> t.Measure:
         return t.Measure(c[0], self._target(c[1]), self._span(meta))

@@ -9,6 +9,7 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import Final, assert_never
 
+from pn2code.robot.commands import Handling
 from pn2code.tdl import tree as t
 from pn2code.tdl.grammar import KEYWORDS
 from pn2code.tdl.types import MAX_INT, MIN_INT
@@ -22,6 +23,13 @@ _LEVEL: Final[dict[str, int]] = {
 }  # fmt: skip
 _NOT, _NEGATE, _POSTFIX = 3, 7, 8
 _ESCAPES: Final = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\t": "\\t", "\r": "\\r"}
+
+
+def _handled(handling: Handling | None) -> str:
+    if handling is None:
+        return ""
+    at = f" at {word(handling.place)}" if handling.place else ""
+    return f" {handling.effect} {word(handling.part)}{at}"
 
 
 def is_name(text: str) -> bool:
@@ -146,8 +154,8 @@ def simple(s: t.Simple) -> str:
             return f"write {file.name} {', '.join(expression(v) for v in values) or 'signal'}"
         case t.Assign(target, value):
             return f"{target.name} := {expression(value)}"
-        case t.Tool(action, duration):
-            return f"tool {word(action)} for {expression(duration)}"
+        case t.Tool(action, duration, handling):
+            return f"tool {word(action)}{_handled(handling)} for {expression(duration)}"
         case t.Measure(nominal, target):
             return f"measure {expression(nominal)} into {target.name}"
         case t.Sense(sensor, target):

@@ -16,6 +16,7 @@ from typing import Final, Literal
 
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import NOWHERE, SourceText, Span
+from pn2code.robot.commands import Handling
 from pn2code.tdl.types import Type
 
 GENERATED: Final = Span(SourceText("", NOWHERE), 0, 0)
@@ -252,10 +253,11 @@ class Assign:
 
 @frozen
 class Tool:
-    """`tool drill for 3 s`."""
+    """`tool drill for 3 s`, `tool grip takes blank for 0.5 s`, `tool feed creates blank at slot for 1 s`."""
 
     action: str
     duration: Expression
+    handling: Handling | None = None
     span: Span = field(default=GENERATED, compare=False, repr=False)
 
 

@@ -20,6 +20,7 @@ _STEP = {"step": int, "t": float, "transition": str, "binding": dict, "origin": 
 _NOTES: Mapping[str, Mapping[str, type]] = {
     "end": {"t": float, "event": str, "why": str},
     "tool": {"t": float, "event": str, "robot": str, "action": str, "duration": float},
+    "part": {"t": float, "event": str, "robot": str, "effect": str, "part": str},
     "sense": {"t": float, "event": str, "robot": str, "sensor": str, "value": object},
 }
 _MORE: Mapping[str, Mapping[str, type]] = {

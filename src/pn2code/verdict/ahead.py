@@ -19,8 +19,10 @@ from pn2code.robot.choose_backend import open_backend
 from pn2code.robot.commands import MoveJoint, MoveLinear
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor
+from pn2code.robot.parts import PartFault
 from pn2code.robot.scene import RobotCell
 from pn2code.robot_scripts.ir import Chain, Line, Node, Region, Repeat, RobotIR
+from pn2code.run.handling import PartKeeper
 from pn2code.run.sensors import load as load_sensors
 from pn2code.tdl import tree as t
 from pn2code.tdl.evaluate import ScriptError, ScriptPose, ScriptValue, evaluate
@@ -69,9 +71,18 @@ def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> No
         )
         return
     try:
+        PartKeeper(cell, backend).begin()
         verdict = Monitor(cell, backend).check(
             0.0, {r.name: RobotExecutor(r, cell.motion).q for r in cell.robots}
         )
+    except PartFault as fault:
+        d.error(
+            codes.ROBOT_PART,
+            f"at the start{where}: {fault}",
+            config.locator.origin("parts"),
+            hint="change `at` of the kind of parts, or move what it overlaps",
+        )
+        return
     finally:
         backend.close()
     if verdict.fault is not None:

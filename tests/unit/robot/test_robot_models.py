@@ -19,7 +19,7 @@ def test_files_are_up_to_date():
 
 def test_library_names():
     assert known_arms() == ("kr120_r2500", "kr210_r2700")
-    assert known_tools() == ("counterpoint", "drill_riveter")
+    assert known_tools() == ("counterpoint", "drill_riveter", "vacuum_gripper")
 
 
 def volume(mesh):

@@ -354,6 +354,30 @@ def _counterpoint() -> dict[str, tuple[Shapes, Parts]]:
     }
 
 
+def _vacuum_gripper() -> dict[str, tuple[Shapes, Parts]]:
+    """Vacuum gripper: a mounting plate, an ejector with its hose, a mast, and one suction cup."""
+    body = {
+        "grey": rod("z", 0.0, 0.02, 0.09, (0, 0, 0), 0.005)
+        + block((-0.05, -0.05, 0.02), (0.05, 0.05, 0.075), 0.012, 0.004),
+        "dark": block((0.05, -0.025, 0.025), (0.085, 0.025, 0.07), 0.006),
+        "blue": rod("y", 0.05, 0.075, 0.008, (0.0, 0.0, 0.05), 0.002),
+        "steel": bolts("z", 0.02, 0.075, 6, 0.007),
+    }
+    mast = rod("z", 0.075, 0.16, 0.016, (0, 0, 0), 0.003)
+    cup = lathe("z", [(0.15, 0.018), (0.165, 0.028), (0.172, 0.021), (0.184, 0.033), (0.2, 0.038)])
+    return {
+        "body": (
+            body,
+            [
+                _cylinder("z", 0.0, 0.02, 0.09, (0, 0, 0)),
+                _box((-0.05, -0.05, 0.02), (0.085, 0.075, 0.075)),
+            ],
+        ),
+        "nose": ({"steel": mast}, [_cylinder("z", 0.075, 0.15, 0.016, (0, 0, 0))]),
+        "tip": ({"dark": cup}, [_cylinder("z", 0.15, 0.20, 0.038, (0, 0, 0))]),
+    }
+
+
 def _link(
     name: str, stem: str, folder: str, content: tuple[Shapes, Parts] | None, out: dict[str, str]
 ) -> str:
@@ -449,6 +473,7 @@ def files() -> dict[str, str]:
         _arm(spec, out)
     _tool("drill_riveter", 0.5, _drill(), out)
     _tool("counterpoint", 0.5, _counterpoint(), out)
+    _tool("vacuum_gripper", 0.2, _vacuum_gripper(), out)
     return dict(sorted(out.items()))
 
 

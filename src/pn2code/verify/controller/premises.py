@@ -34,6 +34,10 @@ _REACHED = (
     "arms get to where they are told to go, and nothing is in their way (limits and singularities on the way, "
     "increments and collisions show in a run)"
 )
+_PARTS = (
+    "tools find the parts that they take, hold them until they release them, and put them down where they can stand, "
+    "and nothing is where a part comes into the cell (a run shows it)"
+)
 _MOTIONS = frozenset({"move_joint", "move_linear", "move_home", "measure"})
 
 _SENSORS = "each possible value of a sensor occurs from time to time"
@@ -50,6 +54,7 @@ class Premises:
         sensors: whether programs ask sensors.
         moving: whether a run in lock-step might do too much in one moment if moves took no time.
         moves: whether programs move arms: a move that is not possible stops its program.
+        parts: whether programs do something to parts: what is not possible stops its program.
     """
 
     replies: Replies = Replies()
@@ -58,6 +63,7 @@ class Premises:
     sensors: bool = False
     moving: bool = False
     moves: bool = False
+    parts: bool = False
 
     @staticmethod
     def of(
@@ -82,6 +88,7 @@ class Premises:
             partition.net.timed or bool(used),
             bool(config.sensors),
             moves=not _MOTIONS.isdisjoint(used.values()),
+            parts=any(config.primitives[name].handling for name in used),
         )
 
     def of_check(self, name: str, answer: str) -> tuple[str, ...]:
@@ -109,7 +116,11 @@ class Premises:
 
     def _of_moves(self) -> list[str]:
         """Those of an answer that needs the cell to go on."""
-        return [*([_MOVING] if self.moving else []), *([_REACHED] if self.moves else [])]
+        return [
+            *([_MOVING] if self.moving else []),
+            *([_REACHED] if self.moves else []),
+            *([_PARTS] if self.parts else []),
+        ]
 
 
 def _is_possibility(asked: m.Asked) -> bool:

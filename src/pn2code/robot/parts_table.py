@@ -1,0 +1,75 @@
+"""`[parts]` and `[places]` of cell.toml: what is carried, where it is at the start, and poses with a name.
+
+[parts.blank]
+kind = "box"
+size = [0.10, 0.10, 0.05]
+at = [{ x = 1.2, y = 0.0, z = 0.525 }]        # one part for each pose
+grips = [{ z = 0.025, roll = 180.0 }]         # where the TCP is in the part's frame when it is gripped
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+
+from pn2code.base.frozen import frozen
+from pn2code.robot import codes
+from pn2code.robot.commands import Pose
+from pn2code.robot.scene_objects import SceneObject, read_shape
+from pn2code.robot.scene_table import NO_POSE, SceneTable, read_own_pose
+
+
+@frozen
+class PartKind:
+    """A kind of part.
+
+    Args:
+        shape: its geometry, in its own frame.
+        at: where the parts are that are there at the start.
+        grips: where the TCP may be when it is gripped, in the frame of the part; empty: at its origin, however turned.
+        tolerance: how far the TCP may be from there, m; angle: and how far it may be turned, rad.
+    """
+
+    name: str
+    shape: SceneObject
+    at: tuple[Pose, ...] = ()
+    grips: tuple[Pose, ...] = ()
+    tolerance: float = 0.005
+    angle: float = math.radians(5.0)
+
+
+def read_kinds(t: SceneTable, folder: Path) -> dict[str, PartKind]:
+    """The kinds of parts, by name; what is wrong is reported."""
+    out = {}
+    for name in t.data:
+        table = t.table(name)
+        _check_name(t, name)
+        shape = read_shape(table, name, NO_POSE, folder)
+        at = tuple(map(read_own_pose, table.tables("at")))
+        grips = tuple(map(read_own_pose, table.tables("grips")))
+        tolerance = table.positive("grip_tolerance", 0.005)
+        angle = math.radians(table.positive("grip_angle_deg", 5.0, high=180.0))
+        if shape is not None:
+            table.done()
+            out[name] = PartKind(name, shape, at, grips, tolerance, angle)
+    return out
+
+
+def read_places(t: SceneTable) -> dict[str, Pose]:
+    """The poses that have a name, in the world."""
+    out = {}
+    for name in t.data:
+        _check_name(t, name)
+        out[name] = read_own_pose(t.table(name))
+    return out
+
+
+def _check_name(t: SceneTable, name: str) -> None:
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name):
+        t.d.error(
+            codes.ROBOT_VALUE,
+            f"`{name}` is not a name for {t.path[0]}",
+            t.at(name),
+            hint="a letter, then letters, digits and `_`",
+        )
