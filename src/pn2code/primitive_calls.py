@@ -95,14 +95,19 @@ def _unknown(function: str, _argument: Any) -> Unknown:
 
 def command(primitive: Primitive, argument: Any) -> commands.Command:
     """What the robot is told by a call: poses in m and rad."""
+    speed = primitive.speed
+    if primitive.command in ("move_joint", "move_linear") and len(argument) == 2:
+        argument, speed = argument
     match primitive.command:
+        # The factors are those of scripts (`pn2code.tdl`), so that speeds are equal to the last digit.
         case "move_joint":
-            return commands.MoveJoint(_pose(argument))
+            return commands.MoveJoint(_pose(argument), 1.0 if speed is None else speed * 0.01)
         case "move_linear":
             assert primitive.frame is not None, "an entry without a frame is an error"
-            return commands.MoveLinear(_pose(argument), primitive.frame)
+            metres = None if speed is None else speed / 1000.0
+            return commands.MoveLinear(_pose(argument), primitive.frame, metres)
         case "move_home":
-            return commands.MoveHome()
+            return commands.MoveHome(1.0 if speed is None else speed * 0.01)
         case "measure":
             return commands.Measure(_pose(argument))
         case "tool":

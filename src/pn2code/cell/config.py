@@ -36,6 +36,8 @@ class Primitive:
         action: of tool: its name.
         duration_s: of tool: seconds.
         handling: of tool: what it does to a part.
+        speed: of moves: as in a script, mm/s of the TCP on a line, else percent of the speeds of the axes; None: that
+            which the function takes beside the pose, or that of the cell.
     """
 
     function: str
@@ -44,6 +46,7 @@ class Primitive:
     action: str = ""
     duration_s: float = 0.0
     handling: Handling | None = None
+    speed: float | None = None
 
 
 @frozen

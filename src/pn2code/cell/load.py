@@ -346,7 +346,9 @@ def _primitives(r: Tables, data: dict[str, Any]) -> dict[str, Primitive]:
         if command not in COMMANDS:
             continue
         own = {
-            "move_linear": {"frame"},
+            "move_joint": {"speed"},
+            "move_linear": {"frame", "speed"},
+            "move_home": {"speed"},
             "tool": {"action", "duration_s", "at", *EFFECTS},
             "wait": {"duration_s"},
         }.get(command, set())
@@ -363,8 +365,23 @@ def _primitives(r: Tables, data: dict[str, Any]) -> dict[str, Primitive]:
             action,
             r.number(table, at, "duration_s", 0.0, required=tool),
             _handling(r, data, table, at) if tool else None,
+            _speed(r, table, at, is_line=command == "move_linear"),
         )
     return out
+
+
+def _speed(r: Tables, table: dict[str, Any], at: KeyPath, *, is_line: bool) -> float | None:
+    """The speed of a move as in a script: mm/s, or percent of the speeds of the axes."""
+    if "speed" not in table:
+        return None
+    speed = r.number(table, at, "speed", 0.1, above=0.0)
+    if not is_line and speed > 1.0:
+        r.d.error(
+            codes.CELL_VALUE,
+            f"`speed` is {speed:g}, but a fraction of the speeds of the axes is expected, at most 1",
+            r.at(*at, "speed"),
+        )
+    return speed * (1000.0 if is_line else 100.0)
 
 
 def _handling(

@@ -30,8 +30,8 @@ from pn2code.net.uses import walk
 
 _POSE = {"x", "y", "z", "rx", "ry", "rz"}
 _TAKES: dict[CommandName, str] = {
-    "move_joint": "POSE -> unit",
-    "move_linear": "POSE -> unit",
+    "move_joint": "POSE -> unit` or `POSE * real -> unit",
+    "move_linear": "POSE -> unit` or `POSE * real -> unit",
     "move_home": "unit -> unit",
     "measure": "POSE -> POSE",
     "tool": "unit -> unit",
@@ -118,6 +118,13 @@ class _Checker:
                     if "POSE" in _TAKES[primitive.command]
                     else [],
                     hint=_other_commands(symbol.type),
+                )
+            elif primitive.speed is not None and moves_at_speed(symbol.type):
+                self.d.error(
+                    codes.PRIMITIVE_ENTRY,
+                    f"`{name}` takes a speed, and the entry has one, too",
+                    self.config.locator.origin("primitives", name, "speed"),
+                    hint="remove `speed`, or let the function take the pose alone",
                 )
             elif primitive.command == "wait" and symbol.type.argument == UNIT:  # type: ignore[union-attr]
                 if not primitive.duration_s:
@@ -367,13 +374,22 @@ def _is_pose(t: Type) -> bool:
     )
 
 
+def moves_at_speed(t: Type) -> bool:
+    """Whether a function takes a pose and a speed: mm/s on a line, else percent of the speeds of the axes."""
+    match t:
+        case TFun(TRecord((("1", pose), ("2", speed))), _):
+            return _is_pose(pose) and speed in (REAL, INT)
+        case _:
+            return False
+
+
 def _fits(t: Type, primitive: Primitive) -> bool:
     if not isinstance(t, TFun):
         return False
     takes, gives = t.argument, t.result
     match primitive.command:
         case "move_joint" | "move_linear":
-            return _is_pose(takes) and gives == UNIT
+            return (_is_pose(takes) or moves_at_speed(t)) and gives == UNIT
         case "measure":
             return _is_pose(takes) and _is_pose(gives)
         case "wait":

@@ -13,6 +13,7 @@ in a merged trace the cause stands before its effects.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 
@@ -41,6 +42,7 @@ from pn2code.robot_scripts.values import (
     UnsupportedError,
     Value,
     as_quantity,
+    as_real,
     choose,
     conjunction,
     equal,
@@ -288,6 +290,14 @@ class StepTranslator:
                 span,
                 codes.PRIMITIVE,
             )
+        speed = primitive.speed
+        motion = t.Motion.LINEAR if command == "move_linear" else t.Motion.JOINT
+        at: t.Expression | None = None
+        if speed is not None:
+            at = t.Quantity(speed, "mm/s" if motion is t.Motion.LINEAR else "%")
+        elif isinstance(argument, Rec) and len(argument.fields) == 2 and command != "wait":
+            at = self._speed(motion, argument.get("2"), span)
+            argument = argument.get("1")
         if command in ("move_joint", "move_linear", "measure"):
             if not (isinstance(argument, Scalar) and argument.type is tdl.Type.POSE):
                 raise UnsupportedError(
@@ -306,10 +316,9 @@ class StepTranslator:
                 (target,) = self.names.shared([output], Leaf(tdl.Type.POSE), element, avoid)
                 self._nodes.append(Line(t.Measure(argument.exp, t.Target(target))))
                 return Scalar(t.Name(target), tdl.Type.POSE)
-            motion = t.Motion.JOINT if command == "move_joint" else t.Motion.LINEAR
-            self._nodes.append(Line(t.Move(motion, argument.exp, primitive.frame)))
+            self._nodes.append(Line(t.Move(motion, argument.exp, primitive.frame, at)))
         elif command == "move_home":
-            self._nodes.append(Line(t.Move(t.Motion.JOINT, None)))
+            self._nodes.append(Line(t.Move(motion, None, None, at)))
         elif command == "tool":
             duration = t.Quantity(primitive.duration_s, "s")
             self._nodes.append(Line(t.Tool(primitive.action, duration, handling)))
@@ -322,6 +331,30 @@ class StepTranslator:
                 raise UnsupportedError(f"`{name}` takes a number of seconds", span, codes.PRIMITIVE)
             self._nodes.append(Line(t.WaitTime(duration_exp)))
         return Rec(())
+
+    def _speed(self, motion: t.Motion, given: Value, span: Span) -> t.Expression:
+        """The speed that a function takes beside the pose; one that is known is possible."""
+        assert isinstance(given, Scalar), "the cell has been checked"
+        if motion is t.Motion.LINEAR:
+            at, most, unit = as_quantity(given, tdl.Type.SPEED).exp, math.inf, "mm/s"
+        else:
+            percent = as_real(given).exp
+            at, most, unit = t.Binary("*", percent, t.Quantity(1.0, "%")), 1.0, ""
+            if isinstance(percent, t.Value) and isinstance(percent.value, int | float):
+                at = t.Quantity(float(percent.value), "%")
+        try:
+            known = evaluate(at, _Constants(self.names.constant_values))
+        except (ScriptError, KeyError):
+            return at
+        if isinstance(known, int | float) and not 0 < known <= most:
+            shown = f"{known:g} {unit}" if unit else f"{100 * known:g} %"
+            raise UnsupportedError(
+                f"no robot can move at {shown}: a speed is above zero"
+                + (", and at most 100 %" if most == 1.0 else ""),
+                span,
+                codes.PRIMITIVE,
+            )
+        return at
 
     def _lasting(self, duration: t.Expression, span: Span) -> t.Expression:
         """A duration that is not known to be negative."""

@@ -198,7 +198,7 @@ def refusal(partition: Partition, found: Exploration, keep: Keeper) -> Check | N
     else:
         says = (
             f"the script of {owner.phrase} stops in {where}: an exception, or what no robot can carry out (a time "
-            "that is negative, a number that is not finite)"
+            "that is negative, a speed that is not possible, a number that is not finite)"
         )
     says += "; this stops the whole cell"
     t = (partition.net.transitions[index].name,)

@@ -14,6 +14,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from itertools import count
 
+from pn2code.cell.config import Primitive
 from pn2code.cell.partition import Partition
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import BOOL, INT, REAL, TFun, TRecord, Type, tuple_of
@@ -42,7 +43,9 @@ def refusing(partition: Partition, moves: Sequence[Bad] = ()) -> FlatNet:
         replace(
             d,
             bindings=tuple(
-                (s, make.primitive(f) if s.uid in partition.primitives else f)
+                (s, make.primitive(f, partition.primitives[s.uid]))
+                if s.uid in partition.primitives
+                else (s, f)
                 for s, f in d.bindings
             ),
         )
@@ -73,13 +76,13 @@ class _Refusal:
         self._true = true
         self._uids = uids
 
-    def primitive(self, function: core.Lambda) -> core.Lambda:
+    def primitive(self, function: core.Lambda, primitive: Primitive) -> core.Lambda:
         """The function, with an argument that a robot can carry out."""
         t = function.type
         assert isinstance(t, TFun)
         symbol = core.Symbol(next(self._uids), "argument", t.argument)
         value = core.Var(symbol, t.argument, function.span)
-        conditions = self._of_argument(value)
+        conditions = self._of_argument(value, primitive)
         if not conditions:
             return function
         result: core.Exp = core.Apply(function, value, t.result, function.span)
@@ -88,8 +91,15 @@ class _Refusal:
         pattern = core.PVar(symbol, t.argument, function.span)
         return replace(function, rules=(core.Rule(pattern, result, function.span),))
 
-    def _of_argument(self, value: core.Var) -> list[core.Exp]:
+    def _of_argument(self, value: core.Exp, primitive: Primitive) -> list[core.Exp]:
         match value.type:
+            case TRecord((("1", pose), ("2", speed))):
+                at = value.span
+                own = core.Select("2", value, speed, at)
+                return [
+                    *self._of_argument(core.Select("1", value, pose, at), primitive),
+                    *_of_speed(own, primitive),
+                ]
             case TRecord(fields):
                 parts = [core.Select(label, value, t, value.span) for label, t in fields]
                 return [_is_finite(x) for x in parts if x.type == REAL]
@@ -143,6 +153,20 @@ class _Refusal:
         pattern = core.PCon(self._true, None, BOOL, value.span)
         rule = core.Rule(pattern, value, value.span)
         return core.Case(condition, (rule,), value.type, value.span)
+
+
+def _of_speed(value: core.Exp, primitive: Primitive) -> list[core.Exp]:
+    """A speed is above zero, and of a joint move at most 100 percent."""
+    is_real = value.type == REAL
+    name = "Real" if is_real else "Int"
+
+    def literal(number: int) -> core.Exp:
+        return core.Lit(float(number) if is_real else number, value.type, value.span)
+
+    out = [_compared(f"{name}.>", value, literal(0), value.type)]
+    if primitive.command == "move_joint":
+        out.append(_compared(f"{name}.<=", value, literal(100), value.type))
+    return [*out, _is_finite(value)] if is_real else out
 
 
 def _is_finite(value: core.Exp) -> core.Exp:
