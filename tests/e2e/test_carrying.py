@@ -122,8 +122,19 @@ MISTAKES: dict[str, tuple[Callable[[], tuple[str, str]], str]] = {
     "two effects": (
         lambda: (NET, changed(TOML, 'takes = "box"', 'takes = "box", releases = "box"')),
         "an action that `takes` a part cannot be one that `releases` a part, too"),
+    "taken for ever": (
+        lambda: (NET, changed(TOML, ', releases = "box"', "")),
+        "`grip` takes a part `box`, but no primitive releases one: the tool would hold it for ever"),
+    "never taken": (
+        lambda: (NET, changed(TOML, ', takes = "box"', "")),
+        "`release` releases a part `box`, but no primitive takes one: so there is none to release"),
+    "never there": (
+        lambda: (NET, changed(TOML, ', creates = "box", at = "infeed"', "")),
+        "`grip` takes a part `box`, but there is never one in the cell"),
     "a device that takes": (
-        lambda: (NET, changed(TOML, 'creates = "box", at = "infeed"', 'takes = "box"')),
+        lambda: (NET, changed(
+            changed(TOML, 'creates = "box", at = "infeed"', 'takes = "box"'),
+            "[places.infeed]", "at = [{ x = 3.0 }]\n[places.infeed]")),
         "`feed` takes a part, but device `feeder` has no arm"),
 }  # fmt: skip
 

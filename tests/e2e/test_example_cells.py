@@ -67,6 +67,10 @@ EXAMPLES = {
         {},
         ("supervisor", "robot1", "robot2", "robot3"),
     ),
+    "palletiser": Expected(
+        "palletiser", ("Supervisor", "supervisor.svg"), 81, 1, {"boxes": 8}, {"n": 8},
+        ("supervisor", "robot", "conveyor"),
+    ),
     "timed": Expected(
         "timed", ("Supervisor", "supervisor.svg"), 31014, 1668,
         {"beads": 3, "repairs": 2, "interruptions": 2, "answers": 2, "timeouts": 1, "late": 1},

@@ -24,7 +24,7 @@ from typer.testing import CliRunner
 from pn2code.cli.main import app
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
-CELLS = ("riveting", "sorting", "shared-zone", "timed")
+CELLS = ("riveting", "sorting", "shared-zone", "timed", "palletiser")
 NETS = ("philosophers/philosophers.cpn", "timed/timed.cpn", "riveting/cell.cpn")
 RESULTS = (
     "refused",

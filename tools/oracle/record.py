@@ -1,9 +1,9 @@
 """`./dev record`: what the engine of CPN Tools says of the example nets, kept in `tests/golden/engine`.
 
-    python -m tools.oracle.record [--random]
+    python -m tools.oracle.record [--random | EXAMPLE...]
 
-Of each net: whether it is accepted, the numbers of its state space, and a random run to its end; with `--random`, of
-some random nets the same with their initial markings, in `tests/golden/engine_random.json`.
+Of each net, or of those that are named: whether it is accepted, the numbers of its state space, and a random run to
+its end; with `--random`, of some random nets the same with their initial markings, in `tests/golden/engine_random.json`.
 `tests/e2e/test_engine_answers.py` compares them with pn2code, without the engine. To be called again when an example
 changes.
 """
@@ -88,7 +88,9 @@ def record(arguments: Sequence[str]) -> int:
         if arguments == ["--random"]:
             random_nets()
             return 0
-        known = nets()
+        known = [net for net in nets() if not arguments or net.parent.name in arguments]
+        if len(known) < len(arguments):
+            raise NoOracleError(f"known examples: {', '.join(n.parent.name for n in nets())}")
         tries = [engine.run(known, steps=STEPS, seed=seed) for seed in SEEDS]
         runs = [
             max(some, key=lambda r: len(r.get("steps", ()))) for some in zip(*tries, strict=True)

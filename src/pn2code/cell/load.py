@@ -31,7 +31,7 @@ from pn2code.cell.tables import KeyPath, Tables
 from pn2code.cell.toml_file import Locator, read
 from pn2code.diagnostics import Diagnostics, Origin, PlacedText
 from pn2code.diagnostics.suggestions import did_you_mean
-from pn2code.robot.commands import EFFECTS, Handling
+from pn2code.robot.commands import EFFECTS, Effect, Handling
 
 _TOP = {
     "net",
@@ -130,6 +130,7 @@ def _config(
         raw=data,
         locator=locator.in_layout(chosen),
     )
+    _check_handling(r, data, config.primitives)
     return replace(config, report=_report(r, data, config))
 
 
@@ -419,6 +420,39 @@ def _handling(
                 or f"add a table `[{section}.{name}]` (docs/robots.md)",
             )
     return Handling(given[0], part, place)
+
+
+_NEEDS: dict[Effect, tuple[Effect, str]] = {
+    "takes": ("releases", "the tool would hold it for ever, and grip no other one"),
+    "releases": ("takes", "so there is none to release"),
+}
+
+
+def _check_handling(r: Tables, data: dict[str, Any], primitives: Mapping[str, Primitive]) -> None:
+    """Parts that are taken are released, and the other way round; and they come from somewhere."""
+    done: dict[str, dict[Effect, str]] = {}
+    for name, primitive in primitives.items():
+        if primitive.handling:
+            done.setdefault(primitive.handling.part, {})[primitive.handling.effect] = name
+    for part, by in done.items():
+        for effect, name in by.items():
+            other, why = _NEEDS.get(effect, (effect, ""))
+            if other not in by:
+                r.d.error(
+                    codes.CELL_VALUE,
+                    f"`{name}` {effect} a part `{part}`, but no primitive {other} one: {why}",
+                    r.at("primitives", name, effect),
+                    hint=f'add `{other} = "{part}"` to the primitive that does it',
+                )
+        kind = _table(_table(data.get("parts")).get(part))
+        if kind and "takes" in by and "creates" not in by and not kind.get("at"):
+            r.d.error(
+                codes.CELL_VALUE,
+                f"`{by['takes']}` takes a part `{part}`, but there is never one in the cell",
+                r.at("parts", part),
+                hint="add `at = [{ x = .., y = .., z = .. }]` for parts that are there at the start, or a primitive "
+                "that creates them",
+            )
 
 
 def _robots(r: Tables, data: dict[str, Any]) -> Iterable[RobotConfig]:

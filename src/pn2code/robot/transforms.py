@@ -122,6 +122,12 @@ def difference(a: Array, b: Array) -> tuple[float, float]:
 
 def describe(pose: Pose) -> str:
     """A pose as people read it: mm and degrees, as in scripts and shared files."""
-    mm = ", ".join(f"{1000.0 * v:.2f}" for v in (pose.x, pose.y, pose.z))
-    deg = ", ".join(f"{math.degrees(v):.2f}" for v in (pose.rx, pose.ry, pose.rz))
+    mm = ", ".join(_rounded(1000.0 * v) for v in (pose.x, pose.y, pose.z))
+    deg = ", ".join(_rounded(math.degrees(v)) for v in (pose.rx, pose.ry, pose.rz))
     return f"({mm} mm; {deg} deg)"
+
+
+def _rounded(value: float) -> str:
+    """Two decimals, never a negative zero."""
+    text = f"{value:.2f}"
+    return "0.00" if text == "-0.00" else text
