@@ -25,7 +25,12 @@ from pn2code.net.flat import BindAll, BindRandom, FlatTransition
 from pn2code.primitive_calls import Calls, Listener, Unknown
 from pn2code.robot import commands
 from pn2code.semantics.game.enabling import GivenUpError
-from pn2code.semantics.game.marking import Marking, binding_to_json, element_text
+from pn2code.semantics.game.marking import (
+    BindingElement,
+    Marking,
+    binding_to_json,
+    element_text,
+)
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.colour_json import to_json
 from pn2code.semantics.values.data import Timed
@@ -297,7 +302,8 @@ class _Product:
             case Finished():
                 self._nothing_to_do(state, "the script has ended")
             case Fault(message=message, line=line):
-                self._nothing_to_do(state, f"the script stops in line {line} ({message})")
+                if not self._must_stop(state.marking):
+                    self._nothing_to_do(state, f"the script stops in line {line} ({message})")
             case AwaitFile(names=names, line=line):
                 view = self._view(state.marking)
                 if any(name in view for name in names):
@@ -321,8 +327,31 @@ class _Product:
             case _:
                 yield self._go(state, None)
 
+    def _must_stop(self, marking: Marking) -> bool:
+        """Whether the first transition that is possible raises an exception, or the question which one it is."""
+        first: int | None = None
+        try:
+            for element in self._scheme.enabled(self._owner, marking):
+                if first not in (None, element.transition):
+                    break
+                first = element.transition
+                self._game.occur(marking, element)
+        except GivenUpError:
+            raise
+        except GameError:
+            return True
+        return False
+
     def _nothing_to_do(self, state: _State, why: str) -> None:
-        for element in self._scheme.enabled(self._owner, state.marking):
+        try:
+            element = next(self._scheme.enabled(self._owner, state.marking), None)
+        except GivenUpError:
+            raise
+        except GameError as error:
+            if isinstance(state.request, AwaitFile):  # it is not asked before the message is there
+                return
+            raise DeviationError(f"{why}, where the net raises an exception: {error}") from None
+        if element is not None:
             text = element_text(self._game.colours, self._net, element)
             raise DeviationError(f"{why}, but according to the net {text} is enabled")
         # A command belongs to a transition, which is announced after it.
@@ -415,18 +444,7 @@ class _Product:
         self._must_not_owe(where)
         if t is None or self._partition.transition_owner[t.index] != self._owner:
             raise DeviationError(f"{where}, which is no transition of {self._name}")
-        for element in self._scheme.enabled(self._owner, self._marking):
-            if element.transition != t.index:
-                continue
-            try:
-                self._called.clear()
-                marking, occurred = self._game.occur(self._marking, element)
-            except GivenUpError:
-                raise
-            except GameError as error:
-                raise DeviationError(
-                    f"{where}, where the net raises an exception: {error}"
-                ) from None
+        for marking, occurred in self._occurrences(t, where):
             if _is_same(binding_to_json(occurred), event.binding):
                 self._compare_commands(where, tuple(self._called))
                 self._compare_sensors(where, t, event.binding)
@@ -439,6 +457,20 @@ class _Product:
         raise DeviationError(
             f"{where} with {event.binding}, which is not enabled according to the net"
         )
+
+    def _occurrences(
+        self, t: FlatTransition, where: str
+    ) -> Iterator[tuple[Marking, BindingElement]]:
+        """The ways in which a transition can occur, each with what it leads to; the calls of the last are noted."""
+        try:
+            for element in self._scheme.enabled(self._owner, self._marking):
+                if element.transition == t.index:
+                    self._called.clear()
+                    yield self._game.occur(self._marking, element)
+        except GivenUpError:
+            raise
+        except GameError as error:
+            raise DeviationError(f"{where}, where the net raises an exception: {error}") from None
 
     def _compare_sensors(
         self, where: str, t: FlatTransition, binding: Mapping[str, object]

@@ -10,8 +10,8 @@ from typing import Final
 KEYWORDS: Final = (
     "program", "input", "output", "const", "var", "procedure", "begin", "end", "single",
     "move", "home", "in", "at", "speed", "default", "wait", "until", "read", "into", "clear", "write", "signal",
-    "tool", "for", "measure", "sense", "mark", "with", "null", "stop", "call", "return", "goto", "exit", "when",
-    "if", "then", "elsif", "else", "while", "loop",
+    "compute", "tool", "for", "measure", "sense", "mark", "with", "null", "stop", "call", "return", "goto",
+    "exit", "when", "if", "then", "elsif", "else", "while", "loop",
     "and", "or", "not", "div", "mod", "true", "false",
 )  # fmt: skip
 
@@ -28,8 +28,8 @@ type: (NAME | SPEED | SIGNAL) SINGLE?
 procedure: "procedure" NAME block "end" "procedure"
 
 block: statement*
-?statement: move | speed | wait_time | wait_until | read | clear | write | assign | tool | measure
-          | sense | mark | stop | call | return | label | goto | exit | if | while | loop
+?statement: move | speed | wait_time | wait_until | read | clear | write | assign | compute | tool
+          | measure | sense | mark | stop | call | return | label | goto | exit | if | while | loop
 
 move: "move" MOTION target ("in" frame)? ("at" expression)?
 ?target: HOME | expression
@@ -41,6 +41,7 @@ read: "read" NAME "into" NAME ("," NAME)*
 clear: "clear" NAME
 write: "write" NAME (SIGNAL | expression ("," expression)*)
 assign: NAME ":=" expression
+compute: "compute" expression ("," expression)*
 tool: TOOL (NAME | STRING) "for" expression
 measure: "measure" expression "into" NAME
 sense: "sense" (NAME | STRING) "into" NAME

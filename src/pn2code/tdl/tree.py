@@ -251,6 +251,14 @@ class Assign:
 
 
 @frozen
+class Compute:
+    """`compute n div k`: evaluates expressions, and forgets what they give; what has no value stops the script."""
+
+    values: tuple[Expression, ...]
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@frozen
 class Tool:
     """`tool drill for 3 s`."""
 
@@ -369,8 +377,8 @@ class Loop:
 
 
 Simple = (
-    Move | Speed | WaitTime | WaitUntil | Read | Clear | Write | Assign | Tool | Measure | Sense | Mark
-    | Stop | Call | Return | Label | Goto | Exit
+    Move | Speed | WaitTime | WaitUntil | Read | Clear | Write | Assign | Compute | Tool | Measure | Sense
+    | Mark | Stop | Call | Return | Label | Goto | Exit
 )  # fmt: skip
 Statement = Simple | If | While | Loop
 
