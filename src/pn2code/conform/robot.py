@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import ChannelKind, Partition
@@ -33,8 +33,9 @@ from pn2code.semantics.game.marking import (
 )
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.colour_json import to_json
-from pn2code.semantics.values.data import Timed
+from pn2code.semantics.values.data import Timed, is_negative_zero
 from pn2code.tdl.check import CheckedProgram
+from pn2code.tdl.evaluate import ScriptPose
 from pn2code.tdl.interpret import (
     AwaitFile,
     Event,
@@ -102,6 +103,8 @@ class _State:
     until: float | None = None
     owed: float = 0.0
     looked: frozenset[str] = frozenset()
+    signs: object = None
+    """of the zeros in the marking and in the script's variables: equal ones can be told apart"""
 
 
 class PlacesAsFiles:
@@ -291,10 +294,11 @@ class _Product:
 
     def _timeless(self, state: _State) -> _State:
         """The same state with times from its own on, where only those count."""
-        if not self._clock.is_relative:
-            return state
-        until = None if state.until is None else max(state.until - state.marking.time, 0)
-        return replace(state, marking=self._clock.relative(state.marking), until=until)
+        if self._clock.is_relative:
+            until = None if state.until is None else max(state.until - state.marking.time, 0)
+            state = replace(state, marking=self._clock.relative(state.marking), until=until)
+        signs = self._scheme.nodes.signs(state.marking), _negative(state.saved)
+        return replace(state, signs=signs)
 
     def _resumed(self, state: _State) -> Iterator[tuple[str, _State]]:
         """The script goes on, if it can."""
@@ -530,6 +534,16 @@ def _is_same(a: object, b: object) -> bool:
 def _is_nothing(seconds: float, among: float) -> bool:
     """Whether what is left of a time is rounding alone."""
     return math.isclose(seconds, 0.0, abs_tol=1e-9 * max(1.0, among))
+
+
+def _negative(saved: Saved) -> frozenset[str]:
+    """The variables of a script that hold a zero with a sign, or a pose with one."""
+    zeros = ((name, v) for name, v in saved.values if isinstance(v, float | ScriptPose))
+    return frozenset(
+        name
+        for name, v in zeros
+        if any(map(is_negative_zero, astuple(v) if isinstance(v, ScriptPose) else (v,)))
+    )
 
 
 def _list(found: tuple[commands.Command | Unknown, ...]) -> str:
