@@ -104,3 +104,52 @@ def test_a_zero_in_a_reference(explorers: Explorers) -> None:
     """)
     assert agrees(explorers, net) == "same"
     assert explorers.explore(net).report["nodes"] == 4
+
+
+TIMED = {
+    "a real": ("REAL", "{z}", "x"),
+    "a product": ("PAIR", "(1, {z})", "(n, x)"),
+    "a record": ("RECORD", "{{a = {z}, b = 1}}", "{a = x, b = n}"),
+    "a list": ("REALS", "[1.5, {z}]", "[y, x]"),
+    "a union": ("EITHER", "Some {z}", "Some x"),
+    "what is no number": ("PAIR2", "(0.0 / 0.0, {z})", "(y, x)"),
+}
+
+
+@pytest.mark.parametrize(
+    ("holder", "stamps"),
+    [*((holder, (1, 2)) for holder in TIMED), ("a real", (2, 1)), ("a union", (1, 1))],
+)
+def test_zeros_of_other_stamps_keep_their_signs(
+    explorers: Explorers, holder: str, stamps: tuple[int, int]
+) -> None:
+    """In both orders in which they are put, and taken one after the other."""
+    colset, token, taken = TIMED[holder]
+    first, second = stamps
+    net = flat(f"""
+        net Stamps
+          standard
+          colset PAIR = product INT * REAL timed;
+          colset PAIR2 = product REAL * REAL timed;
+          colset RECORD = record a: REAL * b: INT timed;
+          colset REALS = list REAL timed;
+          colset EITHER = union Some: REAL + None timed;
+          colset REAL = real timed;
+          colset TEXT = string;
+          var x, y: REAL; var n: INT;
+          page Top
+            place A : UNIT = 1`()
+            place B : UNIT = 1`()
+            place Held : {colset}
+            place Seen : TEXT
+            trans Plus
+              in A : ()
+              out Held : {token.format(z="0.0")} @+ {first}
+            trans Minus
+              in B : ()
+              out Held : {token.format(z="(~1.0 * 0.0)")} @+ {second}
+            trans Take
+              in Held : {taken}
+              out Seen : Real.toString x
+    """)
+    assert agrees(explorers, net) == "same"

@@ -15,6 +15,7 @@ from dataclasses import replace
 
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.marking import Marking, PlaceMarking
+from pn2code.semantics.values.data import Timed
 from pn2code.semantics.values.multiset import TimedMultiSet
 from pn2code.verify.exploring.time_reduction import obstacle
 
@@ -36,6 +37,4 @@ class Clock:
         """What a place holds, with stamps from `now` on; those that are not after it are 0."""
         if not self.is_relative or not isinstance(tokens, TimedMultiSet):
             return tokens
-        return TimedMultiSet(
-            {v: tuple(max(s - now, 0) for s in stamps) for v, stamps in tokens.stamps.items()}
-        )
+        return TimedMultiSet.of(Timed(t.value, max(t.stamp - now, 0)) for t in tokens)

@@ -27,10 +27,12 @@ class Observation:
     """Args:
     marking: of what the supervisor sees; everything else is as at the start.
     read: channels whose message the program has made a token.
+    signs: of the zeros in the marking, which an inscription can tell apart although they are equal.
     """
 
     marking: Marking
     read: frozenset[int]
+    signs: frozenset[tuple[int, str]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,12 +58,6 @@ class Observations:
     overruns: list[tuple[str, ...]] = field(default_factory=list)
 
 
-@dataclass(frozen=True, slots=True)
-class _State:
-    marking: Marking
-    read: frozenset[int]
-
-
 _CYCLE = ObservedChange("the supervisor's cycle")
 
 
@@ -78,7 +74,7 @@ class _Closed:
         seen = {*scheme.touched(SUPERVISOR), *partition.final_places}
         channels = {c.place for c in partition.channels if SUPERVISOR in (c.writer, c.reader)}
         self._unseen = [p.index for p in partition.net.places if p.index not in seen | channels]
-        self._way: dict[_State, tuple[_State, ObservedChange] | None] = {}
+        self._way: dict[Observation, tuple[Observation, ObservedChange] | None] = {}
 
     def look(self) -> Observations:
         found = Observations()
@@ -108,8 +104,8 @@ class _Closed:
         return found
 
     def _following(
-        self, state: _State, found: Observations
-    ) -> Iterator[tuple[ObservedChange, _State]]:
+        self, state: Observation, found: Observations
+    ) -> Iterator[tuple[ObservedChange, Observation]]:
         """States with what leads there."""
         quiet = True
         for owner in self._partition.owners[SUPERVISOR + 1 :]:
@@ -120,7 +116,8 @@ class _Closed:
                 if self._is_overrun(state.marking, dict(step.changes)):
                     found.overruns.append((*self._way_to(state), step.text))
                 else:
-                    yield ObservedChange(step.text), _State(step.after(state.marking), state.read)
+                    after_step = step.after(state.marking)
+                    yield ObservedChange(step.text), observed(self._scheme, after_step, state.read)
         cycle = self._scheme.cycle(state.marking)
         if cycle.elements or cycle.stopped:
             quiet = False
@@ -131,15 +128,16 @@ class _Closed:
             marking = self._game.advance_time(state.marking)
             if marking != state.marking:
                 later = marking.time - state.marking.time
-                after = _State(self._clock.relative(marking), state.read)
+                after = observed(self._scheme, self._clock.relative(marking), state.read)
                 yield ObservedChange(f"time goes on by {later}", later), after
 
-    def _after_cycle(self, marking: Marking) -> _State | None:
+    def _after_cycle(self, marking: Marking) -> Observation | None:
         """None: the supervisor stops, or has finished."""
         cycle = self._scheme.cycle(marking)
         if cycle.stopped or self._scheme.is_final(cycle.marking):
             return None
-        return _State(cycle.marking, self._scheme.unconsumed(cycle.marking))
+        read = self._scheme.unconsumed(cycle.marking)
+        return observed(self._scheme, cycle.marking, read)
 
     def _is_overrun(self, before: Marking, changes: dict[int, object]) -> bool:
         """Whether somebody else writes a message where one is, or two at once."""
@@ -151,18 +149,24 @@ class _Closed:
                     return True
         return False
 
-    def _sight(self, state: _State) -> Observation:
+    def _sight(self, state: Observation) -> Observation:
         places = list(state.marking.places)
         for p in self._unseen:
             places[p] = self._start.places[p]
-        return Observation(replace(state.marking, places=tuple(places)), state.read)
+        marking = replace(state.marking, places=tuple(places))
+        return observed(self._scheme, marking, state.read)
 
-    def _way_to(self, state: _State) -> tuple[str, ...]:
+    def _way_to(self, state: Observation) -> tuple[str, ...]:
         way = []
         while (step := self._way[state]) is not None:
             state, turn = step
             way.append(turn.text)
         return tuple(way[::-1])
+
+
+def observed(scheme: Scheme, marking: Marking, read: frozenset[int]) -> Observation:
+    """A marking with what has been read of it."""
+    return Observation(marking, read, scheme.nodes.signs(marking))
 
 
 def look(partition: Partition, game: Game, scheme: Scheme, clock: Clock, most: int) -> Observations:

@@ -14,7 +14,7 @@ from __future__ import annotations
 import math
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import astuple, dataclass, replace
 
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import ChannelKind, Partition
@@ -25,11 +25,17 @@ from pn2code.net.flat import BindAll, BindRandom, FlatTransition
 from pn2code.primitive_calls import Calls, Listener, Unknown
 from pn2code.robot import commands
 from pn2code.semantics.game.enabling import GivenUpError
-from pn2code.semantics.game.marking import Marking, binding_to_json, element_text
+from pn2code.semantics.game.marking import (
+    BindingElement,
+    Marking,
+    binding_to_json,
+    element_text,
+)
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.colour_json import to_json
-from pn2code.semantics.values.data import Timed
+from pn2code.semantics.values.data import Timed, is_negative_zero
 from pn2code.tdl.check import CheckedProgram
+from pn2code.tdl.evaluate import ScriptPose
 from pn2code.tdl.interpret import (
     AwaitFile,
     Event,
@@ -97,6 +103,8 @@ class _State:
     until: float | None = None
     owed: float = 0.0
     looked: frozenset[str] = frozenset()
+    signs: object = None
+    """of the zeros in the marking and in the script's variables: equal ones can be told apart"""
 
 
 class PlacesAsFiles:
@@ -286,10 +294,11 @@ class _Product:
 
     def _timeless(self, state: _State) -> _State:
         """The same state with times from its own on, where only those count."""
-        if not self._clock.is_relative:
-            return state
-        until = None if state.until is None else max(state.until - state.marking.time, 0)
-        return replace(state, marking=self._clock.relative(state.marking), until=until)
+        if self._clock.is_relative:
+            until = None if state.until is None else max(state.until - state.marking.time, 0)
+            state = replace(state, marking=self._clock.relative(state.marking), until=until)
+        signs = self._scheme.nodes.signs(state.marking), _negative(state.saved)
+        return replace(state, signs=signs)
 
     def _resumed(self, state: _State) -> Iterator[tuple[str, _State]]:
         """The script goes on, if it can."""
@@ -297,7 +306,8 @@ class _Product:
             case Finished():
                 self._nothing_to_do(state, "the script has ended")
             case Fault(message=message, line=line):
-                self._nothing_to_do(state, f"the script stops in line {line} ({message})")
+                if not self._must_stop(state.marking):
+                    self._nothing_to_do(state, f"the script stops in line {line} ({message})")
             case AwaitFile(names=names, line=line):
                 view = self._view(state.marking)
                 if any(name in view for name in names):
@@ -321,8 +331,31 @@ class _Product:
             case _:
                 yield self._go(state, None)
 
+    def _must_stop(self, marking: Marking) -> bool:
+        """Whether the first transition that is possible raises an exception, or the question which one it is."""
+        first: int | None = None
+        try:
+            for element in self._scheme.enabled(self._owner, marking):
+                if first not in (None, element.transition):
+                    break
+                first = element.transition
+                self._game.occur(marking, element)
+        except GivenUpError:
+            raise
+        except GameError:
+            return True
+        return False
+
     def _nothing_to_do(self, state: _State, why: str) -> None:
-        for element in self._scheme.enabled(self._owner, state.marking):
+        try:
+            element = next(self._scheme.enabled(self._owner, state.marking), None)
+        except GivenUpError:
+            raise
+        except GameError as error:
+            if isinstance(state.request, AwaitFile):  # it is not asked before the message is there
+                return
+            raise DeviationError(f"{why}, where the net raises an exception: {error}") from None
+        if element is not None:
             text = element_text(self._game.colours, self._net, element)
             raise DeviationError(f"{why}, but according to the net {text} is enabled")
         # A command belongs to a transition, which is announced after it.
@@ -415,18 +448,7 @@ class _Product:
         self._must_not_owe(where)
         if t is None or self._partition.transition_owner[t.index] != self._owner:
             raise DeviationError(f"{where}, which is no transition of {self._name}")
-        for element in self._scheme.enabled(self._owner, self._marking):
-            if element.transition != t.index:
-                continue
-            try:
-                self._called.clear()
-                marking, occurred = self._game.occur(self._marking, element)
-            except GivenUpError:
-                raise
-            except GameError as error:
-                raise DeviationError(
-                    f"{where}, where the net raises an exception: {error}"
-                ) from None
+        for marking, occurred in self._occurrences(t, where):
             if _is_same(binding_to_json(occurred), event.binding):
                 self._compare_commands(where, tuple(self._called))
                 self._compare_sensors(where, t, event.binding)
@@ -439,6 +461,20 @@ class _Product:
         raise DeviationError(
             f"{where} with {event.binding}, which is not enabled according to the net"
         )
+
+    def _occurrences(
+        self, t: FlatTransition, where: str
+    ) -> Iterator[tuple[Marking, BindingElement]]:
+        """The ways in which a transition can occur, each with what it leads to; the calls of the last are noted."""
+        try:
+            for element in self._scheme.enabled(self._owner, self._marking):
+                if element.transition == t.index:
+                    self._called.clear()
+                    yield self._game.occur(self._marking, element)
+        except GivenUpError:
+            raise
+        except GameError as error:
+            raise DeviationError(f"{where}, where the net raises an exception: {error}") from None
 
     def _compare_sensors(
         self, where: str, t: FlatTransition, binding: Mapping[str, object]
@@ -498,6 +534,16 @@ def _is_same(a: object, b: object) -> bool:
 def _is_nothing(seconds: float, among: float) -> bool:
     """Whether what is left of a time is rounding alone."""
     return math.isclose(seconds, 0.0, abs_tol=1e-9 * max(1.0, among))
+
+
+def _negative(saved: Saved) -> frozenset[str]:
+    """The variables of a script that hold a zero with a sign, or a pose with one."""
+    zeros = ((name, v) for name, v in saved.values if isinstance(v, float | ScriptPose))
+    return frozenset(
+        name
+        for name, v in zeros
+        if any(map(is_negative_zero, astuple(v) if isinstance(v, ScriptPose) else (v,)))
+    )
 
 
 def _list(found: tuple[commands.Command | Unknown, ...]) -> str:

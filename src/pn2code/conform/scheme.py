@@ -17,6 +17,7 @@ from dataclasses import dataclass, replace
 from pn2code.cell.partition import Partition
 from pn2code.net.flat import FlatTransition
 from pn2code.semantics.game.enabling import GivenUpError
+from pn2code.semantics.game.graph import Nodes
 from pn2code.semantics.game.marking import BindingElement, Marking, PlaceMarking, element_text
 from pn2code.semantics.game.token_game import Game, GameError
 
@@ -83,6 +84,8 @@ class Scheme:
             [t for t in order if partition.transition_owner[t.index] == owner.index]
             for owner in partition.owners
         ]
+        self.nodes = Nodes(partition.net)
+        """tells markings apart that differ in the signs of zeros"""
         self._touched = [sorted({a.place for t in own for a in t.arcs}) for own in self._of]
         self._steps: dict[tuple[object, ...], Steps] = {}
         self._cycles: dict[tuple[object, ...], tuple[Changes, Cycle]] = {}
@@ -134,13 +137,16 @@ class Scheme:
                 yield BindingElement.make(t, binding)
 
     def _seen(self, owner: int, marking: Marking) -> tuple[object, ...]:
-        return owner, marking.time, *(marking.places[p] for p in self._touched[owner])
+        touched = self._touched[owner]
+        signs = frozenset(x for x in self.nodes.signs(marking) if x[0] in touched)
+        return owner, marking.time, signs, *(marking.places[p] for p in touched)
 
     def _changes(self, owner: int, before: Marking, after: Marking) -> Changes:
+        turned = {p for p, _ in self.nodes.signs(before) ^ self.nodes.signs(after)}
         return tuple(
             (p, after.places[p])
             for p in self._touched[owner]
-            if after.places[p] != before.places[p]
+            if p in turned or after.places[p] != before.places[p]
         )
 
     def _played(self, marking: Marking) -> Cycle:

@@ -18,7 +18,7 @@ from pn2code.cell.partition import ChannelKind, Partition
 from pn2code.channels.message import EMPTY, ChannelSpec, Message, compose, parse, specs_of
 from pn2code.conform.clock import Clock
 from pn2code.conform.messages import scalars
-from pn2code.conform.observations import Observation, ObservedChange, look
+from pn2code.conform.observations import Observation, ObservedChange, look, observed
 from pn2code.conform.probe import SESSION, Answer, Probe
 from pn2code.conform.scheme import MOST_STATES, SUPERVISOR, Scheme
 from pn2code.semantics.game.enabling import GivenUpError
@@ -148,7 +148,7 @@ class _Product:
     def _run(self) -> None:
         none_sent = (0,) * len(self._partition.channels)
         initial = self._game.marking
-        sight = Observation(self._clock.relative(initial), frozenset())
+        sight = observed(self._scheme, self._clock.relative(initial), frozenset())
         start = _State(sight, initial.time, none_sent)
         first = self._compared(start, self._probe.first)
         if first is None:
@@ -275,9 +275,8 @@ class _Product:
             )
         if answer.ended:
             return None
-        sight = Observation(
-            self._clock.relative(expected.marking), self._scheme.unconsumed(expected.marking)
-        )
+        read = self._scheme.unconsumed(expected.marking)
+        sight = observed(self._scheme, self._clock.relative(expected.marking), read)
         return _State(sight, state.time, sent)
 
     def _compare_places(self, now: float, expected: Marking, told: Mapping[str, object]) -> None:

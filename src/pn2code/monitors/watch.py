@@ -31,7 +31,7 @@ from pn2code.semantics.game.enabling import GameError, running
 from pn2code.semantics.game.marking import BindingElement, PlaceMarking
 from pn2code.semantics.game.report import time_text
 from pn2code.semantics.game.token_game import Game
-from pn2code.semantics.values.data import MlUnavailable, Timed, Value, int_text
+from pn2code.semantics.values.data import MlUnavailable, Value, int_text
 from pn2code.semantics.values.multiset import MultiSet
 
 
@@ -314,7 +314,7 @@ class Watch:
             values = self.game.colours.sorted(colset, tokens.counts)
             return tuple(v for v in values for _ in range(tokens.counts[v]))
         values = self.game.colours.sorted(colset, tokens.stamps)
-        return tuple(Timed(v, stamp) for v in values for stamp in tokens.stamps[v])
+        return tuple(token for v in values for token in tokens.tokens(v))
 
     def _markings(self, m: _Running) -> Value:
         parts = tuple(self._multiset(p) for p in m.monitor.places)

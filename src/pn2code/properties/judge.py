@@ -22,7 +22,7 @@ from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.graph import state_space
 from pn2code.semantics.game.marking import Marking
 from pn2code.semantics.game.token_game import Game
-from pn2code.semantics.values.data import Timed, Value
+from pn2code.semantics.values.data import Value
 from pn2code.semantics.values.multiset import MultiSet
 
 Nodes = frozenset[int]
@@ -47,7 +47,7 @@ def tokens(game: Game, marking: Marking, place: int) -> tuple[Value, ...]:
         values = game.colours.sorted(colset, held.counts)
         return tuple(v for v in values for _ in range(held.counts[v]))
     values = game.colours.sorted(colset, held.stamps)
-    return tuple(Timed(v, stamp) for v in values for stamp in held.stamps[v])
+    return tuple(token for v in values for token in held.tokens(v))
 
 
 class TooManyNodesError(Exception):

@@ -12,6 +12,8 @@ from dataclasses import dataclass, field
 from pn2code.diagnostics import Span
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import BOOL, TRecord, Type
+from pn2code.robot_scripts.failing import PARTIAL
+from pn2code.robot_scripts.strict import Owed, Path
 from pn2code.robot_scripts.values import (
     FALSE,
     TRUE,
@@ -51,6 +53,8 @@ class Evaluator:
         constant: offers a global scalar as a named constant of the script: (name, value, where) -> expression.
         perform: carries out a primitive; None where commands are not allowed.
         branch: runs two alternatives that may contain commands: (condition, then, otherwise) -> value.
+        owe: hears of each computation that may fail, in the order of CPN ML, and where it is made: what becomes of its
+            value, and whether anything does, is another matter (`strict`).
     """
 
     program: core.Program
@@ -60,6 +64,8 @@ class Evaluator:
     branch: (
         Callable[[t.Expression, Callable[[], Value], Callable[[], Value], Span], Value] | None
     ) = None
+    owe: Callable[[Owed], None] | None = None
+    _path: Path = ()
     _globals: dict[int, Value] = field(default_factory=dict)
     _declarations: dict[int, tuple[core.Dec, core.Symbol]] = field(default_factory=dict)
     _depth: int = 0
@@ -126,7 +132,10 @@ class Evaluator:
             case core.Case(scrutinee, rules):
                 return self._rules(rules, self.evaluate(scrutinee, env), env, e.span)
             case core.Apply(core.Builtin(name), argument):
-                return builtin(name, self.evaluate(argument, env), e.span)
+                found = builtin(name, self.evaluate(argument, env), e.span)
+                if self.owe is not None and name in PARTIAL and isinstance(found, Scalar):
+                    self.owe(Owed(self._path, found.exp))
+                return found
             case core.Apply(function, argument):
                 return self._apply(
                     self.evaluate(function, env), self.evaluate(argument, env), e.span
@@ -152,7 +161,7 @@ class Evaluator:
             raise UnsupportedError(f"`{symbol.name}` has no value in a robot script", span)
         match found[0]:
             case core.ValBind(_, value):
-                result = self.evaluate(value, {})
+                result = self._constant_value(value)
                 if isinstance(result, Scalar):
                     named = self.constant(symbol.name, result, found[0].span)
                     result = Scalar(named, result.type)
@@ -163,6 +172,23 @@ class Evaluator:
                 raise UnsupportedError(f"`{symbol.name}` has no value in a robot script", span)
         self._globals[symbol.uid] = result
         return result
+
+    def _constant_value(self, e: core.Exp) -> Value:
+        """The value of a declaration, which was computed before anything else."""
+        heard, self.owe = self.owe, None
+        try:
+            return self.evaluate(e, {})
+        finally:
+            self.owe = heard
+
+    def owing(self, e: core.Exp, env: Env, path: Path = ()) -> tuple[Value, list[Owed]]:
+        """The value of an expression that is evaluated where some conditions hold, and what CPN ML computes for it."""
+        found: list[Owed] = []
+        before, self.owe, self._path = (self.owe, self._path), found.append, path
+        try:
+            return self.evaluate(e, env), found
+        finally:
+            self.owe, self._path = before
 
     def _record(self, values: dict[str, Value], type_: Type, span: Span) -> Value:
         if isinstance(shape_of_type(type_, self.program), Leaf):
@@ -188,7 +214,14 @@ class Evaluator:
     ) -> Value:
         if self.branch is not None:
             return self.branch(test, a, b, span)
-        return choose(test, a(), b(), span)
+        return choose(test, self._under((test, True), a), self._under((test, False), b), span)
+
+    def _under(self, condition: tuple[t.Expression, bool], value: Callable[[], Value]) -> Value:
+        before, self._path = self._path, (*self._path, condition)
+        try:
+            return value()
+        finally:
+            self._path = before
 
     def _declare(self, dec: core.Dec, env: Env) -> None:
         match dec:

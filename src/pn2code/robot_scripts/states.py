@@ -11,6 +11,7 @@ from collections.abc import Sequence, Set
 from pn2code.diagnostics import Note
 from pn2code.net.flat import FlatTransition
 from pn2code.robot_scripts import codes as codes
+from pn2code.robot_scripts.conditions import all_hold
 from pn2code.robot_scripts.data import Data
 from pn2code.robot_scripts.guards import covering, exclusive
 from pn2code.robot_scripts.ir import Comment, LeftOut, Line, Node, Region, transition_element
@@ -27,7 +28,7 @@ from pn2code.robot_scripts.values import (
     leaves,
 )
 from pn2code.tdl import tree as t
-from pn2code.tdl.paths import all_names, names_in
+from pn2code.tdl.paths import names_in
 from pn2code.tdl.pretty import expression
 
 
@@ -112,9 +113,8 @@ class States:
     def _known(self, s: Situation, channels: Set[int]) -> tuple[t.Expression, t.Expression]:
         """What can be said of a transition's conditions when only these messages have come, and what cannot."""
         others = {n for c in s.channels if c not in channels for n in self._data.message_names[c]}
-        early = [c for c in s.remote if not all_names([c]) & others]
-        late = [c for c in s.remote if all_names([c]) & others]
-        return conjunction([*s.local, *early]), conjunction(late)
+        early, late = self._step.split(s.ordered, others)
+        return all_hold(early), all_hold(late)
 
     def _decide(self, place: int, situations: list[Situation]) -> Tree:
         """The tree of a state, by what its transitions wait for (docs/tdl.md, "Translation")."""
@@ -150,6 +150,10 @@ class States:
     def _are_apart(self, situations: list[Situation]) -> bool:
         """Whether the program's own data decide which messages the script waits for."""
         units = self._units(situations)
+        if [id(s) for u in units for s in u] != [id(s) for s in situations] and any(
+            self._step.known().fails(s.own_condition) for s in situations
+        ):
+            return False  # one that may fail would be asked before an earlier one that is possible
         return all(
             self._exclude(a.own_condition, b.own_condition)
             for i, u in enumerate(units)
@@ -319,7 +323,7 @@ class States:
         """A transition's statements and where control goes."""
         try:
             actions, env = self._step.act(s)
-            nodes = [*front, *actions, *self._step.occur(s, env)]
+            nodes = [*front, *self._step.occur(s, actions, env)]
             outcomes = s.step.outcomes
             ends = [
                 (
@@ -366,7 +370,7 @@ def _take_the_same(situations: Sequence[Situation]) -> bool:
 
 def _without_own(s: Situation) -> Situation:
     """The situation where its conditions on the program's own data have been tested already."""
-    return Situation(s.step, s.env, s.channels, (), s.remote, s.sensed)
+    return Situation(s.step, s.env, s.channels, (), s.remote, s.remote, s.sensed)
 
 
 def _filled(file: str) -> t.Expression:

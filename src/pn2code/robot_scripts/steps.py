@@ -14,24 +14,28 @@ in a merged trace the cause stands before its effects.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from dataclasses import dataclass, field
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.config import Primitive
 from pn2code.cell.partition import OwnerKind
 from pn2code.diagnostics import Span
+from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.terms import Symbol
-from pn2code.net.flat import BindAll, BindEquation, BindRandom
+from pn2code.net.flat import ArcKind, BindAll, BindEquation, BindRandom
 from pn2code.robot_scripts import codes as codes
+from pn2code.robot_scripts.conditions import Asked, Order, all_hold
 from pn2code.robot_scripts.evaluate import Evaluator
+from pn2code.robot_scripts.failing import Known
 from pn2code.robot_scripts.ir import Chain, Comment, Element, Line, Node
-from pn2code.robot_scripts.machine import Machine, Outcome, Step
+from pn2code.robot_scripts.machine import Machine, Outcome, Step, delayed_tokens
 from pn2code.robot_scripts.names import Names, identifier
+from pn2code.robot_scripts.not_a_number import may_be_nan
+from pn2code.robot_scripts.strict import Owed, Path, open_of, statements, without_repetition
 from pn2code.robot_scripts.values import (
     FALSE,
-    TRUE,
     Closure,
     Env,
     Fields,
@@ -44,7 +48,6 @@ from pn2code.robot_scripts.values import (
     as_quantity,
     as_real,
     choose,
-    conjunction,
     equal,
     flatten,
     select,
@@ -54,7 +57,7 @@ from pn2code.robot_scripts.values import Primitive as PrimitiveValue
 from pn2code.tdl import tree as t
 from pn2code.tdl import types as tdl
 from pn2code.tdl.evaluate import ScriptError, ScriptValue, evaluate
-from pn2code.tdl.paths import all_names, children
+from pn2code.tdl.paths import all_names, children, expressions_of
 
 
 @frozen
@@ -64,7 +67,8 @@ class Situation:
     Args:
         channels: places of the channels it takes from, in order of its arcs.
         local: conditions that the program's own data decide.
-        remote: conditions that need the messages.
+        remote: conditions that need the messages, or that may fail unless such conditions before them hold.
+        ordered: all of them in the order of the net.
         sensed: net variables that nothing in the net decides, the sensor that does, and the script's variable.
     """
 
@@ -73,17 +77,18 @@ class Situation:
     channels: tuple[int, ...]
     local: tuple[t.Expression, ...]
     remote: tuple[t.Expression, ...]
+    ordered: tuple[t.Expression, ...]
     sensed: tuple[tuple[Symbol, str, str], ...] = ()
 
     @property
     def own_condition(self) -> t.Expression:
         """All conditions on the program's own data."""
-        return conjunction(list(self.local))
+        return all_hold(self.local)
 
     @property
     def condition(self) -> t.Expression:
         """All conditions."""
-        return conjunction([*self.local, *self.remote])
+        return all_hold(self.ordered)
 
 
 @frozen
@@ -124,6 +129,13 @@ class StepTranslator:
     _nodes: list[Node] = field(default_factory=list)
     _acts: bool = False
     """whether the transition at hand carries out commands"""
+    _there: Known = field(init=False)
+    """what is known where the code segment at hand has come to"""
+    _taken: set[str] = field(default_factory=set)
+    """variables whose values it still needs"""
+
+    def __post_init__(self) -> None:
+        self._there = self.known()
 
     # enabling
 
@@ -131,7 +143,6 @@ class StepTranslator:
         """Bind the variables of a transition; `values`: the token of each place it takes from."""
         transition = step.transition
         env: Env = {}
-        found: list[t.Expression] = []
         control = [x for x in step.takes if x[0] in self.machine.control]
         variables = [x for x in step.takes if x[0] in self.machine.variables]
         messages = [x for x in step.takes if x[0] in self.machine.channels]
@@ -144,29 +155,34 @@ class StepTranslator:
         ordered = [*control, *variables, *messages]
         sensed: list[tuple[Symbol, str, str]] = []
         avoid = {n for p, *_ in ordered for n in all_names(x.exp for x in _scalars(values[p]))}
-        for place, term, _, _ in ordered:
+        order = Order(transition, self.pure.program)
+        asked = Asked(self.known())
+        for place, term, arc, index in ordered:
             if term.pattern is not None:
-                found += self.pure.match(term.pattern, values[place], env)
-        for bind in transition.plan:
+                at = order.of_pattern(arc, index)
+                asked.add(at, self.pure.match(term.pattern, values[place], env))
+        for i, bind in enumerate(transition.plan):
             if isinstance(bind, BindEquation):
-                found += self.pure.match(bind.pattern, self.pure.evaluate(bind.value, env), env)
+                value, owed = self.pure.owing(bind.value, env)
+                asked.add(order.of_equation(i), self.pure.match(bind.pattern, value, env), owed)
             elif isinstance(bind, BindAll | BindRandom) and bind.symbol.uid not in env:
                 sensor, name, leaf = self._sensor(bind.symbol, step, avoid)
                 avoid.add(name)
                 sensed.append((bind.symbol, sensor, name))
                 env[bind.symbol.uid] = Scalar(t.Name(name), leaf.type)
-        for place, term, _, _ in ordered:
+        for place, term, arc, _ in ordered:
             if term.pattern is None:
-                value = self.pure.evaluate(term.value, env)
-                found.append(equal(value, values[place], term.value.span))
-        for guard in transition.guards:
-            value = self.pure.evaluate(guard, env)
+                value, owed = self.pure.owing(term.value, env)
+                same = equal(value, values[place], term.value.span)
+                asked.add(order.of_value(arc, term), [same], owed)
+        for i, guard in enumerate(transition.guards):
+            value, owed = self.pure.owing(guard, env)
             assert isinstance(value, Scalar)
-            found.append(value.exp)
+            asked.add(order.of_guard(i), [value.exp], owed)
         received = {
             name for p, *_ in messages for name in all_names(x.exp for x in _scalars(values[p]))
         }
-        conditions = [c for c in dict.fromkeys(found) if c != TRUE]
+        conditions = asked.conditions()
         for symbol, sensor, name in sensed:
             if name in all_names(conditions):
                 raise UnsupportedError(
@@ -176,16 +192,39 @@ class StepTranslator:
                     _whole(step),
                     codes.UNSUPPORTED_PROGRAM,
                 )
-        if FALSE in conditions:
-            conditions = [FALSE]
+        local, remote = self.split(conditions, received)
         return Situation(
             step,
             env,
             tuple(p for p, *_ in messages),
-            tuple(c for c in conditions if not all_names([c]) & received),
-            tuple(c for c in conditions if all_names([c]) & received),
+            local,
+            remote,
+            conditions,
             tuple(sensed),
         )
+
+    def known(self, conditions: Iterable[t.Expression] = ()) -> Known:
+        """What is known of numbers where some conditions hold."""
+        found = Known(self.names.constant_values, lambda e: may_be_nan(e, self.names), {})
+        for c in conditions:
+            found = found.with_condition(c)
+        return found
+
+    def split(
+        self, conditions: Iterable[t.Expression], late: Set[str]
+    ) -> tuple[tuple[t.Expression, ...], tuple[t.Expression, ...]]:
+        """Conditions that can be asked before some variables have their values, and the others.
+
+        One that may fail is asked only when all before it hold.
+        """
+        early: list[t.Expression] = []
+        rest: list[t.Expression] = []
+        known = self.known()
+        for c in conditions:
+            is_late = bool(all_names([c]) & late) or (bool(rest) and (known.fails(c) or c == FALSE))
+            (rest if is_late else early).append(c)
+            known = known.with_condition(c)
+        return tuple(early), tuple(rest)
 
     def _sensor(self, symbol: Symbol, step: Step, avoid: set[str]) -> tuple[str, str, Leaf]:
         """The sensor that decides a free variable, the script's variable for it, and its type."""
@@ -228,16 +267,18 @@ class StepTranslator:
         if code is None:
             return asked, situation.env
         self._nodes = []
+        self._there = self.known(situation.ordered)
         output = code.outputs[0].name if len(code.outputs) == 1 else "measured"
-        avoid = all_names(x.exp for v in situation.env.values() for x in _scalars(v))
+        self._taken = all_names(x.exp for v in situation.env.values() for x in _scalars(v))
         evaluator = Evaluator(
             self.pure.program,
             self.pure.primitives,
             self.names.constant,
             perform=lambda name, argument, span: self._perform(
-                name, argument, span, output, avoid, situation
+                name, argument, span, output, situation
             ),
             branch=self._branch,
+            owe=self._owe,
         )
         result = evaluator.evaluate(code.action, situation.env)
         env = dict(situation.env)
@@ -251,6 +292,11 @@ class StepTranslator:
             return [*asked, *self._nodes], env
         return [*self._nodes, *asked], env
 
+    def _owe(self, owed: Owed) -> None:
+        """A computation of the code segment."""
+        if self._there.fails_itself(owed.exp):
+            self._nodes.append(Line(t.Compute((owed.exp,))))
+
     def _branch(
         self, test: t.Expression, a: Callable[[], Value], b: Callable[[], Value], span: Span
     ) -> Value:
@@ -258,18 +304,19 @@ class StepTranslator:
         before = self._nodes
         then: list[Node] = []
         otherwise: list[Node] = []
-        self._nodes = then
+        there, taken = self._there, self._taken
+        self._nodes, self._there = then, there.with_condition(test)
         first = a()
-        self._nodes = otherwise
+        after_first, self._taken = self._taken, taken
+        self._nodes, self._there = otherwise, there.with_condition(test, False)
         second = b()
-        self._nodes = before
+        self._nodes, self._there = before, there
+        self._taken = self._taken | after_first
         if then or otherwise:
             self._nodes.append(Chain(((test, tuple(then)),), tuple(otherwise) or None))
         return choose(test, first, second, span)
 
-    def _perform(
-        self, name: str, argument: Value, span: Span, output: str, avoid: set[str], s: Situation
-    ) -> Value:
+    def _perform(self, name: str, argument: Value, span: Span, output: str, s: Situation) -> Value:
         primitive = self.primitives[name]
         self._acts = True
         command = primitive.command
@@ -313,7 +360,8 @@ class StepTranslator:
                     transition.origin,
                     f"transition {transition.short} ({transition.id})",
                 )
-                (target,) = self.names.shared([output], Leaf(tdl.Type.POSE), element, avoid)
+                (target,) = self.names.shared([output], Leaf(tdl.Type.POSE), element, self._taken)
+                self._taken = self._taken | {target}
                 self._nodes.append(Line(t.Measure(argument.exp, t.Target(target))))
                 return Scalar(t.Name(target), tdl.Type.POSE)
             self._nodes.append(Line(t.Move(motion, argument.exp, primitive.frame, at)))
@@ -368,15 +416,68 @@ class StepTranslator:
             )
         return duration
 
-    def occur(self, situation: Situation, env: Env) -> list[Node]:
-        """The mark, and the emptying of files."""
+    def occur(self, situation: Situation, acts: Sequence[Node], env: Env) -> list[Node]:
+        """What the transition does, the mark, and the emptying of files.
+
+        Args:
+            situation: the transition.
+            acts: the commands of its code segment.
+            env: with the outputs of that.
+        """
         transition = situation.step.transition
         binding = tuple(
             (v.name, self.datum(env[v.uid], v.colset, _whole(situation.step)))
             for v in transition.variables
         )
-        out: list[Node] = [Line(t.Mark(transition.name, binding))]
+        mark = t.Mark(transition.name, binding)
+        outputs = statements(
+            open_of(self._outputs(situation, env), None, self.known(situation.ordered))
+        )
+        out = without_repetition([*acts, *outputs], situation.ordered, expressions_of(mark))
+        out.append(Line(mark))
         out += [Line(t.Clear(t.Target(self.file_names[p]))) for p in situation.channels]
+        return out
+
+    def _outputs(self, situation: Situation, env: Env) -> list[Owed]:
+        """What CPN ML computes for the tokens that are put: if it fails, the transition does not occur."""
+        out: list[Owed] = []
+        transition = situation.step.transition
+        for arc in transition.arcs:
+            if arc.kind not in (ArcKind.OUTPUT, ArcKind.BOTH) or arc.inscription is None:
+                continue
+            found = delayed_tokens(arc.inscription.value, arc.inscription.form)
+            is_seen = arc.place not in self.machine.sinks and self.shapes[arc.place] != Fields(())
+            for conditions, values, delay in found:
+                try:
+                    out += self._of_alternative(conditions, [*(values or ()), delay], env)
+                except UnsupportedError:
+                    if is_seen:
+                        raise
+        if transition.delay is not None:
+            out += self.pure.owing(transition.delay, env)[1]
+        return out
+
+    def _of_alternative(
+        self,
+        conditions: Iterable[tuple[core.Exp, bool]],
+        values: Iterable[core.Exp | None],
+        env: Env,
+    ) -> list[Owed]:
+        """What is computed for some of the ways in which an inscription turns out."""
+        out: list[Owed] = []
+        path: Path = ()
+        for condition, holds in conditions:
+            value, owed = self.pure.owing(condition, env, path)
+            out += owed
+            assert isinstance(value, Scalar)
+            if isinstance(value.exp, t.Value):
+                if value.exp.value is not holds:
+                    return out
+                continue
+            path = (*path, (value.exp, holds))
+        for e in values:
+            if e is not None:
+                out += self.pure.owing(e, env, path)[1]
         return out
 
     def datum(self, value: Value, colset: Colset | None, span: Span) -> t.Datum:

@@ -458,6 +458,8 @@ def _minus(e: t.Expression) -> t.Expression:
     match e:
         case t.Value(bool()):
             return e
+        case t.Value(int() as number) if not tdl.MIN_INT <= -number <= tdl.MAX_INT:
+            return t.Unary("-", e)
         case t.Value(int() | float() as number):
             return t.Value(-number)
         case t.Quantity(number, unit):

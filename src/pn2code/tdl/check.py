@@ -244,9 +244,9 @@ class _Checker:
                     self.expect(value, wanted, f"`{target.name}`")
             case t.Mark(_, binding):
                 self.mark(binding, s.span)
-            case t.Stop(message):
-                for m in message:
-                    type_of(m, self.scope)
+            case t.Stop(values) | t.Compute(values):
+                for v in values:
+                    type_of(v, self.scope)
             case t.Read() | t.Clear() | t.Write() | t.WaitUntil():
                 self.message(s)
             case t.Move() | t.Speed() | t.WaitTime() | t.Tool() | t.Measure() | t.Sense():

@@ -24,7 +24,7 @@ from pn2code.tdl.types import (
 
 FUNCTIONS: Final[dict[str, int]] = {
     "abs": 1, "min": 2, "max": 2, "floor": 1, "ceil": 1, "round": 1, "trunc": 1, "sqrt": 1,
-    "real": 1, "sin": 1, "cos": 1, "tan": 1, "text": 1, "single": 1, "filled": 1, "pose": 6,
+    "real": 1, "sin": 1, "cos": 1, "tan": 1, "text": 1, "single": 1, "filled": 1, "pose": 6, "computed": 1,
 }  # fmt: skip
 """Built-in functions and their numbers of arguments."""
 
@@ -248,6 +248,8 @@ def _result(e: t.CallExpression, name: str, types: list[Type], scope: Scope) -> 
             return Type.POSE
         case "text":
             return Type.STRING
+        case "computed":
+            return Type.BOOL
         case "single" if first in QUANTITIES or first in (Type.REAL, Type.POSE):
             return first
         case "abs" if first in NUMBERS | QUANTITIES:

@@ -10,7 +10,7 @@ from typing import Final
 KEYWORDS: Final = (
     "program", "input", "output", "const", "var", "procedure", "begin", "end", "single",
     "move", "home", "in", "at", "speed", "default", "wait", "until", "read", "into", "clear", "write", "signal",
-    "tool", "takes", "releases", "creates", "removes", "for",
+    "compute", "tool", "takes", "releases", "creates", "removes", "for",
     "measure", "sense", "mark", "with", "null", "stop", "call", "return", "goto", "exit", "when",
     "if", "then", "elsif", "else", "while", "loop",
     "and", "or", "not", "div", "mod", "true", "false",
@@ -29,8 +29,8 @@ type: (NAME | SPEED | SIGNAL) SINGLE?
 procedure: "procedure" NAME block "end" "procedure"
 
 block: statement*
-?statement: move | speed | wait_time | wait_until | read | clear | write | assign | tool | measure
-          | sense | mark | stop | call | return | label | goto | exit | if | while | loop
+?statement: move | speed | wait_time | wait_until | read | clear | write | assign | compute | tool
+          | measure | sense | mark | stop | call | return | label | goto | exit | if | while | loop
 
 move: "move" MOTION target ("in" frame)? ("at" expression)?
 ?target: HOME | expression
@@ -42,6 +42,7 @@ read: "read" NAME "into" NAME ("," NAME)*
 clear: "clear" NAME
 write: "write" NAME (SIGNAL | expression ("," expression)*)
 assign: NAME ":=" expression
+compute: "compute" expression ("," expression)*
 tool: TOOL (NAME | STRING) handling? "for" expression
 handling: EFFECT (NAME | STRING) ("at" (NAME | STRING))?
 measure: "measure" expression "into" NAME

@@ -346,6 +346,9 @@ class Interpreter:
                 channel = self._channel[file.name]
                 self._files.write(channel, scalars)
                 self._tell(MessageWritten(channel, scalars, self._line))
+            case t.Compute(parts):
+                for part in parts:
+                    evaluate(part, self)
             case t.WaitUntil(condition):
                 return self._wait_until(condition)
             case t.Mark(transition, binding):

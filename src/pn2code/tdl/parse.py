@@ -84,6 +84,7 @@ _STATEMENTS = {
     "CLEAR",
     "WRITE",
     "MEASURE",
+    "COMPUTE",
     "SENSE",
     "MARK",
     "STOP",
@@ -376,6 +377,9 @@ class _Builder(Transformer[Token, Any]):
 
     def null(self, meta: Meta, c: list[Any]) -> t.NullDatum:
         return t.NullDatum(self._span(meta))
+
+    def compute(self, meta: Meta, c: list[Any]) -> t.Compute:
+        return t.Compute(tuple(c), self._span(meta))
 
     def stop(self, meta: Meta, c: list[Any]) -> t.Stop:
         return t.Stop(tuple(c), self._span(meta))

@@ -144,7 +144,7 @@ def expressions_of(s: t.Simple) -> tuple[t.Expression, ...]:
             return () if value is None else (value,)
         case t.WaitTime(e) | t.WaitUntil(e) | t.Assign(_, e) | t.Tool(_, e) | t.Measure(e):
             return (e,)
-        case t.Write(_, values):
+        case t.Write(_, values) | t.Compute(values):
             return values
         case t.Stop(message):
             return message

@@ -154,6 +154,8 @@ def simple(s: t.Simple) -> str:
             return f"write {file.name} {', '.join(expression(v) for v in values) or 'signal'}"
         case t.Assign(target, value):
             return f"{target.name} := {expression(value)}"
+        case t.Compute(values):
+            return f"compute {', '.join(expression(v) for v in values)}"
         case t.Tool(action, duration, handling):
             return f"tool {word(action)}{_handled(handling)} for {expression(duration)}"
         case t.Measure(nominal, target):

@@ -252,6 +252,14 @@ class Assign:
 
 
 @frozen
+class Compute:
+    """`compute n div k`: evaluates expressions, and forgets what they give; what has no value stops the script."""
+
+    values: tuple[Expression, ...]
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@frozen
 class Tool:
     """`tool drill for 3 s`, `tool grip takes blank for 0.5 s`, `tool feed creates blank at slot for 1 s`."""
 
@@ -371,8 +379,8 @@ class Loop:
 
 
 Simple = (
-    Move | Speed | WaitTime | WaitUntil | Read | Clear | Write | Assign | Tool | Measure | Sense | Mark
-    | Stop | Call | Return | Label | Goto | Exit
+    Move | Speed | WaitTime | WaitUntil | Read | Clear | Write | Assign | Compute | Tool | Measure | Sense
+    | Mark | Stop | Call | Return | Label | Goto | Exit
 )  # fmt: skip
 Statement = Simple | If | While | Loop
 

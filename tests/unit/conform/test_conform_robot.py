@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from helpers.robots import Cell
 from helpers.scripts import checked
+from pn2code.conform.observations import observed
 from pn2code.conform.robot import RobotReport, explore
+from pn2code.conform.scheme import Scheme
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.token_game import Game
+from pn2code.semantics.values.multiset import MultiSet
 
 EXTRA = """
 colset GRIP = with held | lost;
@@ -64,3 +68,32 @@ def test_what_a_sensor_says_is_not_made_up(tmp_path: Path) -> None:
     found = compared(tmp_path, ("sense gripper into grip", 'grip := "red"'))
     assert found.deviation is not None
     assert "Grip` with {'e': 'red', 'grip': 'red'}" in found.deviation
+
+
+def test_zeros_of_both_signs_are_two_states(tmp_path: Path) -> None:
+    page = """
+    place Told : REAL = 1`0.0
+    place Over
+    trans Minus guard [1.0 / w < 0.0]
+      in Told : w
+      out Over
+    trans Plus guard [not (1.0 / w < 0.0)]
+      in Told : w
+      out Over
+    """
+    net = Cell(tmp_path, page).partition
+    game = Game(net.net, files=Files(None))
+    scheme = Scheme(net, game)
+    told = next(p.index for p in net.net.places if p.name == "Top.Robot.Told")
+    markings = [
+        replace(
+            game.marking,
+            places=tuple(
+                MultiSet.of([zero]) if i == told else x for i, x in enumerate(game.marking.places)
+            ),
+        )
+        for zero in (0.0, -0.0)
+    ]
+    plus, minus = (scheme.steps(1, m).steps[0].text for m in markings)
+    assert "Plus" in plus and "Minus" in minus
+    assert len({observed(scheme, m, frozenset()) for m in markings}) == 2

@@ -231,6 +231,7 @@ loop
   mark Top.Robot.Take with n = n
   clear x
   if n mod 2 = 1 then
+    compute k + n
     mark Top.Robot.AddOdd with k = k, n = n
     write y k + n
     k := k + n

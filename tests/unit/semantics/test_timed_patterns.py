@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import pytest
-from tests.helpers.netbuilder import flat
 
+from helpers.netbuilder import flat
 from pn2code.semantics.game.report import places
 from pn2code.semantics.game.token_game import Game
 

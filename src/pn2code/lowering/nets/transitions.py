@@ -26,7 +26,6 @@ from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.terms import Symbol
 from pn2code.ml.core.types import list_of
-from pn2code.net.enumerable import SMALL, size
 from pn2code.net.flat import (
     ArcKind,
     BindAll,
@@ -38,6 +37,7 @@ from pn2code.net.flat import (
     FlatTransition,
     Term,
 )
+from pn2code.net.total import is_total
 
 _TAKING = (ArcKind.INPUT, ArcKind.BOTH)
 _PUTTING = (ArcKind.OUTPUT, ArcKind.BOTH)
@@ -411,36 +411,6 @@ class _Thresholds(_Enumeration):
 def parts(term: Term) -> list[core.Exp]:
     """The expressions of a term of an input arc."""
     return [term.coefficient, term.value] + ([term.delay] if term.delay is not None else [])
-
-
-_TOTAL = frozenset(
-    {"=", "<>", "Ms.`", "Ms.++", "Bool.not", "String.^"}
-    | {f"{s}.{op}" for s in ("Int", "IntInf", "Real", "String") for op in ("<", "<=", ">", ">=")}
-    | {f"{s}.{op}" for s in ("Int", "IntInf", "Real") for op in ("+", "-", "*", "~")}
-)
-"""Built-in functions that do nothing but give a value; an Overflow is taken where it comes."""
-
-
-def is_total(e: core.Exp) -> bool:
-    """Whether an expression has a value without doing anything: neither exceptions nor random numbers."""
-    match e:
-        case core.Lit() | core.Var() | core.Con():
-            return True
-        case core.RecordExp(fields=fields):
-            return all(is_total(x) for _, x in fields)
-        case core.ListExp(items=items):
-            return all(map(is_total, items))
-        case core.Apply(function=core.Con(), argument=argument):
-            return is_total(argument)
-        case core.Apply(function=core.Builtin(name=name), argument=argument) if name in _TOTAL:
-            return is_total(argument)
-        case core.Apply(function=core.Builtin(name="Colset.all", colset=colset)):
-            return colset is not None and size(colset, SMALL) is not None
-        case core.Select(record=record):
-            return is_total(record)
-        case core.If(condition=c, then=t, otherwise=o):
-            return is_total(c) and is_total(t) and is_total(o)
-    return False
 
 
 def _colsets(types: Types, pattern: core.Pat, colset: Colset | None) -> dict[int, str]:

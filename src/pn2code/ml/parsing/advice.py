@@ -125,6 +125,16 @@ def behind_slashes(before: str) -> str:
     return "a comment is written `(* .. *)`; `//` is an operator" if "//" in line else ""
 
 
+def unsupported(name: str) -> str:
+    """For a function of CPN Tools that pn2code does not have."""
+    if name == "inst":
+        return (
+            "it is the number of the page instance: keep it as a token of a place that each instance has from the "
+            "page above, as in `place Self : INT` with `1`1` for the first one"
+        )
+    return "write a function of your own for it" if "." in name else ""
+
+
 def unbound_word(name: str, colsets: Iterable[str]) -> str:
     """For a name that is declared nowhere and is like no other."""
     if name in _LIST_FUNCTIONS:

@@ -148,7 +148,7 @@ class Names:
                     codes.UNSUPPORTED_BUILTIN,
                     f"function `{name}` is not supported",
                     span,
-                    hint="write a function of your own for it" if "." in name else "",
+                    hint=advice.unsupported(name),
                 )
                 return BROKEN
 

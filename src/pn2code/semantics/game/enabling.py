@@ -2,6 +2,10 @@
 
 Order of the bindings of a transition: the steps of its plan are taken one after the other, each trying its tokens in
 the order of the place's colour set (`BindAll` and `BindRandom`: the values in order).
+
+What is looked at, and so may raise an exception, follows the same order: after each step the guards that have all their
+variables, then what arcs want by inscriptions that cannot raise one; after the last step the other places, arc by arc.
+Whatever fails ends it.
 """
 
 from __future__ import annotations
@@ -11,7 +15,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from pn2code.diagnostics import Diagnostics, Note, Origin, Span
-from pn2code.ml.core.terms import Pat, Symbol
+from pn2code.ml.core.terms import Exp, Lit, Pat, Symbol
 from pn2code.net.flat import (
     ArcKind,
     BindAll,
@@ -23,7 +27,9 @@ from pn2code.net.flat import (
     FlatTransition,
     Term,
 )
+from pn2code.net.total import is_total
 from pn2code.semantics.codes import RUNTIME_ERROR
+from pn2code.semantics.evaluation.effects import effects_of
 from pn2code.semantics.evaluation.evaluate import Evaluator, match, variables
 from pn2code.semantics.evaluation.random import bindings_of
 from pn2code.semantics.game.marking import (
@@ -132,6 +138,19 @@ Found = dict[int, Value]
 """A binding while it is searched for: `uid` of the symbol -> value."""
 
 
+@dataclass(frozen=True, slots=True)
+class _Wants:
+    """What a transition wants.
+
+    Args:
+        arcs: its input arcs, by place, in order.
+        together: their inscriptions draw random numbers or the like: all are looked at, whatever the others want.
+    """
+
+    arcs: dict[int, list[FlatArc]]
+    together: bool
+
+
 class Enabling:
     """Enabling of the transitions of a net.
 
@@ -151,6 +170,9 @@ class Enabling:
             if s.uid in evaluator.globals
         }
         self._guards: dict[int, list[list[int]]] = {}
+        self._effects = effects_of(net.program)
+        self._early_places: dict[int, list[list[int]]] = {}
+        self._wants: dict[int, _Wants] = {}
         self._in_order: dict[int, tuple[PlaceMarking, list[Value]]] = {}
 
     # --- search for bindings ---------------------------------------------------------------------
@@ -162,6 +184,7 @@ class Enabling:
         *,
         ignore_stamps: bool = False,
         accept: Accept | None = None,
+        wanting: bool = False,
     ) -> Iterator[Binding]:
         """The bindings with which the guard is true and each pattern has an available token, without repetition.
 
@@ -172,6 +195,7 @@ class Enabling:
             marking: tokens and time.
             ignore_stamps: as if all tokens were available.
             accept: only bindings all of whose values it accepts.
+            wanting: leave out those for which a place lacks what is known to be wanted before the last step.
 
         Raises:
             GameError: an inscription raised an exception.
@@ -179,7 +203,7 @@ class Enabling:
         self.evaluator.now = marking.time
         self.evaluator.random.start(self.evaluator.steps, bindings_of(t.index))
         seen: set[BindingElement] = set()
-        for found in self._search(t, marking, 0, self.constants, ignore_stamps, accept):
+        for found in self._search(t, marking, 0, self.constants, ignore_stamps, accept, wanting):
             binding = {s: found[s.uid] for s in t.variables if s.uid in found}
             element = BindingElement.make(t, binding)
             if element not in seen:
@@ -194,6 +218,7 @@ class Enabling:
         found: Found,
         free: bool,
         accept: Accept | None,
+        wanting: bool,
     ) -> Iterator[Found]:
         """Takes the steps of the plan from `position` on."""
         if not self._guards_hold(t, position, found):
@@ -201,6 +226,10 @@ class Enabling:
         if position == len(t.plan):
             yield found
             return
+        if wanting:
+            for place in self._early(t)[position]:
+                if not self._suffices(t, marking, place, found):
+                    return
         match t.plan[position]:
             case BindTerm(arc, term):
                 choices = self._match_tokens(t.arcs[arc], term, marking, found, free)
@@ -213,7 +242,7 @@ class Enabling:
             if accept is not None and not all(accept(s, choice[s.uid]) for s in new):
                 continue
             if self._are_legal(new, choice):
-                yield from self._search(t, marking, position + 1, choice, free, accept)
+                yield from self._search(t, marking, position + 1, choice, free, accept, wanting)
 
     def _match_tokens(
         self, arc: FlatArc, index: int, marking: Marking, found: Found, free: bool
@@ -228,7 +257,7 @@ class Enabling:
                 continue
             if not free and isinstance(tokens, TimedMultiSet):
                 earliest = tokens.stamps[value][0]
-                if earliest - self._early(arc, term, choice) > marking.time:
+                if earliest - self._advance(arc, term, choice) > marking.time:
                     continue
             yield choice
 
@@ -285,23 +314,9 @@ class Enabling:
         """For each position in the plan, which guards have all their variables there but not earlier."""
         if t.index not in self._guards:
             own = set(t.variables)
-            bound: set[Symbol] = set()
             open_guards = {i: variables(g) & own for i, g in enumerate(t.guards)}
             positions: list[list[int]] = []
-            for step in (None, *t.plan):
-                match step:
-                    case BindTerm(arc, term):
-                        inscription = t.arcs[arc].inscription
-                        assert inscription is not None
-                        pattern = inscription.terms[term].pattern
-                        assert pattern is not None
-                        bound |= variables(pattern)
-                    case BindEquation(_, pattern, _):
-                        bound |= variables(pattern)
-                    case BindAll(symbol) | BindRandom(symbol):
-                        bound.add(symbol)
-                    case None:
-                        pass
+            for bound in self._bound_after(t):
                 positions.append([i for i, needed in open_guards.items() if needed <= bound])
                 for i in positions[-1]:
                     del open_guards[i]
@@ -309,16 +324,78 @@ class Enabling:
             self._guards[t.index] = positions
         return self._guards[t.index]
 
+    @staticmethod
+    def _bound_after(t: FlatTransition) -> list[set[Symbol]]:
+        """The variables that have values before the first step of the plan, and after each."""
+        bound: set[Symbol] = set()
+        after = [set(bound)]
+        for step in t.plan:
+            match step:
+                case BindTerm(arc, term):
+                    inscription = t.arcs[arc].inscription
+                    assert inscription is not None
+                    pattern = inscription.terms[term].pattern
+                    assert pattern is not None
+                    bound |= variables(pattern)
+                case BindEquation(_, pattern, _):
+                    bound |= variables(pattern)
+                case BindAll(symbol) | BindRandom(symbol):
+                    bound.add(symbol)
+            after.append(set(bound))
+        return after
+
     def _evaluate(self, exp: Any, found: Found) -> Any:
         return self.evaluator.evaluate(exp, found)
 
-    def _early(self, arc: FlatArc, term: Term, found: Found) -> Any:
+    def _advance(self, arc: FlatArc, term: Term, found: Found) -> Any:
         if term.delay is None:
             return 0
         with running(arc.origin, "the delay of an input arc"):
             return self._evaluate(term.delay, found)
 
     # --- demands ---------------------------------------------------------------------------------
+
+    def _early(self, t: FlatTransition) -> list[list[int]]:
+        """For each position in the plan, the places of which all that is wanted is known then, and not earlier."""
+        if t.index not in self._early_places:
+            own = set(t.variables)
+            order = self._bound_after(t)
+            positions: list[list[int]] = [[] for _ in order]
+            wants = self._wanted(t)
+            for place, arcs in wants.arcs.items():
+                terms = [x for a in arcs for x in _terms(a)]
+                texts = [e for x in terms for e in _texts(x)]
+                if wants.together or not all(map(is_total, texts)) or _is_found(t, place, terms):
+                    continue
+                needed = {s for e in texts for s in variables(e) & own}
+                positions[next(i for i, bound in enumerate(order) if needed <= bound)].append(place)
+            self._early_places[t.index] = positions
+        return self._early_places[t.index]
+
+    def _wanted(self, t: FlatTransition) -> _Wants:
+        if t.index not in self._wants:
+            arcs: dict[int, list[FlatArc]] = {}
+            for arc in t.arcs:
+                if arc.kind in (ArcKind.INPUT, ArcKind.BOTH) and arc.inscription is not None:
+                    arcs.setdefault(arc.place, []).append(arc)
+            texts = [e for own in arcs.values() for a in own for x in _terms(a) for e in _texts(x)]
+            self._wants[t.index] = _Wants(arcs, bool(self._effects.of(*texts)))
+        return self._wants[t.index]
+
+    def _suffices(self, t: FlatTransition, marking: Marking, place: int, found: Found) -> bool:
+        """Whether a place holds what the transition wants of it."""
+        arcs = self._wanted(t).arcs[place]
+        terms = [(arc, term) for arc in arcs for term in _terms(arc)]
+        demands = [d for arc, term in terms for d in self._term_demands(arc, term, found)]
+        return isinstance(self.take(marking, demands), Marking)
+
+    def _is_held(self, t: FlatTransition, marking: Marking, binding: Binding) -> bool:
+        """Whether all places hold what the transition wants; one that does not ends the question."""
+        wants = self._wanted(t)
+        if wants.together:
+            return isinstance(self.take(marking, self.demands(t, binding)), Marking)
+        found = {s.uid: value for s, value in binding.items()}
+        return all(self._suffices(t, marking, place, found) for place in wants.arcs)
 
     def demands(
         self, t: FlatTransition, binding: Binding, *, only: int | None = None
@@ -333,7 +410,7 @@ class Enabling:
         return demands
 
     def _term_demands(self, arc: FlatArc, term: Term, found: Found) -> list[Demand]:
-        early = self._early(arc, term, found)
+        early = self._advance(arc, term, found)
         with running(arc.origin, "the inscription"):
             value = self._evaluate(term.value, found)
             count = self._evaluate(term.coefficient, found)
@@ -377,8 +454,8 @@ class Enabling:
         """
         if self._inhibitors(t, marking):
             return
-        for binding in self.bindings(t, marking, accept=accept):
-            if isinstance(self.take(marking, self.demands(t, binding)), Marking):
+        for binding in self.bindings(t, marking, accept=accept, wanting=True):
+            if self._is_held(t, marking, binding):
                 yield binding
 
     def _inhibitors(self, t: FlatTransition, marking: Marking) -> list[FlatArc]:
@@ -471,11 +548,30 @@ class Enabling:
         if term.delay is None:
             return {0}
         if not variables(term.delay) & set(t.variables):
-            return {self._early(arc, term, {})}
+            return {self._advance(arc, term, {})}
         return {
-            self._early(arc, term, {s.uid: value for s, value in binding.items()})
+            self._advance(arc, term, {s.uid: value for s, value in binding.items()})
             for binding in self.bindings(t, marking, ignore_stamps=True)
         }
+
+
+def _terms(arc: FlatArc) -> tuple[Term, ...]:
+    """The summands of the inscription of an arc."""
+    return arc.inscription.terms if arc.inscription is not None else ()
+
+
+def _is_found(t: FlatTransition, place: int, terms: list[Term]) -> bool:
+    """Whether a step of the plan finds all that is wanted of a place: one token."""
+    if len(terms) != 1:
+        return False
+    (term,) = terms
+    found = any(isinstance(x, BindTerm) and t.arcs[x.arc].place == place for x in t.plan)
+    return found and isinstance(term.coefficient, Lit) and term.coefficient.value == 1
+
+
+def _texts(term: Term) -> list[Exp]:
+    """The expressions of a summand of an input arc."""
+    return [term.coefficient, term.value, *([] if term.delay is None else [term.delay])]
 
 
 def _patterns(t: FlatTransition) -> Iterator[Pat]:

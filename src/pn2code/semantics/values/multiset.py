@@ -6,10 +6,11 @@ TimedMultiSet.of([Timed(1, 3), Timed(1, 7)])     # 1`1@3 +++ 1`1@7
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 
-from pn2code.semantics.values.data import Timed, Value
+from pn2code.semantics.values.data import Timed, Value, zero_signs
 
 
 class NotContained(ValueError):  # noqa: N818
@@ -77,11 +78,17 @@ class MultiSet:
 class TimedMultiSet:
     """A multi-set of tokens with time stamps.
 
+    Values that differ only in the sign of a zero are equal. Tokens of one stamp are one value then, the first that was
+    put; those of other stamps keep theirs.
+
     Args:
-        stamps: value -> the stamps of its tokens, ascending, at least one. Not to be changed.
+        stamps: value (that of the earliest token) -> the stamps of its tokens, ascending, at least one. Not to be
+            changed.
+        zeros: of values with zeros: the value of each token, in the order of the stamps.
     """
 
     stamps: Mapping[Value, tuple[int | float, ...]] = field(default_factory=dict)
+    zeros: Mapping[Value, tuple[Value, ...]] = field(default_factory=dict, compare=False)
 
     @staticmethod
     def of(tokens: Iterable[Timed]) -> TimedMultiSet:
@@ -94,28 +101,52 @@ class TimedMultiSet:
 
     def __iter__(self) -> Iterator[Timed]:
         """Iterate over the tokens."""
-        return (Timed(value, stamp) for value, stamps in self.stamps.items() for stamp in stamps)
+        return (token for value in self.stamps for token in self.tokens(value))
+
+    def tokens(self, value: Value) -> tuple[Timed, ...]:
+        """The tokens of a value, the earliest first."""
+        stamps = self.stamps.get(value, ())
+        values = self.zeros.get(value) or (value,) * len(stamps)
+        return tuple(Timed(v, stamp) for v, stamp in zip(values, stamps, strict=True))
 
     def __hash__(self) -> int:
         return hash(frozenset(self.stamps.items()))
 
     def __add__(self, tokens: Iterable[Timed]) -> TimedMultiSet:
-        found = dict(self.stamps)
+        found, zeros = dict(self.stamps), dict(self.zeros)
         for token in tokens:
-            found[token.value] = tuple(sorted((*found.get(token.value, ()), token.stamp)))
-        return TimedMultiSet(found)
+            value, stamp = token.value, token.stamp
+            stamps = found.get(value, ())
+            if not any(True for _ in zero_signs(value)):
+                found[value] = tuple(sorted((*stamps, stamp)))
+                continue
+            values = zeros.pop(value, ())
+            found.pop(value, None)
+            at = bisect_right(stamps, stamp)
+            own = values[at - 1] if at > 0 and stamps[at - 1] == stamp else value
+            values = (*values[:at], own, *values[at:])
+            found[values[0]] = (*stamps[:at], stamp, *stamps[at:])
+            zeros[values[0]] = values
+        return TimedMultiSet(found, zeros)
 
     def __sub__(self, tokens: Iterable[Timed]) -> TimedMultiSet:
         """Without exactly these tokens; raises NotContained when one of them is not there."""
-        found = dict(self.stamps)
+        found, zeros = dict(self.stamps), dict(self.zeros)
         for token in tokens:
-            stamps = list(found.pop(token.value, ()))
+            value = token.value
+            stamps = found.pop(value, ())
             if token.stamp not in stamps:
                 raise NotContained
-            stamps.remove(token.stamp)
-            if stamps:
-                found[token.value] = tuple(stamps)
-        return TimedMultiSet(found)
+            at = stamps.index(token.stamp)
+            left = (*stamps[:at], *stamps[at + 1 :])
+            values = zeros.pop(value, ())
+            if values and left:
+                values = (*values[:at], *values[at + 1 :])
+                value = values[0]
+                zeros[value] = values
+            if left:
+                found[value] = left
+        return TimedMultiSet(found, zeros)
 
     def untimed(self) -> MultiSet:
         """Without the stamps."""
