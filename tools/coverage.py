@@ -27,11 +27,12 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[1]
 PARTS = ("supervisor", "channel", "port")
 TESTS = (
-    "test_supervisor_host", "test_supervisor_rows", "test_generated_supervisor", "test_dry_runs", "test_faults",
-    "test_riveting_faults", "test_messages_c", "test_message_cell", "test_minimal_cell", "test_input_sizes",
+    "test_branches", "test_supervisor_host", "test_supervisor_rows", "test_generated_supervisor", "test_dry_runs",
+    "test_faults", "test_riveting_faults", "test_messages_c", "test_message_cell", "test_minimal_cell",
+    "test_input_sizes",
     "test_bad_coordinates", "test_monitor_chance", "test_monitor_references", "test_timed_channels", "test_files_c",
-    "test_library_files_c", "test_files_of_one_generation", "test_failing_calls", "test_shared_files",
-    "test_running_ends", "test_who_waits", "test_order_of_asking",
+    "test_library_files_c", "test_shared_files", "test_running_ends", "test_who_waits", "test_order_of_asking",
+    "test_dry_run_turns",
 )  # fmt: skip
 WRAPPER = """\
 #!{python}
@@ -134,6 +135,15 @@ def table(files: Files) -> Iterator[str]:
     for name, (reached, lines, taken, branches) in rows:
         of_lines, of_branches = 100 * reached / max(lines, 1), 100 * taken / max(branches, 1)
         yield f"| `{name}` | {of_lines:.1f} % of {lines:,} | {of_branches:.1f} % of {branches:,} |"
+
+
+def untaken(files: Files) -> Iterator[tuple[str, int, str]]:
+    """Where a branch is never taken: file, line, C."""
+    for name, lines in sorted(files.items()):
+        text = (ROOT / "cnative" / "src" / name).read_text(encoding="utf-8").splitlines()
+        for number, line in sorted(lines.items()):
+            if 0 in line.taken:
+                yield name, number, text[number - 1].strip()
 
 
 def missing(files: Files) -> Iterator[str]:

@@ -8,6 +8,7 @@
  *   scalar NUMBER TEXT       parses one scalar of the table below: as it is written again, or `refused COLUMN`
  *   file CONSUMED HEX        reads a channel's file (two reals, session 0123abcd) given in hexadecimal:
  *                            `empty`, `message X Y SEQ`, or `refused WHY`
+ *   many TEXT                parses one integer more than a message may have: `refused COLUMN REPORT`, or OK
  */
 #include <stdio.h>
 #include <stdlib.h>
@@ -99,6 +100,21 @@ static void parse_file(const char *argument)
     }
 }
 
+static void parse_many(const char *text)
+{
+    static pn_scalar_t scalar[PN_CHANNEL_SCALARS + 1U];
+    for (uint32_t i = 0U; i <= PN_CHANNEL_SCALARS; i++) {
+        scalar[i] = (pn_scalar_t){ .kind = PN_SCALAR_INT, .label = "n", .colset = "INT" };
+    }
+    s_message.count = 0U;
+    s_message.text_length = 0U;
+    if (pn_scalars_parse(scalar, PN_CHANNEL_SCALARS + 1U, text, strlen(text), &s_message)) {
+        (void)puts("OK");
+    } else {
+        (void)printf("refused %u %s\n", (unsigned)s_message.column, s_message.report);
+    }
+}
+
 int main(void)
 {
     static char line[16384];
@@ -118,6 +134,8 @@ int main(void)
             parse_scalar(line + 7);
         } else if (strncmp(line, "file ", 5U) == 0) {
             parse_file(line + 5);
+        } else if (strncmp(line, "many ", 5U) == 0) {
+            parse_many(line + 5);
         } else {
             return 2;
         }

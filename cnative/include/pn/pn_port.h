@@ -19,7 +19,7 @@
 
 /* --- time and signals --------------------------------------------------------------------------------------------- */
 
-/* Nanoseconds of a clock that never jumps. */
+/* Nanoseconds of a clock that never goes back: where the system's does, or cannot be read, it stands still. */
 uint64_t pn_port_now(void);
 
 /* A number that differs from run to run; names a session. */
@@ -38,8 +38,8 @@ int pn_port_stop_signal(void);
  * Returns whether the descriptor can be read. */
 bool pn_port_wait(int descriptor, uint64_t timeout_ns);
 
-/* Reads what is there from a descriptor, at most `capacity` bytes: their number, 0 at the end of the file, -1 when a
- * signal or an error interrupted. */
+/* Reads what is there from a descriptor, at most `capacity` bytes: their number, 0 at the end of the file and where it
+ * cannot be read, -1 when a signal interrupted. */
 long pn_port_receive(int descriptor, char *buffer, size_t capacity);
 
 /* --- directories and files ---------------------------------------------------------------------------------------- */

@@ -27,7 +27,7 @@ static pn_message_t s_message;
 
 static int digit(char c)
 {
-    return ((c >= '0') && (c <= '9')) ? (c - '0') : (c - 'a') + 10;
+    return (c <= '9') ? (c - '0') : (c - 'a') + 10;
 }
 
 /* Bytes in hexadecimal; returns their number. */

@@ -31,9 +31,14 @@ static const uint64_t NS_PER_S = 1000000000U;
 
 uint64_t pn_port_now(void)
 {
+    static uint64_t latest = 0U;
     struct timespec now = { 0, 0 };
     (void)clock_gettime(CLOCK_MONOTONIC, &now);
-    return ((uint64_t)now.tv_sec * NS_PER_S) + (uint64_t)now.tv_nsec;
+    const uint64_t found = ((uint64_t)now.tv_sec * NS_PER_S) + (uint64_t)now.tv_nsec;
+    if (found > latest) { /* 0 where it cannot be read */
+        latest = found;
+    }
+    return latest;
 }
 
 uint32_t pn_port_unique(void)
@@ -109,7 +114,8 @@ bool pn_port_wait(int descriptor, uint64_t timeout_ns)
 
 long pn_port_receive(int descriptor, char *buffer, size_t capacity)
 {
-    return (long)read(descriptor, buffer, capacity);
+    const ssize_t got = read(descriptor, buffer, capacity);
+    return ((got < 0) && (errno != EINTR)) ? 0 : (long)got;
 }
 
 int pn_port_dir_open(const char *path, bool create, int *directory)

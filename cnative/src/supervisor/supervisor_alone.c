@@ -150,8 +150,7 @@ static bool play_owner(sup_t *sup, int32_t owner, uint64_t *count)
 /* Every owner in turn, until none can do anything but repeat itself. */
 static bool play_all(sup_t *sup)
 {
-    const bool is_whole =
-        (sup->cell->owner < 0) || (sup->net->owner_count == 0U) || (sup->net->owner_count > (PN_CELL_PEERS_MAX + 1U));
+    const bool is_whole = (sup->cell->owner < 0) || (sup->net->owner_count > (PN_CELL_PEERS_MAX + 1U));
     const uint32_t parties = is_whole ? 1U : sup->net->owner_count;
     uint64_t count = 1U;
     while (count > 0U) {
@@ -210,6 +209,20 @@ static void print_summary(const sup_t *sup)
     sup_trace_marking(sup);
 }
 
+/* Until `t` seconds have passed. False when the program has to stop. */
+static bool wait_until(sup_t *sup, uint64_t begin, double t)
+{
+    double left = t - ((double)(pn_port_now() - begin) * 1e-9);
+    while ((left > 0.0) && (pn_port_stop_signal() == 0)) {
+        (void)pn_port_wait(-1, (uint64_t)(((left < 1.0) ? left : 1.0) * 1e9) + 1U);
+        left = t - ((double)(pn_port_now() - begin) * 1e-9);
+    }
+    if (pn_port_stop_signal() != 0) {
+        return sup_stop(sup, SUP_EXIT_INTERRUPTED, "interrupted by signal %d", pn_port_stop_signal());
+    }
+    return true;
+}
+
 void sup_run_alone(sup_t *sup)
 {
     const uint64_t begin = pn_port_now();
@@ -230,12 +243,7 @@ void sup_run_alone(sup_t *sup)
                         sup->fired);
             }
         } else if (on && !sup_is_final(sup) && sup_next_time(sup, &next)) {
-            while (sup->options.paced && on && ((double)(pn_port_now() - begin) * 1e-9 < next)) {
-                const double left = next - ((double)(pn_port_now() - begin) * 1e-9);
-                (void)pn_port_wait(-1, (uint64_t)(((left > 0.0) ? ((left < 1.0) ? left : 1.0) : 0.0) * 1e9) + 1U);
-                on = (pn_port_stop_signal() == 0)
-                     || sup_stop(sup, SUP_EXIT_INTERRUPTED, "interrupted by signal %d", pn_port_stop_signal());
-            }
+            on = !sup->options.paced || wait_until(sup, begin, next);
             sup->t = next;
             sup_set_time(sup, next);
         } else {

@@ -85,19 +85,17 @@ bool sup_stop_error(sup_t *sup, const char *doing);
 
 /* --- supervisor_play.c --- */
 
-typedef void (*sup_fired_t)(sup_t *sup, void *user, uint32_t transition);
-
 /* Fires the first enabled transition of the owner (-1: of anybody) in the documented order. Returns 1 when one fired, 0
  * when none is enabled, -1 when the program has to stop. */
 int sup_fire_one(sup_t *sup, int32_t owner, uint32_t *transition);
 
-/* Fires until none is enabled. False when the program has to stop. `fired` (may be NULL) is told of each. */
-bool sup_play(sup_t *sup, int32_t owner, sup_fired_t fired, void *user, uint64_t *count);
+/* Fires until none is enabled. False when the program has to stop. */
+bool sup_play(sup_t *sup, int32_t owner, uint64_t *count);
 
 /* Sets the model clock for `t` seconds (never back). */
 void sup_set_time(sup_t *sup, double t);
 
-/* When, in seconds, something may become enabled by time alone; false if never. */
+/* When, in seconds, something may become enabled by time alone; false if never, or when the program has to stop. */
 bool sup_next_time(sup_t *sup, double *t);
 
 /* Whether a final place holds a token. */

@@ -30,7 +30,7 @@ typedef struct input_text {
 static bool read_file(sup_t *sup, const pn_cell_input_t *input, input_text_t *text)
 {
     const int length = snprintf(text->path, sizeof text->path, "%s/%s", sup->options.input, input->file);
-    if ((length < 0) || ((size_t)length >= sizeof text->path)) {
+    if ((size_t)length >= sizeof text->path) { /* a negative length is a large one here */
         return sup_stop(sup, SUP_EXIT_USAGE, "the path of the input file %s is too long", input->file);
     }
     if (strcmp(sup->options.input, ".") == 0) {
@@ -80,7 +80,7 @@ static const char *labels(const pn_scalar_t *scalar, uint32_t count, char *out, 
     out[0] = '\0';
     for (uint32_t i = 0U; i < count; i++) {
         const int put = snprintf(out + at, capacity - at, "%s`%s`", (i > 0U) ? " " : "", scalar[i].label);
-        if ((put < 0) || ((size_t)put >= capacity - at)) {
+        if ((size_t)put >= capacity - at) {
             return out;
         }
         at += (size_t)put;
@@ -113,7 +113,7 @@ static bool parse(sup_t *sup, const pn_cell_input_t *input, input_text_t *text, 
                             "%s:%" PRIu32 ":%" PRIu32 ": %s (this line holds %" PRIu32 " value%s: %s)", text->path,
                             text->line, token->column, token->report, wanted, (wanted == 1U) ? "" : "s", text->columns);
         }
-        for (uint32_t k = 0U; (k < wanted) && (done < PN_CHANNEL_SCALARS); k++) {
+        for (uint32_t k = 0U; k < wanted; k++) { /* all of them fit: pn_scalars_parse has found room for them */
             text->line_of[done] = text->line;
             done++;
         }
@@ -146,8 +146,7 @@ static bool stop_for_colour(sup_t *sup, const pn_cell_input_t *input, const inpu
     return sup_stop(sup, SUP_EXIT_USAGE,
                     "%s:%" PRIu32 ":%" PRIu32 ": the token that begins here is not in the colour set `%s` of "
                     "place `%s`",
-                    text->path, (token->count > 0U) ? text->line_of[0] : 1U,
-                    (token->count > 0U) ? token->column_of[0] : 1U, place->colset, place->name);
+                    text->path, text->line_of[0], token->column_of[0], place->colset, place->name);
 }
 
 bool sup_read_inputs(sup_t *sup)
@@ -162,8 +161,7 @@ bool sup_read_inputs(sup_t *sup)
         }
         pn_bag_clear(place->bag, sup->marking);
         if (!pn_marking_put(sup->net, &sup->cx, sup->marking, input->place, token.leaf, token.count)) {
-            const bool colour = (sup->cx.error == PN_ERR_COLOUR);
-            if (!colour) {
+            if (sup->cx.error != PN_ERR_COLOUR) {
                 return sup_stop_error(sup, "putting the token of an input file");
             }
             sup->cx.error = PN_OK;

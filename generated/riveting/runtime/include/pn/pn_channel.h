@@ -90,7 +90,8 @@ pn_channel_state_t pn_channel_parse(const pn_cell_channel_t *channel, const char
 /* CRC-32 (IEEE 802.3, as zlib's crc32), to be continued from a previous result; begin with 0. */
 uint32_t pn_crc32(uint32_t crc, const char *data, size_t length);
 
-/* Printable form of foreign bytes between back-ticks, cut after some 60 of them. Returns `out`. */
+/* Printable form of foreign bytes between back-ticks, cut after some 60 of them, or where `capacity`, at least 16, is
+ * used up. Returns `out`. */
 const char *pn_quote(const char *data, size_t length, char *out, size_t capacity);
 
 /* --- transports --------------------------------------------------------------------------------------------------- */
@@ -137,23 +138,21 @@ typedef struct pn_transport {
     PN_NODISCARD bool (*clear)(void *self, uint32_t channel);
     /* Publishes a message on an outgoing channel; a fault when the one before has not been taken (I3). */
     PN_NODISCARD bool (*write)(void *self, uint32_t channel, const pn_leaf_t *leaf);
-    /* Whether the outgoing channel has been emptied by its reader. */
-    bool (*taken)(void *self, uint32_t channel);
     /* What is known of the peer (I8, I9). */
     void (*party)(void *self, uint32_t peer, pn_party_t *out);
-    /* Says what has become of this side (I9). */
+    /* Says what has become of this side (I9); "" where there is no reason to give. */
     PN_NODISCARD bool (*announce)(void *self, pn_party_state_t state, const char *reason);
-    /* Waits for a change, at most `timeout_ns`. */
+    /* Waits for a change, at most `timeout_ns` (less than UINT64_MAX, which pn_port_wait takes for ever). */
     pn_wait_t (*wait)(void *self, uint64_t timeout_ns);
     void (*close)(void *self);
 } pn_transport_t;
 
 typedef struct pn_files_options {
     const char *directory;
-    bool create;      /* make the directory when it is missing */
-    bool watch;       /* use the system's notices where there are any; false: look every time (lock-step, polling) */
-    uint64_t poll_ns; /* without notices: how often to look */
-    pn_notice_t notice;
+    bool create;        /* make the directory when it is missing */
+    bool watch;         /* use the system's notices where there are any; false: look every time (lock-step, polling) */
+    uint64_t poll_ns;   /* without notices: how often to look */
+    pn_notice_t notice; /* not NULL */
     void *user;
 } pn_files_options_t;
 

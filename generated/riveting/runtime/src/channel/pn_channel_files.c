@@ -141,16 +141,28 @@ static void files_accept(void *self, uint32_t index)
     s_files.channel[index].accepted = true;
 }
 
+/* The name of the temporary file of this side beside a channel's. */
+static bool name_temporary(const char *file, char temporary[NAME_SIZE])
+{
+    const int length = snprintf(temporary, NAME_SIZE, ".%s.%s.tmp", file, s_files.cell->side);
+    if (((size_t)length >= NAME_SIZE) || (strchr(file, '/') != NULL)) { /* a negative length is a large one here */
+        return fail(true, "`%s` cannot be the name of a channel's file", file);
+    }
+    return true;
+}
+
 /* Makes the file of a channel between two peers, empty. */
 static bool make_empty(const char *file)
 {
     char temporary[NAME_SIZE];
-    const int length = snprintf(temporary, sizeof temporary, ".%s.%s.tmp", file, s_files.cell->side);
-    if ((length < 0) || ((size_t)length >= sizeof temporary) || (strchr(file, '/') != NULL)) {
-        return fail(true, "`%s` cannot be the name of a channel's file", file);
+    if (!name_temporary(file, temporary)) {
+        return false;
     }
     const int error = pn_port_publish(s_files.directory, file, temporary, EMPTY, sizeof EMPTY - 1U);
-    return (error == 0) || fail_errno("write", file, error);
+    if (error != 0) {
+        return fail_errno("write", file, error);
+    }
+    return true;
 }
 
 /* Publishes a content, by the prepared file where there is one (I2). */
@@ -168,7 +180,10 @@ static bool put_file(uint32_t index, const char *data, size_t length)
     } else {
         error = pn_port_publish(s_files.directory, file, state->temporary, data, length);
     }
-    return (error == 0) || fail_errno("write", file, error);
+    if (error != 0) {
+        return fail_errno("write", file, error);
+    }
+    return true;
 }
 
 /* Makes ready for the next publications. What fails here is tried, and reported, when there is something to publish. */
@@ -238,20 +253,13 @@ static bool holds_nothing(uint32_t index, bool *empty)
     return true;
 }
 
-static bool files_taken(void *self, uint32_t index)
-{
-    (void)self;
-    bool empty = false;
-    return holds_nothing(index, &empty) && empty;
-}
-
 static bool files_write(void *self, uint32_t index, const pn_leaf_t *leaf)
 {
     (void)self;
     static char text[PN_CHANNEL_TEXT];
     file_channel_t *const state = &s_files.channel[index];
     const pn_cell_channel_t *const channel = &s_files.cell->channel[index];
-    bool empty = state->empty && !state->dirty && (s_files.watch >= 0);
+    bool empty = state->empty && !state->dirty; /* which it always is without notices */
     if (!empty && !holds_nothing(index, &empty)) {
         return false;
     }
@@ -361,7 +369,7 @@ static bool files_announce(void *self, pn_party_state_t state, const char *reaso
     (void)self;
     char text[512];
     char line[256];
-    (void)take_line((reason != NULL) ? reason : "", line, sizeof line); /* one line, whatever it was */
+    (void)take_line(reason, line, sizeof line); /* one line, whatever it was */
     const int length = snprintf(text, sizeof text, "%s\n%s %" PRIu64 "\n%s\n", STATE_NAME[state], s_files.session,
                                 pn_port_pid(), line);
     const int error = pn_port_rewrite(s_files.status, text, (length > 0) ? (size_t)length : 0U);
@@ -436,12 +444,9 @@ static pn_wait_t files_wait(void *self, uint64_t timeout_ns)
         if (!change.incoming) {
             look_at_outgoing();
             prepare();
-            const uint64_t left = (timeout_ns == UINT64_MAX) ? UINT64_MAX : timeout_ns - spent;
-            (void)pn_port_wait(s_files.watch, left);
-            if (timeout_ns != UINT64_MAX) {
-                spent = pn_port_now() - begin;
-                over = (spent >= timeout_ns);
-            }
+            (void)pn_port_wait(s_files.watch, timeout_ns - spent);
+            spent = pn_port_now() - begin;
+            over = (spent >= timeout_ns);
         }
     }
     if (pn_port_stop_signal() != 0) {
@@ -468,13 +473,6 @@ static void files_close(void *self)
 
 /* --- opening (I7) ------------------------------------------------------------------------------------------------- */
 
-static void notice(const char *text)
-{
-    if (s_files.options.notice != NULL) {
-        s_files.options.notice(s_files.options.user, text);
-    }
-}
-
 static bool take_lock(void)
 {
     char name[NAME_SIZE];
@@ -491,8 +489,10 @@ static bool take_lock(void)
                     "another %s (pid %" PRIu64 ") is running in %s; stop it, or choose another directory with --dir",
                     s_files.cell->side, other.pid, s_files.options.directory);
     }
-    return (error == 0)
-           || fail_errno("write", name, error); /* it is empty now: an old `running` is not taken for ours */
+    if (error != 0) {
+        return fail_errno("write", name, error);
+    }
+    return true; /* it is empty now: an old `running` is not taken for ours */
 }
 
 /* Robots of an earlier run have to be gone: they might act on what we write. */
@@ -540,7 +540,7 @@ static bool clean_channels(void)
         if (!empty) {
             (void)snprintf(text, sizeof text, "%s held %s, left by an earlier run: discarded", channel->file,
                            pn_quote(s_files.buffer, length, shown, sizeof shown));
-            notice(text);
+            s_files.options.notice(s_files.options.user, text);
         }
         (void)snprintf(name, sizeof name, ".%s.%s.tmp", channel->file, s_files.cell->peer[channel->peer].name);
         pn_port_remove(s_files.directory, name);
@@ -575,7 +575,7 @@ static bool open_all(void)
             (void)snprintf(s_files.buffer, sizeof s_files.buffer,
                            "no notifications of changes in %s (%s): polling every %" PRIu64 " ms",
                            s_files.options.directory, strerror(error), s_files.options.poll_ns / NS_PER_MS);
-            notice(s_files.buffer);
+            s_files.options.notice(s_files.options.user, s_files.buffer);
         }
     }
     return clean_channels() && files_announce(NULL, PN_PARTY_RUNNING, "");
@@ -596,17 +596,14 @@ bool pn_files_open(const pn_cell_t *cell, const pn_files_options_t *options, pn_
     out->accept = files_accept;
     out->clear = files_clear;
     out->write = files_write;
-    out->taken = files_taken;
     out->party = files_party;
     out->announce = files_announce;
     out->wait = files_wait;
     out->close = files_close;
     (void)snprintf(s_files.session, sizeof s_files.session, "%08" PRIx32, pn_port_unique());
     for (uint32_t i = 0U; i < cell->channel_count; i++) {
-        const int length =
-            snprintf(s_files.channel[i].temporary, NAME_SIZE, ".%s.%s.tmp", cell->channel[i].file, cell->side);
-        if ((length < 0) || ((size_t)length >= NAME_SIZE) || (strchr(cell->channel[i].file, '/') != NULL)) {
-            return fail(true, "`%s` cannot be the name of a channel's file", cell->channel[i].file);
+        if (!name_temporary(cell->channel[i].file, s_files.channel[i].temporary)) {
+            return false;
         }
         s_files.channel[i].dirty = true;
         s_files.channel[i].prepared = -1;

@@ -91,12 +91,10 @@ static bool accept_message(sup_t *sup, uint32_t index)
     pn_message_t *const message = &s_cell.message;
     if (!pn_marking_put(sup->net, &sup->cx, sup->marking, channel->place, message->leaf, message->count)) {
         char text[PN_CHANNEL_TEXT];
-        const pn_error_t error = sup->cx.error;
-        sup->cx.error = PN_OK;
-        if (error != PN_ERR_COLOUR) {
-            sup->cx.error = error;
+        if (sup->cx.error != PN_ERR_COLOUR) {
             return sup_stop_error(sup, "putting the token of a message");
         }
+        sup->cx.error = PN_OK;
         if (pn_scalars_format(channel->scalar, channel->scalar_count, message->leaf, text, sizeof text) == 0U) {
             text[0] = '\0';
         }
@@ -242,7 +240,7 @@ static bool cycle(sup_t *sup, double t, uint64_t *fired)
         sup->t = fmax(sup->t, wall_time());
     }
     sup_set_time(sup, sup->t);
-    if (!sup_play(sup, sup->cell->owner, NULL, NULL, fired)) {
+    if (!sup_play(sup, sup->cell->owner, fired)) {
         return false; /* what was consumed stays in its file, what would be said is not said: I10 */
     }
     if (*fired > 0U) {
@@ -298,7 +296,11 @@ static bool look_at_peers(sup_t *sup)
         ended += (party.state == PN_PARTY_FINISHED) ? 1U : 0U;
     }
     double next = 0.0;
-    const bool all = (sup->cell->peer_count > 0U) && (ended == sup->cell->peer_count) && !sup_next_time(sup, &next);
+    const bool is_timed = sup_next_time(sup, &next);
+    if (sup->stopped) {
+        return false;
+    }
+    const bool all = (ended == sup->cell->peer_count) && !is_timed;
     if (all && s_cell.all_ended && (sup->cell->final_count > 0U)) {
         return sup_stop(
             sup, SUP_EXIT_MODEL,
@@ -316,11 +318,24 @@ static bool interrupted(sup_t *sup)
     return sup_stop(sup, SUP_EXIT_INTERRUPTED, "interrupted by signal %d", pn_port_stop_signal());
 }
 
+/* How long nothing can happen but by a file that changes. False when the program has to stop. */
+static bool time_to_wait(sup_t *sup, uint64_t *wait_ns)
+{
+    double wait = LOOK_S - (wall_time() - s_cell.looked);
+    double next = 0.0;
+    if (sup_next_time(sup, &next)) {
+        wait = fmin(wait, next - wall_time());
+    }
+    *wait_ns = (wait > 0.0) ? (uint64_t)(wait * 1e9) + 1U : 0U;
+    return !sup->stopped;
+}
+
 static void run_real_time(sup_t *sup)
 {
     bool on = true;
     while (on) {
         uint64_t fired = 0U;
+        uint64_t wait_ns = 0U;
         on = cycle(sup, wall_time(), &fired);
         if (on && sup_is_final(sup)) {
             return;
@@ -329,14 +344,9 @@ static void run_real_time(sup_t *sup)
             s_cell.looked = wall_time();
             on = look_at_peers(sup);
         }
+        on = on && time_to_wait(sup, &wait_ns);
         if (on) {
-            double wait = LOOK_S - (wall_time() - s_cell.looked);
-            double next = 0.0;
-            if (sup_next_time(sup, &next)) {
-                wait = fmin(wait, next - wall_time());
-            }
             (void)fflush(stdout); /* progress is worth seeing, but not worth delaying an answer */
-            const uint64_t wait_ns = (wait > 0.0) ? (uint64_t)(wait * 1e9) + 1U : 0U;
             if (s_cell.transport.wait(s_cell.transport.self, wait_ns) == PN_WAIT_SIGNAL) {
                 on = interrupted(sup);
             }
@@ -351,6 +361,16 @@ static void answer(const char *text)
     (void)fputs(text, stdout);
     (void)fputc('\n', stdout);
     (void)fflush(stdout);
+}
+
+/* The last answer, if it has not finished. */
+static void answer_stopped(const sup_t *sup)
+{
+    if (sup->options.lockstep && sup->stopped) {
+        char text[sizeof sup->reason + 16U];
+        (void)snprintf(text, sizeof text, "stopped %s", sup->reason);
+        answer(text);
+    }
 }
 
 /* Takes one line from standard input. False at its end or when interrupted. */
@@ -406,6 +426,9 @@ static bool step_command(sup_t *sup, double t, bool *finished)
         pn_text_init(&number, when, sizeof when);
         pn_text_real(&number, next);
     }
+    if (sup->stopped) {
+        return false;
+    }
     *finished = sup_is_final(sup);
     (void)snprintf(text, sizeof text, "idle %" PRIu64 " %s %s %.17g", fired, when, *finished ? "finished" : "running",
                    due);
@@ -458,12 +481,8 @@ void sup_run_cell(sup_t *sup)
     };
     sup_say(sup, 1, "shared directory %s", sup->options.directory);
     if (!pn_files_open(sup->cell, &options, &s_cell.transport)) {
-        (void)stop_for_transport(sup);
-        if (sup->options.lockstep) {
-            char text[sizeof sup->reason + 16U];
-            (void)snprintf(text, sizeof text, "stopped %s", sup->reason);
-            answer(text);
-        }
+        (void)((pn_port_stop_signal() != 0) ? interrupted(sup) : stop_for_transport(sup));
+        answer_stopped(sup);
         return;
     }
     sup_say(sup, 1, "session %s, %s", pn_files_session(),
@@ -480,15 +499,11 @@ void sup_run_cell(sup_t *sup)
         (void)stop_for_transport(sup);
     }
     s_cell.transport.close(s_cell.transport.self);
-    if (sup->options.lockstep && sup->stopped) {
-        char text[sizeof sup->reason + 16U];
-        (void)snprintf(text, sizeof text, "stopped %s", sup->reason);
-        answer(text);
-    }
+    answer_stopped(sup);
     static char places[4096];
     pn_text_t where;
     pn_text_init(&where, places, sizeof places);
-    if (!sup->stopped && sup_is_final(sup)) {
+    if (!sup->stopped) {
         pn_text_str(&where, " in ");
         sup_final_places(sup, &where);
     }

@@ -41,11 +41,9 @@ bool sup_stop_error(sup_t *sup, const char *doing)
 {
     const pn_ctx_t *const cx = &sup->cx;
     const sup_exit_t code = (cx->error == PN_ERR_INTERNAL) ? SUP_EXIT_INTERNAL : SUP_EXIT_MODEL;
-    const char *const where = (cx->error_origin != NULL) ? cx->error_origin : doing;
-    if ((cx->error_name != NULL) && (cx->error_name[0] != '\0')) {
-        return sup_stop(sup, code, "%s: %s (`%s`), while %s", where, error_words(cx->error), cx->error_name, doing);
-    }
-    return sup_stop(sup, code, "%s: %s, while %s", where, error_words(cx->error), doing);
+    /* Before the first element of the net is evaluated there is none to name. */
+    const char *const where = (cx->error_origin[0] != '\0') ? cx->error_origin : sup->net->source;
+    return sup_stop(sup, code, "%s: %s (`%s`), while %s", where, error_words(cx->error), cx->error_name, doing);
 }
 
 /* Keeps the first binding of an enumeration. */
@@ -94,7 +92,10 @@ static bool make_room(sup_t *sup)
         return true;
     }
     sup->cell->needs.collect(sup->net, &sup->cx, sup->marking);
-    return (sup->cx.error == PN_OK) || sup_stop_error(sup, "making room between firings");
+    if (sup->cx.error != PN_OK) {
+        return sup_stop_error(sup, "making room between firings");
+    }
+    return true;
 }
 
 int sup_fire_one(sup_t *sup, int32_t owner, uint32_t *transition)
@@ -146,7 +147,7 @@ int sup_fire_one(sup_t *sup, int32_t owner, uint32_t *transition)
     return 1;
 }
 
-bool sup_play(sup_t *sup, int32_t owner, sup_fired_t fired, void *user, uint64_t *count)
+bool sup_play(sup_t *sup, int32_t owner, uint64_t *count)
 {
     uint32_t transition = 0U;
     int result = 1;
@@ -158,12 +159,7 @@ bool sup_play(sup_t *sup, int32_t owner, sup_fired_t fired, void *user, uint64_t
         result = sup_fire_one(sup, owner, &transition);
         if (result > 0) {
             (*count)++;
-            if (fired != NULL) {
-                fired(sup, user, transition);
-            }
-            if (sup->stopped) {
-                result = -1;
-            } else if (*count >= sup->options.max_firings) {
+            if (*count >= sup->options.max_firings) {
                 result = sup_fire_one(sup, owner, &transition);
                 if (result > 0) {
                     (void)sup_stop(sup, SUP_EXIT_MODEL,
@@ -172,8 +168,6 @@ bool sup_play(sup_t *sup, int32_t owner, sup_fired_t fired, void *user, uint64_t
                                    *count, sup->net->transition[transition].name);
                     result = -1;
                 }
-            } else {
-                /* go on */
             }
         }
     }

@@ -59,7 +59,10 @@ void sup_trace_occurrence(sup_t *sup, uint32_t transition)
 
 bool sup_trace_is_written(sup_t *sup)
 {
-    return !sup->trace.failed || sup_stop(sup, SUP_EXIT_IO, "cannot write the trace %s", sup->options.trace);
+    if (sup->trace.failed) {
+        return sup_stop(sup, SUP_EXIT_IO, "cannot write the trace %s", sup->options.trace);
+    }
+    return true;
 }
 
 /* The names of the final places that hold a token, as JSON strings. */
