@@ -118,6 +118,14 @@ FilesOption = Annotated[
     ),
 ]
 
+InputOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--input",
+        metavar="PATH",
+        help="Begin with the input files in this folder, or with this one file, instead of those beside cell.toml.",
+    ),
+]
 
 INT_BITS = (31, 64)
 DEFAULT_INT_BITS = 31
@@ -242,7 +250,9 @@ def stop(d: Diagnostics, form: Format = Format.FULL) -> NoReturn:
     raise typer.Exit(code_of(d))
 
 
-_OUTSIDE = frozenset({"file-missing", "file-unreadable", "run-input", "tool-missing"})
+_OUTSIDE = frozenset(
+    {"file-missing", "file-unreadable", "input-file", "input-missing", "tool-missing"}
+)
 """Codes about files that were given, and tools of the machine, rather than about the model."""
 
 

@@ -29,6 +29,8 @@ class Request:
     Args:
         net: the net.
         storage: as for `Game`.
+        initial: what the header of its trace says of initial markings that are not those of the net's file, as JSON;
+            None: nothing.
         steps: most steps; None: no limit.
         seed: of all random numbers; None: that of the trace that is repeated, or 1. With such a trace it decides the
             choices after it, and nothing else.
@@ -44,6 +46,7 @@ class Request:
 
     net: FlatNet
     storage: Mapping[str, str] = field(default_factory=dict)
+    initial: str | None = None
     steps: int | None = 1000
     seed: int | None = None
     until: int | float | None = None

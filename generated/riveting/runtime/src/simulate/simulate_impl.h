@@ -20,6 +20,7 @@ typedef struct sim_options {
     const char *trace;  /* NULL: none */
     const char *report; /* NULL: none */
     const char *files;  /* folder for the net's files; NULL: none */
+    const char *initial; /* what the header of the trace says of initial markings; NULL: nothing */
     const char *replay; /* NULL: none; "-": the standard input */
     double progress_s;  /* seconds between two progress lines of the report; 0: none */
     pn_time_t until;
