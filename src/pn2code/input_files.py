@@ -22,6 +22,7 @@ from typing import Any
 
 from pn2code.base.frozen import frozen
 from pn2code.base.os_reason import os_reason
+from pn2code.base.readable import readable
 from pn2code.cell.codes import CELL_FILE, CELL_VALUE, INPUT, INPUT_MISSING
 from pn2code.cell.config import CellConfig, InputConfig
 from pn2code.cell.divide import PlaceFinder
@@ -308,7 +309,7 @@ def _token(
     if not isinstance(read, inputs.Mistake):
         data = _data(colset, iter(read))
         value = from_json(colset, data)
-        shown = game.colours.text(colset, value)
+        shown = readable(game.colours.text(colset, value))
         try:
             game.colours.stored(colset, value, frozenset(config.storage))
             with running(Origin(str(path)), f"the test of colour set `{colset.name}`"):

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from pn2code.base.os_reason import os_reason
+from pn2code.base.readable import readable
 from pn2code.base.writable import file_obstacle
 from pn2code.cli.interrupts import Interrupts
 from pn2code.cli.nets import open_net
@@ -256,7 +257,7 @@ def _json(opened: OpenNet, outcome: Outcome) -> dict[str, Any]:
         "error": outcome.failure.row() if outcome.failure else None,
         "refusal": outcome.refusal or None,
         "seconds": round(outcome.seconds, 6),
-        "output": outcome.output,
+        "output": readable(outcome.output),
     }
 
 

@@ -188,8 +188,8 @@ GUARD_LIST = register(
 GUARD_OPERATOR = register(
     "guard-list-operator",
     "CPN Tools cannot check a page with a guard that is a list made by an operator",
-    "A guard such as `[a] ^^ [b]`, `[a] ++ [b]` or `2 ** [a]` ends CPN Tools' check of the page with `InternalError: fun "
-    "parse_guarditems`. pn2code tests all conditions of the list.",
+    "A guard such as `[a] ^^ [b]`, `[a] ++ [b]` or `2 ** [a]` ends CPN Tools' check of the page with `InternalError: "
+    "fun parse_guarditems`. pn2code tests all conditions of the list.",
 )
 CODE_SEGMENT = register(
     "code-segment",

@@ -398,7 +398,8 @@ class Inscriptions:
                     codes.GUARD_OPERATOR,
                     f"CPN Tools cannot check a page with this guard: `{e.operator.name}` makes its list of conditions",
                     e.span,
-                    hint="write the conditions in one pair of brackets, `[a, b]`, or as one: `List.all (fn c => c) (..)`",
+                    hint="write the conditions in one pair of brackets, `[a, b]`, or as one: "
+                    "`List.all (fn c => c) (..)`",
                 )
             elif not _is_written_list(e):
                 self._ctx.d.warning(
