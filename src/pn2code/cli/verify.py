@@ -27,6 +27,7 @@ from pn2code.cli.options import (
     JsonOption,
     SetOption,
     check_writable,
+    code_of,
     parse_values,
     print_diagnostics,
     seconds_option,
@@ -342,7 +343,7 @@ def verify(
         if as_json:
             typer.echo(json.dumps(said.row(), indent=1))
     if d.has_errors:
-        raise typer.Exit(Exit.MODEL)
+        raise typer.Exit(Exit.MODEL if said.verdict == "no" else code_of(d))
     if said.verdict != "yes":
         raise typer.Exit(_CODES[said.verdict])
 

@@ -60,7 +60,9 @@ def check(
     """
     found = locate(path, d)
     if found is None:
-        return Checked(path, Examined(None, None), is_fine=False)
+        described = path / "cell.toml"
+        where = described if described.is_file() else path
+        return Checked(where, Examined(None, None), is_fine=False)
     file, config = found
     replaced = {**(config.values if config else {}), **values}
     result = front.examine(file, d, replaced, int_bits=int_bits, compute=compute)
