@@ -84,7 +84,6 @@ def full(said: Said) -> str:
         report(net, found, None, said.answers, said.control, said.counts).rstrip(),
         _figures(found),
         *(f"Perhaps {line}" for line in _growing(net, found)),
-        *filter(None, ["\n".join(_as_it_runs(said)).strip()]),
     ]
     with suppress(TimeIsOverError), said.deadline.enforced():
         if said.control is not None:
