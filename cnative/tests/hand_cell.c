@@ -55,7 +55,7 @@ static const pn_cell_channel_t CHANNEL[] = {
     { "command", "command.robcad", 5U, "Top.command", PN_CHANNEL_OUT, PN_CHANNEL_FLAG, 0U, 1U, FLAG },
     { "answer", "answer.robcad", 6U, "Top.answer", PN_CHANNEL_IN, PN_CHANNEL_FLAG, 0U, 1U, FLAG },
 };
-static const pn_cell_input_t INPUT[] = { { "orders", "orders.txt", 0U, "Top.Orders", 3U, ORDER } };
+static const pn_cell_input_t INPUT[] = { { "orders", "orders.txt", 0U, "Top.Orders", 3U, ORDER, false, 0U } };
 static const pn_cell_peer_t PEER[] = { { "robot1", 1 } };
 static const uint32_t FINAL[] = { 3U };
 

@@ -213,6 +213,8 @@ static const pn_cell_input_t s_input[] = {
         .place_name = "Cell.Supervisor.coordenadas",
         .scalar_count = 13U,
         .scalar = s_input0,
+        .is_checked = true,
+        .checked = 0xbc409598U,
     },
 };
 

@@ -54,6 +54,7 @@ class Generated:
         digest: SHA-256 of the net and of what the cell contributes to the programs.
         rooms: how many tokens each place can hold, and why.
         arena: bytes that the supervisor has for lists, strings and the moves of a firing.
+        is_checked: whether the supervisor was checked, with the input files that were there.
     """
 
     files: tuple[OutputFile, ...]
@@ -62,6 +63,7 @@ class Generated:
     digest: str
     rooms: tuple[PlaceCapacity, ...]
     arena: int
+    is_checked: bool
 
 
 def generate(
@@ -112,7 +114,9 @@ def generate(
     robots = lower_robot.lower_robots(partition, config, d) if config else ()
     if ir is None or robots is None or d.has_errors:
         return None
-    begun = begin(net, config, d, given=inputs) if checked else Begun(net)
+    begun = Begun(net)
+    if checked or inputs is not None:
+        begun = begin(net, config, d, given=inputs)
     if d.has_errors:
         return None
     proofs = prove(
@@ -140,6 +144,7 @@ def generate(
             digest=digest,
             version=version,
             verdicts=proofs.verdicts,
+            checked_inputs=begun.checksums if checked else None,
             arena=arena,
             compiled=deployed,
             net_size=len(net_files[0].text),
@@ -156,6 +161,7 @@ def generate(
         digest=digest,
         rooms=proofs.rooms,
         arena=arena.bytes,
+        is_checked=checked,
     )
 
 

@@ -161,9 +161,9 @@ def test_run_points_into_the_file_that_was_given(root: Path, tmp_path: Path, nam
         "--no-pictures",
     )
     assert done.returncode == 2, done.stderr
-    assert "error[run-input]: the supervisor would not start: " in done.stderr
+    assert "error[input-file]: " in done.stderr
     assert f"--> {file}{where}".rstrip(": ") in done.stderr
-    assert "= help: correct the input file" in done.stderr
+    assert "= help: write one token of colour set `PLAN`" in done.stderr
     for word in RUN_CASES[name]:
         assert word in done.stderr
     assert not out.exists()  # nothing was explored, generated or built before that

@@ -120,7 +120,7 @@ NETS = {
 
 CELLS = {
     "not TOML": Case(
-        "cell.toml", put("[storage]", "[storage"), "cell-file", ("not a TOML file",), "[storage", "docs/cell.md"
+        "cell.toml", put("[storage]", "[storage"), "cell-file", ("not a TOML file",), "[storage", "stands in brackets"
     ),
     "wrong page": Case(
         "cell.toml", put('instance = "Robot1"', 'instance = "Robto1"'), "cell-unknown-page",

@@ -73,7 +73,7 @@ MISTAKES = {
     "a tool that is missing": (NET, None, "robot-tool", "there is no file"),
     "an input that is missing": (
         NET, '[[input]]\nplace = "Pieces"\nfile = "pieces.txt"\n',
-        "file-missing", "input: there is no file `pieces.txt`"),
+        "input-missing", "input: there is no file `pieces.txt`"),
     "an unknown place in a property": (
         NET, '[[property]]\nname = "p"\nholds = "never tokens(Sup\'Peces) > 1"\n',
         "property-unknown-name", "Sup'Peces"),

@@ -142,7 +142,7 @@ def test_a_place_has_room_for_what_any_usual_file_leads_to(tmp_path: Path) -> No
 def test_a_file_that_is_not_there_yet_is_not_what_a_capacity_rests_on(tmp_path: Path) -> None:
     folder, d = cell(tmp_path / "cell", None), Diagnostics()
     program = made(folder, tmp_path / "out", d)
-    assert [i.code for i in d] == ["file-missing"]
+    assert [i.code for i in d] == ["input-missing"]
     assert room(program, "Stock") == "room for 64"
     assumed = "begins with the tokens of the net, not with those of its file"
     head = (program / "cell_config.c").read_text().split("*/")[0]

@@ -88,7 +88,7 @@ def test_a_file_that_is_not_there_yet(tmp_path: Path) -> None:
     folder = cell(tmp_path, None)
     done = pn2code("verify", folder, "--no-medium", "--json")
     assert done.returncode == 0, done.stderr
-    assert "file-missing" in done.stderr and "there is no file `pieces.txt`" in done.stderr
+    assert "input-missing" in done.stderr and "there is no file `pieces.txt`" in done.stderr
     checks = {row["check"]: row for row in json.loads(done.stdout)["controller"]}
     says = "`pieces` begins with the tokens of the net, not with those of its file"
     assert checks["non-blocking"]["assumes"][0] == says

@@ -147,6 +147,7 @@ def test_sizes_of_the_closed_net_that_are_not_those_of_the_cell(tmp_path: Path, 
     assert "`Sup'Early 1` never occurs in the closed net, but it does in the cell." in text
     assert "`Sup'Coins 1` holds at most 2 tokens in the cell, 1 in the closed net." in text
     assert "Reason In the closed net priorities are global" in text
+    assert "Dead in both none" in text
     _, lines, _ = verify(cell, "--no-medium", "--full")
     text = " ".join(" ".join(lines).split())
     assert "`Sup'Early 1` never occurs in the closed net, but it does in the cell." in text

@@ -3,7 +3,7 @@
     python -m tools.oracle.record [--random | EXAMPLE...]
 
 Of each net, or of those that are named: whether it is accepted, the numbers of its state space, and a random run to
-its end; with `--random`, of some random nets the same with their initial markings, in `tests/golden/engine_random.json`.
+its end; with `--random`, of random nets the same with their initial markings, in `tests/golden/engine_random.json`.
 `tests/e2e/test_engine_answers.py` compares them with pn2code, without the engine. To be called again when an example
 changes.
 """

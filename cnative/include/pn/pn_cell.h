@@ -14,7 +14,7 @@
 extern "C" {
 #endif
 
-#define PN_CELL_ABI          4U
+#define PN_CELL_ABI          5U
 #define PN_CELL_CHANNELS_MAX 128U
 #define PN_CELL_PEERS_MAX    64U
 
@@ -70,6 +70,8 @@ typedef struct pn_cell_input {
     const char *place_name;
     uint32_t scalar_count;
     const pn_scalar_t *scalar;
+    bool is_checked;  /* the cell was checked (docs/execution.md), beginning with the token that has this checksum: */
+    uint32_t checked; /* pn_crc32 of its scalars, as pn_scalars_format writes them; 0: there was no such token */
 } pn_cell_input_t;
 
 /* The other side of channels: a robot. */

@@ -106,6 +106,7 @@ static void input_entry(pn_text_t *text, const void *table, uint32_t i)
     int_member(text, "place", (int64_t)own->place);
     text_member(text, "place_name", own->place_name);
     array_member(text, "scalars", own->scalar_count, scalar_entry, own->scalar);
+    int_member(text, "checked", own->is_checked ? (int64_t)own->checked : -1);
     pn_text_char(text, '}');
 }
 

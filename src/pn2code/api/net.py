@@ -22,7 +22,7 @@ from pn2code.net.flat import FlatNet
 from pn2code.reading.document import RawPage
 from pn2code.semantics.game.token_game import Game
 from pn2code.verdict import checking
-from pn2code.verdict.opened import OpenNet, read
+from pn2code.verdict.opened import OpenNet, read, with_inputs
 
 
 class Net:
@@ -223,7 +223,11 @@ class Net:
 
 
 def load(
-    path: str | Path, *, values: Mapping[str, object] | None = None, int_bits: int = 31
+    path: str | Path,
+    *,
+    values: Mapping[str, object] | None = None,
+    int_bits: int = 31,
+    inputs: str | Path | None = None,
 ) -> Net:
     """A net that is free of errors. What the cell beside it says of the net is looked at by `check` and `Net.verify`.
 
@@ -232,6 +236,7 @@ def load(
         values: replace `val`s of the net; a value is written as CPN ML (`"5"`, `"[1, 2]"`), numbers and truth values as
             Python has them.
         int_bits: the width of `int`: 31 as in CPN Tools, or 64.
+        inputs: the folder with the input files of a cell, or its one input file; None: those beside cell.toml.
 
     Raises:
         NetError: the file is missing or malformed, or the net or the cell has errors.
@@ -239,17 +244,27 @@ def load(
     d = Diagnostics()
     texts = _texts(values)
     opened = read(Path(path), texts, d, int_bits=int_bits)
-    if opened is None:
+    if opened is not None:
+        opened = with_inputs(opened, d, None if inputs is None else Path(inputs))
+    if opened is None or d.has_errors:
         raise refuse(d)
     return Net(opened, Path(path), texts, d.sorted())
 
 
 def check(
-    path: str | Path, *, values: Mapping[str, object] | None = None
+    path: str | Path,
+    *,
+    values: Mapping[str, object] | None = None,
+    inputs: str | Path | None = None,
 ) -> tuple[Diagnostic, ...]:
-    """Everything that `pn2code check` says of a net, and of the cell beside it; nothing is raised for it."""
+    """Everything that `pn2code check` says of a net, and of the cell beside it; nothing is raised for it.
+
+    Args:
+        path, values, inputs: as for `load`.
+    """
     d = Diagnostics()
-    checking.check(Path(path), _texts(values), d)
+    given = None if inputs is None else Path(inputs)
+    checking.check(Path(path), _texts(values), d, inputs=given)
     return tuple(d.sorted())
 
 

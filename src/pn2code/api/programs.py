@@ -40,7 +40,11 @@ class Programs:
 
 
 def generate(
-    path: str | Path, *, values: Mapping[str, str] | None = None, layout: str | None = None
+    path: str | Path,
+    *,
+    values: Mapping[str, str] | None = None,
+    layout: str | None = None,
+    inputs: str | Path | None = None,
 ) -> Programs:
     """The programs of a net or cell, in memory.
 
@@ -48,12 +52,14 @@ def generate(
         path: as for `load`.
         values: replace `val`s of the net.
         layout: a layout of the cell; None: the one that cell.toml names.
+        inputs: the input files with which the supervisor is checked, as for `load`.
 
     Raises:
         NetError: the net or the cell has errors, or what it does cannot be a program.
     """
     d = Diagnostics()
-    made = pipeline.generate(Path(path), d, values=values, layout=layout)
+    given = None if inputs is None else Path(inputs)
+    made = pipeline.generate(Path(path), d, values=values, layout=layout, inputs=given)
     if made is None:
         raise refuse(d)
     files = MappingProxyType({f.path: f.text for f in made.files})

@@ -60,6 +60,7 @@ def simulate(
     request = Request(
         net=opened.flat,
         storage=opened.storage,
+        initial=opened.initial,
         steps=steps,
         seed=seed,
         until=until,

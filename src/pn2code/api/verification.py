@@ -13,7 +13,7 @@ from pn2code.api.errors import playing, refuse
 from pn2code.base.deadline import Deadline
 from pn2code.diagnostics import Diagnostics
 from pn2code.verdict import properties as own
-from pn2code.verdict.opened import OpenNet, with_inputs
+from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.whole import MOST_COLOURS, Said, conclude, look, question, stem, trace_folder
 from pn2code.verify.answers.properties import Answer, Verdict
 from pn2code.verify.exploring.explore import ExploreOptions
@@ -102,7 +102,6 @@ def verify(
             f"the programs of a cell have integers of {INT_BITS} bits: load it without `int_bits`"
         )
     d = Diagnostics()
-    opened = with_inputs(opened, d)
     asked = question(opened, texts, None, d, found=found)
     if d.has_errors:
         raise refuse(d)

@@ -19,6 +19,20 @@ CELL_VALUE = register(
     "a value of cell.toml has the wrong type or range",
     "The message says which value was found and what is expected, e.g. a number of seconds above zero.",
 )
+INPUT = register(
+    "input-file",
+    "the input files that were given do not fit the cell",
+    "`--input` names a folder with the files of all `[[input]]` entries of cell.toml, or one file, if there is one "
+    "entry. A file is missing, or its text is not a token of its place (the message gives line and column), or the "
+    "cell reads no files.",
+)
+INPUT_MISSING = register(
+    "input-missing",
+    "an input file of the cell is not there",
+    "`file` of an `[[input]]` entry names a file beside cell.toml, which the supervisor reads when it starts. Another "
+    "program may write it before the run; what is said until then is about the initial marking that the place has in "
+    "the net.",
+)
 CELL_UNKNOWN_PAGE = register(
     "cell-unknown-page",
     "cell.toml names a page instance that the net does not have",

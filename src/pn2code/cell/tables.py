@@ -11,7 +11,7 @@ from typing import Any, cast
 from pn2code.cell import codes
 from pn2code.cell.toml_file import Locator
 from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.diagnostics.suggestions import did_you_mean
+from pn2code.diagnostics.suggestions import did_you_mean, nearest
 
 KeyPath = tuple[str | int, ...]
 """Of a table or key; tables of arrays are numbered from 0."""
@@ -25,11 +25,14 @@ class Tables:
         self.strings = locator.strings
         self._words = locator.words
         self.d = d
+        self._meant: set[tuple[KeyPath, str]] = set()
 
     def keys(self, table: Mapping[str, Any], path: KeyPath, known: set[str]) -> None:
         """Reports the keys of a table that are not known."""
         for key in table:
             if key not in known:
+                near = nearest(key, known - table.keys())
+                self._meant |= {(path, near)} if near else set()
                 self.d.error(
                     codes.CELL_KEY,
                     f"unknown key `{key}`" + (f" in {self._words(*path)}" if path else ""),
@@ -50,7 +53,7 @@ class Tables:
     ) -> Any:
         """The value of a key of the table at a path; the default if it is missing, or is not what `words` says."""
         if key not in table:
-            if required:
+            if required and (path, key) not in self._meant:
                 self.d.error(
                     codes.CELL_KEY,
                     f"{self._words(*path, key)} is missing",

@@ -16,7 +16,7 @@ from typing import Any
 
 from pn2code.base.os_reason import os_reason
 from pn2code.cell.toml_text import positions
-from pn2code.diagnostics import Diagnostics, Origin, SourceText
+from pn2code.diagnostics import Diagnostics, Origin, SourceText, Span
 from pn2code.diagnostics.keys import in_words
 
 
@@ -100,7 +100,44 @@ def read(
         d.error(
             code,
             f"not a TOML file: {message[:1].lower()}{message[1:]}",
-            Origin(file, line, column),
-            hint=hint,
+            _at(text, file, line, column),
+            hint=_advice(message, text, line, column) or hint,
         )
         return None
+
+
+def _at(text: str, file: str, line: int, column: int) -> Span:
+    """The character at a place; of the end of the file, its last one."""
+    lines = text.split("\n")
+    start = min(sum(len(x) + 1 for x in lines[: line - 1]) + max(column - 1, 0), len(text))
+    source = SourceText(text, Origin(file, 1, 1))
+    return Span(source, start, min(start + 1, len(text)))
+
+
+_ADVICE = {
+    "Unclosed array": "write a comma between the values, and `]` after the last",
+    "Unclosed inline table": "write a comma between the entries, and `}` after the last, all in one line",
+    "Unterminated string": "close the string with a quote in the same line",
+    "Illegal character '\\n'": "close the string with a quote in the same line",
+    "Expected '=' after a key": "write `key = value`; a name with blanks or dots in it stands in quotes",
+    "Expected ']'": "the name of a section stands in brackets, `[name]`, and in `[[name]]` where there may be several",
+    "Cannot overwrite a value": "the key is there twice: leave one of them out",
+    "Cannot declare": "the section is there twice: put its keys together; tables of several are written `[[name]]`",
+    "Duplicate inline table key": "the key is there twice: leave one of them out",
+}
+"""What to do about a message of the parser, by its beginning."""
+
+
+def _advice(message: str, text: str, line: int, column: int) -> str:
+    """What to do about a mistake, where its kind is known."""
+    lines = text.split("\n")
+    rest = lines[line - 1][max(column - 1, 0) :] if line <= len(lines) else ""
+    if message == "Invalid value" and (word := re.match(r"[A-Za-z_][\w.-]*", rest)):
+        return f'text stands in quotes: `"{word[0]}"`; truth values are `true` and `false`'
+    if message.startswith("Expected newline or end of document"):
+        if re.match(r",\d", rest):
+            return "numbers are written with a point: `0.5`"
+        if rest.startswith(","):
+            return "leave out the comma: each key of a section stands on its own line"
+        return "write each key on its own line, text in quotes and numbers with a point"
+    return next((hint for start, hint in _ADVICE.items() if message.startswith(start)), "")

@@ -13,6 +13,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.readable import readable
 from pn2code.channel_model.faults import SAYS, Fault
 from pn2code.channel_model.places import ABSENT, FINISHED, RUNNING, STOPPED, MediumNet
 from pn2code.semantics.game.marking import Marking
@@ -84,7 +85,7 @@ class RunText:
         assert colset is not None
         for token in marking.places[file]:
             value, session, seq, _ = _parts(token)
-            text = TEXTS.text(colset, value)
+            text = readable(TEXTS.text(colset, value))
             shown = text if len(text) <= MOST_VALUE else text[: MOST_VALUE - 3] + "..."
             return f"message {seq} of session {session}: {shown}"
         return "half a message" if tuple(marking.places[half]) else "0"

@@ -14,6 +14,7 @@ from pn2code.cli.options import (
     DEFAULT_INT_BITS,
     Format,
     FormatOption,
+    InputOption,
     IntBitsOption,
     JsonOption,
     SetOption,
@@ -38,13 +39,14 @@ COUNTED = ("pages", "places", "transitions", "arcs")
 def check(
     net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
     as_json: JsonOption = False,
+    inputs: InputOption = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
     form: FormatOption = Format.FULL,
 ) -> None:
     """Check the syntax, types, bindings and hierarchy of a net, and the cell beside it."""
     d = Diagnostics()
-    checked = examined(net, parse_values(settings), d, int_bits=int_bits)
+    checked = examined(net, parse_values(settings), d, int_bits=int_bits, inputs=inputs)
     result = checked.examined
     elements = result.document.elements if result.document else {}
     numbers = {key: elements.get(key, 0) for key in COUNTED}

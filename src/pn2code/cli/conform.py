@@ -18,6 +18,7 @@ from pn2code.cli.options import (
     Exit,
     Format,
     FormatOption,
+    InputOption,
     IntBitsOption,
     JsonOption,
     SetOption,
@@ -68,6 +69,7 @@ def conform(
         ),
     ] = None,
     unchecked: UncheckedOption = False,
+    inputs: InputOption = None,
     as_json: JsonOption = False,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
@@ -90,6 +92,7 @@ def conform(
             most=most,
             generated=generated,
             checked=not unchecked,
+            inputs=inputs,
             stage=progress.stage,
         )
     if found is None:

@@ -18,6 +18,7 @@ from pn2code.cli.options import (
     Exit,
     Format,
     FormatOption,
+    InputOption,
     SetOption,
     check_writable,
     parse_values,
@@ -66,6 +67,7 @@ def convert(
         float | None,
         seconds_option("Stop after S seconds, without a file."),
     ] = None,
+    inputs: InputOption = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,
 ) -> None:
@@ -86,7 +88,7 @@ def convert(
     check_writable(output, "-o")
     try:
         with deadline.enforced(), Line(first="reading ...") as line:
-            _convert(net, output, kind, parse_values(settings), unfold, d, form, line)
+            _convert(net, output, kind, parse_values(settings), inputs, unfold, d, form, line)
     except TimeIsOverError:
         d.warning(
             TIME_OVER,
@@ -104,6 +106,7 @@ def _convert(
     output: Path,
     kind: str,
     values: dict[str, str],
+    inputs: Path | None,
     unfold: bool,
     d: Diagnostics,
     form: Format,
@@ -112,7 +115,7 @@ def _convert(
     """Reads the net and writes the file."""
     from pn2code.convert.codes import UNSUPPORTED_IN_CPN
 
-    opened = open_net(net, values, form)
+    opened = open_net(net, values, form, inputs=inputs)
     document = opened.examined.document
     assert document is not None
     if kind == ".cpn" and (document.tool != "PNML" or unfold):

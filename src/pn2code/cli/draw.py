@@ -12,6 +12,7 @@ import typer
 from pn2code.base.os_reason import os_reason
 from pn2code.base.whole_file import whole_file
 from pn2code.base.writable import file_obstacle, folder_obstacle
+from pn2code.cell.codes import INPUT_MISSING
 from pn2code.cell.locate import locate
 from pn2code.cli.options import (
     DEFAULT_SEED,
@@ -19,6 +20,7 @@ from pn2code.cli.options import (
     Exit,
     Format,
     FormatOption,
+    InputOption,
     SeedOption,
     SetOption,
     parse_values,
@@ -28,6 +30,7 @@ from pn2code.cli.options import (
 from pn2code.diagnostics import Diagnostics, Origin, Severity
 from pn2code.diagnostics.suggestions import nearest
 from pn2code.drawing.codes import DRAW_ARRANGED, DRAW_OUTPUT, DRAW_PAGE, DRAW_TRACE
+from pn2code.input_files import begin
 from pn2code.net import front
 from pn2code.reading.document import Document, RawPage
 from pn2code.semantics.evaluation.constants import compute
@@ -96,6 +99,7 @@ def draw(
             "--instance", metavar="N", min=1, help="Show the marking of this instance of the page."
         ),
     ] = None,
+    inputs: InputOption = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     seed: SeedOption = DEFAULT_SEED,
     form: FormatOption = Format.FULL,
@@ -120,13 +124,25 @@ def draw(
     storage = config.storage if config else {}
     if step is not None and trace is None:
         _refuse(DRAW_TRACE, "`--step` needs `--trace`", "add --trace FILE", form)
-    if examined.flat is not None and not d.has_errors:
+    if inputs is not None and (trace is not None or not marking):
+        _refuse(
+            DRAW_TRACE,
+            "`--input` needs `--marking`: a trace says itself what the places begin with",
+            "leave out --input, or draw with --marking alone",
+            form,
+        )
+    flat = examined.flat
+    if flat is not None and not d.has_errors and trace is None and marking:
+        flat = begin(flat, config, d, given=inputs).net
+        if inputs is not None and d.has_errors:
+            stop(d, form)
+    if flat is not None and not d.has_errors:
         if trace is not None:
             around = _AROUND if kind == "html" else 0
-            moments, chosen, last = _moments(examined.flat, storage, trace, step, around, form)
+            moments, chosen, last = _moments(flat, storage, trace, step, around, form)
             state = next(m.state for m in moments if m.number == chosen)
         elif marking:
-            state = _state(examined.flat, storage, seed, form)
+            state = _state(flat, storage, seed, form)
     if instance is not None:
         _check_instance(state, pages, instance, form)
     drawing = _Drawing(document, pages, _problems(d), state, instance)
@@ -371,6 +387,7 @@ def _report(d: Diagnostics, marking: bool, form: Format) -> None:
     if form is not Format.FULL:
         print_diagnostics(d.sorted(), form)
         return
+    print_diagnostics(i for i in d.sorted() if i.code == INPUT_MISSING)
     for item in d.sorted():
         if item.severity is Severity.NOTE and item.code == DRAW_ARRANGED:
             print(f"note: {item.message}", file=sys.stderr)

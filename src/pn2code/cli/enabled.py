@@ -15,6 +15,7 @@ from pn2code.cli.options import (
     FilesOption,
     Format,
     FormatOption,
+    InputOption,
     IntBitsOption,
     JsonOption,
     SeedOption,
@@ -34,6 +35,7 @@ EPILOG = """Examples:
 def enabled(
     net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
     as_json: JsonOption = False,
+    inputs: InputOption = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     seed: SeedOption = DEFAULT_SEED,
     files: FilesOption = None,
@@ -44,7 +46,7 @@ def enabled(
 
     If all tokens are still in the future, the clock is moved to the first time at which something is enabled.
     """
-    opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
+    opened = open_net(net, parse_values(settings), form, int_bits=int_bits, inputs=inputs)
     with playing(form):
         game = opened.game(seed=seed, files=files)
         game.advance()

@@ -13,6 +13,7 @@ from pn2code.cli.options import (
     Exit,
     Format,
     FormatOption,
+    InputOption,
     SetOption,
     UncheckedOption,
     parse_values,
@@ -43,6 +44,7 @@ def generate(
         typer.Option("--check", help="Write nothing, and exit with code 1 if a file would change."),
     ] = False,
     unchecked: UncheckedOption = False,
+    inputs: InputOption = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,
 ) -> None:
@@ -55,7 +57,9 @@ def generate(
     d = Diagnostics()
     if output is not None and not check:
         _expect_writable(output)
-    result = pipeline.generate(net, d, values=parse_values(settings), checked=not unchecked)
+    result = pipeline.generate(
+        net, d, values=parse_values(settings), checked=not unchecked, inputs=inputs
+    )
     if result is None:
         stop(d, form)
     print_but_known(d, net, form)

@@ -15,6 +15,7 @@ from pn2code.cli.options import (
     FilesOption,
     Format,
     FormatOption,
+    InputOption,
     IntBitsOption,
     JsonOption,
     SeedOption,
@@ -37,6 +38,7 @@ def marking(
     net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
     as_json: JsonOption = False,
     empty: EmptyOption = False,
+    inputs: InputOption = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     seed: SeedOption = DEFAULT_SEED,
     files: FilesOption = None,
@@ -44,7 +46,7 @@ def marking(
     form: FormatOption = Format.FULL,
 ) -> None:
     """Print the initial marking of each place in the form of CPN Tools."""
-    opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
+    opened = open_net(net, parse_values(settings), form, int_bits=int_bits, inputs=inputs)
     with playing(form):
         game = opened.game(seed=seed, files=files)
     if as_json:

@@ -8,11 +8,12 @@ from pathlib import Path
 
 import typer
 
+from pn2code.cell.codes import INPUT_MISSING
 from pn2code.cell.config import CellConfig
 from pn2code.cli.options import DEFAULT_INT_BITS, Format, print_diagnostics, stop
 from pn2code.diagnostics import Diagnostics, Severity
 from pn2code.semantics.game.token_game import GameError
-from pn2code.verdict.opened import OpenNet, read
+from pn2code.verdict.opened import OpenNet, read, with_inputs
 
 
 def open_net(
@@ -22,20 +23,38 @@ def open_net(
     *,
     int_bits: int = 31,
     warnings: Diagnostics | None = None,
+    inputs: Path | None = None,
+    has_own_marking: bool = False,
 ) -> OpenNet:
     """The net that a path means, with `val`s replaced; leaves with a report when it is wrong.
 
-    What is `unsupported-...` is said before the net is played: applying it will stop the run. Other warnings are added
-    to `warnings`, for verbs that tell them; `check` does.
+    The net of a cell begins with the tokens of its input files, as a run of the cell does.
+
+    What is `unsupported-...` is said before the net is played: applying it will stop the run. So is that there is no
+    input file. Other warnings are added to `warnings`, for verbs that tell them; `check` does.
+
+    Args:
+        path, values, int_bits: as for `verdict.opened.read`.
+        form: of what is printed.
+        warnings: gets the other warnings.
+        inputs: the input files, if not those beside cell.toml.
+        has_own_marking: it begins with the initial marking of the net, whatever files there are.
     """
     d = Diagnostics()
     opened = read(path, values, d, int_bits=int_bits)
     if opened is None:
         stop(d, form)
+    if not has_own_marking:
+        opened = with_inputs(opened, d, inputs)
+        if d.has_errors:
+            stop(d, form)
     found = [i for i in d.sorted() if i.severity is Severity.WARNING]
-    print_diagnostics((i for i in found if i.code.startswith("unsupported-")), form)
+    urgent = [i for i in found if i.code.startswith("unsupported-")]
     if warnings is not None:
-        warnings.items += [i for i in found if not i.code.startswith("unsupported-")]
+        warnings.items += [i for i in found if i not in urgent]
+    else:
+        urgent += [i for i in found if i.code == INPUT_MISSING]
+    print_diagnostics(urgent, form)
     return opened
 
 

@@ -6,7 +6,8 @@ import math
 import os
 import re
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
@@ -14,7 +15,7 @@ from typing import Annotated, Any, NoReturn
 import typer
 
 from pn2code.base.writable import file_obstacle
-from pn2code.diagnostics import Diagnostic, Diagnostics, Severity, render
+from pn2code.diagnostics import Diagnostic, Diagnostics, Note, Origin, Severity, render
 
 
 class Exit:
@@ -118,6 +119,14 @@ FilesOption = Annotated[
     ),
 ]
 
+InputOption = Annotated[
+    Path | None,
+    typer.Option(
+        "--input",
+        metavar="PATH",
+        help="Begin with the input files in this folder, or with this one file, instead of those beside cell.toml.",
+    ),
+]
 
 INT_BITS = (31, 64)
 DEFAULT_INT_BITS = 31
@@ -184,7 +193,7 @@ def print_diagnostics(items: Iterable[Diagnostic], form: Format = Format.FULL) -
     if form is Format.FULL:
         wrong = {p for i in items if i.severity is Severity.ERROR for p in _pages(i)}
         items = [i for i in items if i.severity is not Severity.NOTE or wrong & _pages(i)]
-        items, omitted = _first(items)
+        items, omitted = _first(list(_folded(items)))
     text = render.report(items, form.value, render.coloured if _has_colours() else render.plain)
     if text:
         print(text + omitted, file=sys.stderr)
@@ -217,6 +226,31 @@ def _of_nets() -> frozenset[str]:
     return frozenset(c for c in texts if not c.startswith("unsupported-"))
 
 
+_PLACES = 4
+"""Further places of a message that are named."""
+
+
+def _folded(items: Iterable[Diagnostic]) -> Iterator[Diagnostic]:
+    """What is said in the same words of several places is said once, of the first, with the others in a note."""
+    groups: dict[tuple[object, ...], list[Diagnostic]] = {}
+    for i in items:
+        groups.setdefault((i.severity, i.code, i.message, i.hint), []).append(i)
+    for first, *others in groups.values():
+        places = [_place(i.origin) for i in others[:_PLACES]]
+        rest = len(others) - len(places)
+        also = f"the same {len(others)} times more: {'; '.join(places)}" + (
+            f"; and {rest} more" if rest else ""
+        )
+        once = also.replace("1 times more", "once more", 1) if len(others) == 1 else also
+        yield replace(first, notes=(*first.notes, Note(once))) if others else first
+
+
+def _place(at: Origin) -> str:
+    """Line and element."""
+    words = at.describe()
+    return at.location() + (f" ({words})" if words else "")
+
+
 def _pages(item: Diagnostic) -> set[str]:
     """The pages that a diagnostic and its notes are about."""
     origins = (item.origin, *(n.origin for n in item.notes if n.origin is not None))
@@ -242,7 +276,16 @@ def stop(d: Diagnostics, form: Format = Format.FULL) -> NoReturn:
     raise typer.Exit(code_of(d))
 
 
-_OUTSIDE = frozenset({"file-missing", "file-unreadable", "run-input", "tool-missing"})
+_OUTSIDE = frozenset(
+    {
+        "file-missing",
+        "file-unreadable",
+        "input-file",
+        "input-missing",
+        "report-unwritable",
+        "tool-missing",
+    }
+)
 """Codes about files that were given, and tools of the machine, rather than about the model."""
 
 

@@ -70,7 +70,7 @@ def replay(
     what = kind(trace)
     try:
         values = parse_values(settings)
-        opened = open_net(net, values, form, int_bits=int_bits)
+        opened = open_net(net, values, form, int_bits=int_bits, has_own_marking=True)
         with playing(form):
             if isinstance(what, Recording):
                 result = _recording(what, opened, files, engine, form)

@@ -18,7 +18,7 @@ from pn2code.trace.lines import digest_problem, form_problem
 from pn2code.trace.replay_end import Ending, end_problem
 from pn2code.trace.replay_recording import Followed
 from pn2code.trace.script import TraceRefusedError
-from pn2code.verdict.opened import OpenNet
+from pn2code.verdict.opened import OpenNet, as_traced
 
 
 def repeat_own(
@@ -26,9 +26,11 @@ def repeat_own(
 ) -> dict[str, Any]:
     """A trace of our own: the JSON answer."""
 
+    opened = as_traced(opened, trace)
+
     def run(d: Diagnostics) -> Outcome | None:
         _checked(trace)
-        return repeat(opened.flat, opened.storage, trace, files, d)
+        return repeat(opened.flat, opened.storage, trace, files, d, initial=opened.initial)
 
     outcome = _run(run, form)
     answer = _answer(outcome, opened)

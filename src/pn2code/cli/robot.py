@@ -21,7 +21,7 @@ from pn2code.diagnostics.codes import register
 from pn2code.emission.manifest import NAME as MANIFEST
 from pn2code.net import front
 from pn2code.robot.commands import Command
-from pn2code.run.robot import Arm, InstantArm, RobotPlayer, script_specs
+from pn2code.run.robot import Arm, InstantArm, RobotExit, RobotPlayer, script_specs
 from pn2code.run.sensors import Sensors
 from pn2code.semantics.evaluation.constants import compute
 from pn2code.tdl import flow
@@ -93,7 +93,7 @@ def robot(
     A script that uses sensors, or messages that are enumerations, needs --cell.
 
     The exit code is 0 if the cell has finished, 1 if the script failed, 3 if the supervisor stopped or died, 4 after a
-    fault of a channel, and 5 after an error of input or output.
+    fault of a channel, and 2 if files cannot be read or written.
     """
     d = Diagnostics()
     program = _load(script, d)
@@ -144,7 +144,7 @@ def robot(
         ended = player.run()
     if ended.code:
         typer.echo(f"pn2code: {name} stopped: {ended.reason}", err=True)
-        raise typer.Exit(int(ended.code))
+        raise typer.Exit(Exit.USAGE if ended.code is RobotExit.SYSTEM else int(ended.code))
     typer.echo(f"{name}: finished")
 
 

@@ -14,6 +14,7 @@ from pn2code.cli.options import (
     Exit,
     Format,
     FormatOption,
+    InputOption,
     SetOption,
     UncheckedOption,
     finite,
@@ -46,13 +47,7 @@ def run(
     layout: Annotated[
         str | None, typer.Option(help="The layout of cell.toml to use (default: the first).")
     ] = None,
-    input_file: Annotated[
-        Path | None,
-        typer.Option(
-            "--input",
-            help="Use this input file instead of the cell's, or the input files in this folder.",
-        ),
-    ] = None,
+    inputs: InputOption = None,
     backend: Annotated[
         BackendChoice,
         typer.Option(
@@ -97,7 +92,6 @@ def run(
     # PyBullet, SciPy and the like take half a second to load: only this verb needs them.
     from rich.console import Console
 
-    from pn2code.input_files import tokens
     from pn2code.report import summary as summaries
     from pn2code.report.album import Album
     from pn2code.robot.backend import BackendUnavailableError
@@ -112,7 +106,7 @@ def run(
     options = RunOptions(
         out=out,
         layout=layout,
-        input=input_file,
+        input=inputs,
         backend=backend.value,
         values=parse_values(settings),
         gui=gui,
@@ -129,7 +123,7 @@ def run(
         if backend is BackendChoice.BULLET:
             observers.append(album)
         try:
-            result = run_cell(cell, options, d, observers, tokens)
+            result = run_cell(cell, options, d, observers)
         except (OutputFolderError, BackendUnavailableError) as problem:
             typer.echo(f"pn2code: {problem}", err=True)
             raise typer.Exit(Exit.USAGE) from None

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from pn2code.base.os_reason import os_reason
+from pn2code.base.readable import readable
 from pn2code.base.writable import file_obstacle
 from pn2code.cli.interrupts import Interrupts
 from pn2code.cli.nets import open_net
@@ -20,6 +21,7 @@ from pn2code.cli.options import (
     FilesOption,
     Format,
     FormatOption,
+    InputOption,
     IntBitsOption,
     JsonOption,
     SetOption,
@@ -38,7 +40,7 @@ from pn2code.simulate.report import text
 from pn2code.simulate.run import Outcome, Request
 from pn2code.trace.script import TraceRefusedError
 from pn2code.trace.writing import TraceUnwritableError
-from pn2code.verdict.opened import OpenNet
+from pn2code.verdict.opened import OpenNet, as_traced
 
 EPILOG = """Examples:
 
@@ -109,6 +111,7 @@ def simulate(
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="Print no progress and no report, only errors.")
     ] = False,
+    inputs: InputOption = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     files: FilesOption = None,
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
@@ -120,7 +123,21 @@ def simulate(
     """
     if trace is not None and str(trace) != "-":
         _check_writable(trace, form)
-    opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
+    if replay is not None and inputs is not None:
+        raise typer.BadParameter(
+            "a trace that is repeated says itself what the places begin with: leave one of them out",
+            param_hint="--input / --replay",
+        )
+    opened = open_net(
+        net,
+        parse_values(settings),
+        form,
+        int_bits=int_bits,
+        inputs=inputs,
+        has_own_marking=replay is not None,
+    )
+    if replay is not None:
+        opened = as_traced(opened, replay)
     limit = _time(until, opened)
     _check_trace(trace, replay, Path(opened.flat.file))
     d = Diagnostics()
@@ -128,6 +145,7 @@ def simulate(
     with Interrupts() as interrupts, ProgressLine(shown=not (as_json or quiet)) as progress:
         request = Request(
             net=opened.flat,
+            initial=opened.initial,
             storage=opened.storage,
             steps=DEFAULT_STEPS if steps is None and until is None else steps,
             seed=seed,
@@ -239,7 +257,7 @@ def _json(opened: OpenNet, outcome: Outcome) -> dict[str, Any]:
         "error": outcome.failure.row() if outcome.failure else None,
         "refusal": outcome.refusal or None,
         "seconds": round(outcome.seconds, 6),
-        "output": outcome.output,
+        "output": readable(outcome.output),
     }
 
 

@@ -13,6 +13,7 @@ from pn2code.cli.options import (
     DEFAULT_INT_BITS,
     Format,
     FormatOption,
+    InputOption,
     IntBitsOption,
     JsonOption,
     SetOption,
@@ -32,12 +33,13 @@ def structure(
     net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
     as_json: JsonOption = False,
     everything: Annotated[bool, typer.Option("--all", help="Print long lists completely.")] = False,
+    inputs: InputOption = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
     form: FormatOption = Format.FULL,
 ) -> None:
     """Compute invariants, siphons, traps, bounds and classes of a net from its structure alone."""
-    opened = open_net(net, parse_values(settings), form, int_bits=int_bits)
+    opened = open_net(net, parse_values(settings), form, int_bits=int_bits, inputs=inputs)
     analysis = analyse(opened.flat, storage=opened.storage)
     if as_json:
         typer.echo(json.dumps(report.as_json(analysis), indent=1))

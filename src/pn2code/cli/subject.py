@@ -58,7 +58,8 @@ class Subject:
         rows = [("Net", opened.flat.file, opened.flat.sha256)]
         if opened.config is not None:
             rows.append(("Cell", str(opened.config.path), _file_digest(opened.config.path)))
-            inputs = [opened.config.input_path(entry) for entry in opened.config.inputs]
+            config = opened.config
+            inputs = [config.input_path(entry, opened.inputs) for entry in config.inputs]
             rows += [("Input", str(file), _file_digest(file)) for file in inputs if file.is_file()]
         rows += [("Properties", str(file), _file_digest(file)) for file in properties]
         rows += [("Value", name, value) for name, value in sorted(values.items())]
@@ -70,7 +71,9 @@ class Subject:
         d = Diagnostics()
         try:
             with deadline.enforced():
-                made = pipeline.generate(path, d, values=values, int_bits=int_bits)
+                made = pipeline.generate(
+                    path, d, values=values, int_bits=int_bits, inputs=opened.inputs
+                )
         except TimeIsOverError:
             return Subject(tuple(rows), "No programs were generated: the time was up.")
         if made is None:

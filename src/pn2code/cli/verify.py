@@ -22,10 +22,12 @@ from pn2code.cli.options import (
     Exit,
     Format,
     FormatOption,
+    InputOption,
     IntBitsOption,
     JsonOption,
     SetOption,
     check_writable,
+    code_of,
     parse_values,
     print_diagnostics,
     seconds_option,
@@ -36,7 +38,7 @@ from pn2code.cli.verify_screen import closing, full, screen
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.verdict import channel_model, properties
 from pn2code.verdict.asked import files as asked_files
-from pn2code.verdict.opened import OpenNet, with_inputs
+from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.whole import (
     MOST_COLOURS,
     Checks,
@@ -245,6 +247,7 @@ def verify(
     quiet: Annotated[
         bool, typer.Option("--quiet", "-q", help="Print no progress and no report, only errors.")
     ] = False,
+    inputs: InputOption = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
     form: FormatOption = Format.FULL,
@@ -265,9 +268,10 @@ def verify(
     d = Diagnostics()
     try:
         with deadline.enforced():
-            opened = open_net(net, parse_values(settings), form, int_bits=int_bits, warnings=d)
+            opened = open_net(
+                net, parse_values(settings), form, int_bits=int_bits, warnings=d, inputs=inputs
+            )
             refuse_wide(opened.config, int_bits)
-            opened = with_inputs(opened, d)
             asked = question(opened, texts, file, d, found=found_properties)
     except TimeIsOverError:
         _stop_unread(net, d, as_json, form)
@@ -339,7 +343,7 @@ def verify(
         if as_json:
             typer.echo(json.dumps(said.row(), indent=1))
     if d.has_errors:
-        raise typer.Exit(Exit.MODEL)
+        raise typer.Exit(Exit.MODEL if said.verdict == "no" else code_of(d))
     if said.verdict != "yes":
         raise typer.Exit(_CODES[said.verdict])
 

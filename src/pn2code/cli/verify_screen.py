@@ -290,6 +290,11 @@ def _as_it_runs(said: Said) -> Iterator[str]:
         yield from _row(title, what)
     if len(differing) > MOST_DIFFERENCES:
         yield from _row("", f"and {len(differing) - MOST_DIFFERENCES} more")
+    never, only = control.other_dead()
+    if said.found.knows_dead_transitions and (never or only):
+        names = EngineNames(said.net)
+        both = [names.transition(i) for i in said.found.dead_transitions() if i not in only]
+        yield from _row("Dead in both", _listed(both, len(said.net.transitions)))
     yield from _row("Reason", control_text.why_differs(control))
 
 

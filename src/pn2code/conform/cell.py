@@ -21,7 +21,7 @@ from pn2code.conform.probe import HOST, PATIENCE_S, Probe, ProbeError
 from pn2code.conform.scheme import MOST_STATES
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.emission.output import OutputFile
-from pn2code.input_files import begin
+from pn2code.input_files import begin, folder_of
 from pn2code.net.flat import FlatNet
 from pn2code.pipeline import Generated, generate
 from pn2code.semantics.evaluation.files import Files
@@ -78,6 +78,7 @@ def conform_cell(
     most: int = MOST_STATES,
     generated: Path | None = None,
     checked: bool = True,
+    inputs: Path | None = None,
     stage: Callable[[str], None] = lambda _: None,
 ) -> Conformance | None:
     """Compares all programs of a cell, or the compiled net alone; None after an error that was reported.
@@ -90,10 +91,16 @@ def conform_cell(
         most: states up to which all are compared.
         generated: a folder with generated files, which may have been edited; None: they are generated now.
         checked: whether the supervisor must pass its checks (docs/execution.md).
+        inputs: other input files than those beside cell.toml, as for `input_files.begin`.
         stage: hears what is done next.
     """
+
+    def examine(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> None:
+        # What the supervisor would refuse when it starts is said before anything that takes long.
+        begin(net, config, d, is_started=True, given=inputs)
+
     made = generate(
-        path, d, values=values, int_bits=int_bits, checked=checked, examine=_examine_inputs
+        path, d, values=values, int_bits=int_bits, checked=checked, examine=examine, inputs=inputs
     )
     if made is None:
         return None
@@ -105,7 +112,7 @@ def conform_cell(
             return None
         found, files = given
     storage = made.config.storage if made.config else {}
-    begun = begin(made.partition.net, made.config, Diagnostics()).net
+    begun = begin(made.partition.net, made.config, Diagnostics(), given=inputs).net
     try:
         stage("comparing net.c with the token game ...")
         compared = core.compare(begun, storage, d, most=most)
@@ -113,7 +120,7 @@ def conform_cell(
             return None
         if made.config is None or not made.partition.channels:
             return Conformance(compared, None, (), found)
-        done = _programs(ProgramComparison(made, most), files, d, stage)
+        done = _programs(ProgramComparison(made, most, inputs), files, d, stage)
         return None if done is None else Conformance(compared, *done, found)
     except GameError as error:
         error.report(d)
@@ -124,11 +131,6 @@ def conform_cell(
             Origin(made.partition.net.file),
         )
     return None
-
-
-def _examine_inputs(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> None:
-    """Reports what the supervisor would refuse when it starts, before anything that takes long."""
-    begin(net, config, d, is_started=True)
 
 
 def _programs(
@@ -160,14 +162,18 @@ class ProgramComparison:
     Args:
         made: what is generated from the cell.
         most: states up to which all are compared.
+        inputs: other input files, with which it was generated; None: those beside cell.toml.
     """
 
-    def __init__(self, made: Generated, most: int = MOST_STATES) -> None:
+    def __init__(
+        self, made: Generated, most: int = MOST_STATES, inputs: Path | None = None
+    ) -> None:
         assert made.config is not None, "only a cell has programs"
         self.made = made
         self._config = made.config
         self._most = most
-        self._begun = begin(made.partition.net, made.config, Diagnostics())
+        self._inputs = inputs
+        self._begun = begin(made.partition.net, made.config, Diagnostics(), given=inputs)
         self._partition = replace(made.partition, net=self._begun.net)
 
     def supervisor(
@@ -184,12 +190,15 @@ class ProgramComparison:
             ProbeError: it does not answer, or takes longer than `patience` seconds for an answer.
             GameError: a declaration or an initial marking raises an exception.
         """
-        with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
+        with (
+            tempfile.TemporaryDirectory(prefix="pn2code-") as name,
+            folder_of(self._config, self._inputs) as folder,
+        ):
             trace = Path(name) / "supervisor.trace.jsonl"
-            options = ["--input", str(self._config.folder), "--trace", str(trace)]
+            options = ["--input", str(folder), "--trace", str(trace)]
             with closing(Probe(program, options, patience)) as probe:
                 game = self._game()
-                difference = data.compare(self.made, probe.tables)
+                difference = data.compare(self.made, game, probe.tables)
                 report = supervisor.Report()
                 misread = self._misread(trace, game)
                 if misread is not None:  # whatever else differs may come from this

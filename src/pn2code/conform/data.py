@@ -9,6 +9,7 @@ where no state shows it (patience, names, ranges, who is looked after) is seen h
 
 from __future__ import annotations
 
+import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path, PurePath
 from typing import Any
@@ -17,9 +18,12 @@ from pn2code.cell.config import CellConfig
 from pn2code.cell.divide import PlaceFinder
 from pn2code.cell.partition import Partition
 from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
+from pn2code.channels.scalars import format_scalars, scalars_of_json
 from pn2code.diagnostics import Diagnostics
-from pn2code.net.flat import ArcKind
+from pn2code.net.flat import ArcKind, FlatPlace
 from pn2code.pipeline import Generated
+from pn2code.semantics.game.marking import place_to_json
+from pn2code.semantics.game.token_game import Game
 
 _KINDS = (
     ScalarKind.UNIT,
@@ -35,18 +39,24 @@ _INTEGERS = (-(2**63), 2**63 - 1)
 _REALS = (-1.7976931348623157e308, 1.7976931348623157e308)
 
 
-def compare(made: Generated, tables: Mapping[str, Any]) -> str | None:
+def compare(made: Generated, game: Game, tables: Mapping[str, Any]) -> str | None:
     """What differs first; None: nothing.
 
     Args:
         made: what was generated, and the cell.
+        game: the net, which begins with the tokens of its input files.
         tables: what the program says of itself (`Probe.tables`).
     """
     assert made.config is not None, "only a cell has a supervisor with channels"
     expected = {
-        "cell": _cell(made, made.config),
+        "cell": _cell(made, made.config, game),
         "net": _net(made),
     }
+    for own, other in zip(expected["cell"]["inputs"], tables["cell"]["inputs"], strict=False):
+        if own | {"checked": 0} == other | {"checked": 0} and own != other:
+            return (
+                f"the program was checked with another token of `{own['file']}`: generate it again"
+            )
     return next(_differences("", expected, tables), None)
 
 
@@ -69,7 +79,7 @@ def _differences(where: str, expected: Any, found: Any) -> Iterator[str]:
 # --- cell_config.c -------------------------------------------------------------------------------
 
 
-def _cell(made: Generated, config: CellConfig) -> dict[str, Any]:
+def _cell(made: Generated, config: CellConfig, game: Game) -> dict[str, Any]:
     partition = made.partition
     find = PlaceFinder(partition.net, Diagnostics())
     channels = sorted(config.channels, key=lambda c: c.kind.value != "data")  # I5
@@ -105,6 +115,7 @@ def _cell(made: Generated, config: CellConfig) -> dict[str, Any]:
                 "place": place.index,
                 "place_name": place.name,
                 "scalars": _scalars(scalars_of(place.colset) or ()),
+                "checked": _checked(place, game) if made.is_checked else -1,
             }
         )
     final = [find(name, config.supervisor.origin, "final") for name in config.supervisor.final]
@@ -121,6 +132,15 @@ def _cell(made: Generated, config: CellConfig) -> dict[str, Any]:
         "peers": [{"name": p.name, "owner": i} for i, p in enumerate(config.programs, 1)],
         "final": [place.index for place in final if place is not None],
     }
+
+
+def _checked(place: FlatPlace, game: Game) -> int:
+    """The checksum of the token that the cell was checked with."""
+    marking = place_to_json(game.colours, place.colset, game.marking.places[place.index])
+    ((_, data, *_),) = marking
+    text = format_scalars(scalars_of(place.colset) or (), tuple(scalars_of_json(data)))
+    assert text is not None, "it was read from a file"
+    return zlib.crc32(text.encode("latin-1"))
 
 
 def _ends(partition: Partition, place: int) -> tuple[int, int]:

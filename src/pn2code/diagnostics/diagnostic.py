@@ -170,10 +170,13 @@ class Diagnostics:
         return list(self._errors)
 
     def sorted(self) -> list[Diagnostic]:
-        """By position in the file."""
-        return sorted(
-            self.items, key=lambda d: (d.origin.file, d.origin.line, d.origin.column, d.code)
-        )
+        """By position in the file; cell.toml and its like first, because names that are wrong there show in the net."""
+
+        def place(d: Diagnostic) -> tuple[bool, str, int, int, str]:
+            at = d.origin
+            return not at.file.endswith(".toml"), at.file, at.line, at.column, d.code
+
+        return sorted(self.items, key=place)
 
     def __iter__(self) -> Iterator[Diagnostic]:
         """Iterate in order of report."""

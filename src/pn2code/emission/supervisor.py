@@ -9,7 +9,7 @@ supervisor owns every transition of the net.
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -124,6 +124,7 @@ def emit(
     digest: str,
     version: str,
     verdicts: Sequence[str] = (),
+    checked_inputs: Mapping[int, int] | None = None,
     arena: ArenaSize = arena_size.UNKNOWN,
     compiled: NetIR | None,
     net_size: int = 0,
@@ -136,6 +137,8 @@ def emit(
         digest: of net and cell, the same as in net.c.
         version: of pn2code.
         verdicts: lines about what was checked, for the head.
+        checked_inputs: checksums of the tokens that places of input files began with, by place; None: nothing was
+            checked.
         compiled: what is deployed, for what it needs of the runtime; None: it is not linked with it.
         net_size: characters of the generated net.
         arena: the memory for lists, strings and moves.
@@ -175,6 +178,7 @@ def emit(
                 "place_name": place.name,
                 "scalar_count": len(scalars),
                 "scalars": table.ident,
+                "checked": None if checked_inputs is None else checked_inputs.get(source.place, 0),
             }
         )
     is_cell = bool(peers or channels)

@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterable
 from typing import Any
 
+from pn2code.base.readable import readable
 from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.graph import StateSpace
@@ -76,7 +77,7 @@ def written(net: FlatNet, lines: Iterable[str]) -> tuple[list[Node], set[Arc]]:
     for row in rows:
         symbols = {s.name: s for s in net.transitions[row["index"]].variables}
         values = sorted(
-            (name, TEXTS.text(colset, from_json(colset, value)))
+            (name, readable(TEXTS.text(colset, from_json(colset, value))))
             for name, value in row["binding"].items()
             if (colset := symbols[name].colset) is not None
         )

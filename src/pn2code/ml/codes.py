@@ -185,6 +185,12 @@ GUARD_LIST = register(
     "list, `List.map f l` or `if c then [a] else []`, is accepted and then ignored: the transition occurs whatever "
     "the conditions are. pn2code tests them.",
 )
+GUARD_OPERATOR = register(
+    "guard-list-operator",
+    "CPN Tools cannot check a page with a guard that is a list made by an operator",
+    "A guard such as `[a] ^^ [b]`, `[a] ++ [b]` or `2 ** [a]` ends CPN Tools' check of the page with `InternalError: "
+    "fun parse_guarditems`. pn2code tests all conditions of the list.",
+)
 CODE_SEGMENT = register(
     "code-segment",
     "a code segment is not of the form `input (..); output (..); action ..;`",

@@ -262,16 +262,22 @@ class _Linker:
             "in": "an input port, but it gets tokens",
             "out": "an output port, but it loses tokens",
         }
+        wrong: dict[str, list[tuple[Transition, Arc]]] = {}
         for t in page.transitions if ports else ():
             for arc in t.arcs:
                 port = ports.get(arc.place)
                 if port is not None and arc.kind in (against[port.port], ArcKind.BOTH):
-                    self.d.warning(
-                        PORT_DIRECTION,
-                        f"place `{port.name}` is {words[port.port]} from transition `{t.name}`",
-                        arc.origin,
-                        hint="make it an I/O port, or turn the arc around",
-                    )
+                    wrong.setdefault(port.id, []).append((t, arc))
+        for place, found in wrong.items():
+            port = ports[place]
+            names = list(dict.fromkeys(f"`{t.name}`" for t, _ in found))
+            who = f"transition {names[0]}" if len(names) == 1 else f"transitions {', '.join(names)}"
+            self.d.warning(
+                PORT_DIRECTION,
+                f"place `{port.name}` is {words[port.port]} from {who}",
+                found[0][1].origin,
+                hint="make it an I/O port, or turn the arc around",
+            )
 
     def check_monitors(self) -> None:
         """Warn of monitors of nothing."""

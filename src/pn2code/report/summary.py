@@ -194,7 +194,8 @@ def page(summary: dict[str, Any]) -> RenderableType:
     # A supervisor of one page has no activities.
     kinds = ("times", "seconds") if summary["activities"] else ()
     times = Table(box=box.SIMPLE_HEAD, pad_edge=False)
-    times.add_column("activity" if kinds else "")
+    # Of a narrow terminal other columns are broken, but not this word.
+    times.add_column("activity" if kinds else "", min_width=len("utilisation"), overflow="fold")
     for kind in kinds:
         times.add_column(kind, justify="right")
     robots = list(summary["robots"])

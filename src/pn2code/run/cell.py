@@ -14,7 +14,7 @@ import re
 import shutil
 import tempfile
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -22,14 +22,15 @@ from typing import Any
 
 from pn2code import pipeline
 from pn2code.base.os_reason import os_reason
-from pn2code.cell.codes import CELL_MISSING
+from pn2code.cell.codes import INPUT
 from pn2code.cell.config import CellConfig
 from pn2code.cell.names import counted
 from pn2code.channels import GRACE_S, SharedDirectory, specs_of
-from pn2code.diagnostics import Diagnostics, Note, Origin, SourceText
+from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.diagnostics.codes import register
 from pn2code.emission.output import OutputFile
 from pn2code.emission.write import OutputFolderError, expect_writable, write
+from pn2code.input_files import CORRECT, begin, folder_of
 from pn2code.net.flat import FlatNet
 from pn2code.report.messages import messages_tsv
 from pn2code.report.rows import rows_tsv
@@ -57,12 +58,6 @@ RUN_NO_CELL = register(
     "there is no cell to run",
     "`pn2code run` needs a folder with a cell.toml: it says which robots stand where. A net alone can be generated, "
     "built and played: `pn2code generate net.cpn`, then `make && ./supervisor` in the output folder.",
-)
-RUN_INPUT = register(
-    "run-input",
-    "the input file does not fit",
-    "An input file is missing, or its text is not a token of its place: the message gives line and column. `--input "
-    "FILE` replaces the cell's input file for one run. A cell with several inputs takes a folder that holds them.",
 )
 RUN_START = register(
     "run-start",
@@ -127,21 +122,11 @@ class RunResult:
     prepared: Prepared
 
 
-Tokens = Callable[[FlatNet, CellConfig, Diagnostics, Path | None], object]
-"""Reads the input files of a cell, or others that are given, and reports what is wrong in them."""
-
-
-def prepare(
-    path: Path, options: RunOptions, d: Diagnostics, tokens: Tokens | None = None
-) -> Prepared | None:
-    """Generates and builds the programs of a cell, reads its geometry. None when there are errors.
-
-    `tokens` reads the input files before anything that takes long.
-    """
+def prepare(path: Path, options: RunOptions, d: Diagnostics) -> Prepared | None:
+    """Generates and builds the programs of a cell, reads its geometry. None when there are errors."""
 
     def examine(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> None:
-        if config is not None:
-            examine_inputs(net, config, options.input, tokens, d)
+        begin(net, config, d, is_started=True, given=options.input)
 
     generated = pipeline.generate(
         path,
@@ -196,30 +181,15 @@ def run_cell(
     options: RunOptions,
     d: Diagnostics,
     observers: list[Observer] | None = None,
-    tokens: Tokens | None = None,
 ) -> RunResult | None:
-    """Runs a cell in lock-step and writes trace, rows and summary; None when it could not start.
-
-    `tokens` reads the input files before anything that takes long; without, the supervisor says what is wrong in them.
-    """
+    """Runs a cell in lock-step and writes trace, rows and summary; None when it could not start."""
     started = time.perf_counter()
-    if options.input is not None and not options.input.exists():
-        at = Origin(str(options.input))
-        d.error(
-            CELL_MISSING,
-            f"there is no file or folder `{options.input}`",
-            at,
-            hint="correct the path after --input",
-        )
-        return None
     expect_writable(options.out)
-    prepared = prepare(path, options, d, tokens)
+    prepared = prepare(path, options, d)
     if prepared is None:
         return None
     with ExitStack() as stack:
-        inputs = stack.enter_context(_inputs(prepared.config, options, d))
-        if inputs is None:
-            return None
+        inputs = stack.enter_context(folder_of(prepared.config, options.input))
         sensors = load_sensors(
             prepared.config,
             prepared.generated.partition.net,
@@ -306,11 +276,11 @@ def _report_start(ended: Exit, inputs: Path, options: RunOptions, d: Diagnostics
     others = (line for line in ended.stderr.split("\n") if line and ended.reason not in line)
     usage = ended.code == EXIT_USAGE
     d.error(
-        RUN_INPUT if usage else RUN_START,
+        INPUT if usage else RUN_START,
         f"the supervisor did not start: {reason}",
         at,
         notes=list(others)[:8],
-        hint=_CORRECT
+        hint=CORRECT
         if usage
         else "`./supervisor --help` in the folder of the program says what it needs",
     )
@@ -351,63 +321,6 @@ def shared_directory(name: str) -> Iterator[Path]:
         yield folder
     finally:
         shutil.rmtree(folder, ignore_errors=True)
-
-
-def examine_inputs(
-    net: FlatNet, config: CellConfig, given: Path | None, tokens: Tokens | None, d: Diagnostics
-) -> None:
-    """Reports what the supervisor would refuse in the input files of a run; `given`: as `RunOptions.input`."""
-    if given is not None and not given.is_dir() and len(config.inputs) != 1:
-        _tell_number(config, given, d)
-        return
-    for entry in config.inputs:
-        file = config.input_path(entry, given)
-        if not file.is_file():
-            d.error(
-                RUN_INPUT,
-                f"there is no input file `{file}`",
-                Origin(str(file)),
-                notes=[Note(f"the marking of `{entry.place}` comes from this file", entry.origin)],
-                hint=_CORRECT,
-            )
-    if tokens is None:
-        return
-    own = Diagnostics()
-    tokens(net, config, own, given)
-    for problem in own.errors:
-        what = f"the supervisor would not start: {problem.message}"
-        d.error(RUN_INPUT, what, problem.origin, notes=list(problem.notes), hint=_CORRECT)
-
-
-_CORRECT = "correct the input file, or give another one with --input"
-
-
-def _tell_number(config: CellConfig, given: Path, d: Diagnostics) -> None:
-    """That one file is given to a cell that has another number of them."""
-    d.error(
-        RUN_INPUT,
-        f"the cell has {len(config.inputs)} input files, but one file is given",
-        Origin(str(given)),
-        hint="give a folder that holds " + ", ".join(f"`{i.file}`" for i in config.inputs)
-        if config.inputs
-        else "the cell reads no input: leave out --input",
-    )
-
-
-@contextmanager
-def _inputs(config: CellConfig, options: RunOptions, d: Diagnostics) -> Iterator[Path | None]:
-    """The folder with the input files: the cell's own, one given, or one made around a single file."""
-    given = options.input
-    if given is None or given.is_dir():
-        yield config.folder if given is None else given
-        return
-    if len(config.inputs) != 1:
-        _tell_number(config, given, d)
-        yield None
-        return
-    with tempfile.TemporaryDirectory(prefix="pn2code-input-") as folder:
-        shutil.copyfile(given, Path(folder) / config.inputs[0].file)
-        yield Path(folder)
 
 
 def _names(prepared: Prepared) -> tuple[str, ...]:

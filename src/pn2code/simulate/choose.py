@@ -153,7 +153,12 @@ def _instead(request: Request, why: str, d: Diagnostics) -> Outcome:
 
 def _obstacle(request: Request) -> str:
     """Why the compiled engine cannot make the run; "" if it can."""
-    if request.replay is not None and Trace.open(request.replay, request.net).header.initial:
+    has_begun_so = request.initial is not None  # the net begins as the trace says
+    if (
+        request.replay is not None
+        and not has_begun_so
+        and Trace.open(request.replay, request.net).header.initial
+    ):
         return "the trace has initial markings of its own"
     program = request.monitors
     if program is None or not program.monitors:

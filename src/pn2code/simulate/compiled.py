@@ -236,6 +236,8 @@ def _command(
         command += ["--until", str(request.until)]
     if trace is not None:
         command += ["--trace", trace]
+    if request.initial is not None:
+        command += ["--initial", request.initial]
     if request.replay is not None:
         command += ["--replay", "-"]
     if request.files is not None:

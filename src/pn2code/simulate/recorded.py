@@ -20,15 +20,25 @@ from pn2code.trace.writing import json_text
 
 
 def repeat(
-    net: FlatNet, storage: Mapping[str, str], trace: Path, files: Path | None, d: Diagnostics
+    net: FlatNet,
+    storage: Mapping[str, str],
+    trace: Path,
+    files: Path | None,
+    d: Diagnostics,
+    initial: str | None = None,
 ) -> Outcome | None:
     """The compiled net repeats a trace of our own; None after a diagnostic.
+
+    Args:
+        net, storage, initial, files: as for `Request`.
+        trace: the trace.
+        d: gets the errors.
 
     Raises:
         TraceRefusedError: the file is no trace of a simulator.
         OSError: it cannot be read.
     """
-    request = Request(net=net, storage=storage, steps=0, replay=trace, files=files)
+    request = Request(net=net, storage=storage, initial=initial, steps=0, replay=trace, files=files)
     return simulate(request, Wish.COMPILED, d)
 
 

@@ -131,7 +131,7 @@ class ReferenceRun:
             return self._fail(error)
         self._initial = self.game.marking
         self.trace_file = TraceFile(request.trace)
-        self.trace_file.header(self.game, self.by, self.seed)
+        self.trace_file.header(self.game, self.by, self.seed, request.initial)
         if request.monitors is None:
             return ""
         try:

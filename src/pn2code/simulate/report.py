@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+from pn2code.base.readable import readable
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.report import marking_text, places, time_text
 from pn2code.simulate.run import Outcome
@@ -29,7 +30,7 @@ def text(net: FlatNet, outcome: Outcome, *, everything: bool = False) -> str:
     if outcome.monitors:
         parts.append(monitors_text(outcome.monitors))
     if outcome.output:
-        parts.append("the net printed\n" + _indented(outcome.output.rstrip("\n")))
+        parts.append("the net printed\n" + _indented(readable(outcome.output).rstrip("\n")))
     return "\n\n".join(part for part in parts if part)
 
 

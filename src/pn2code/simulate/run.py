@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.readable import readable
 from pn2code.diagnostics import Diagnostics, Note, Origin, Span
 from pn2code.monitors.functions import MonitorProgram
 from pn2code.net.flat import FlatNet, FlatTransition
@@ -29,6 +30,8 @@ class Request:
     Args:
         net: the net.
         storage: as for `Game`.
+        initial: what the header of its trace says of initial markings that are not those of the net's file, as JSON;
+            None: nothing.
         steps: most steps; None: no limit.
         seed: of all random numbers; None: that of the trace that is repeated, or 1. With such a trace it decides the
             choices after it, and nothing else.
@@ -44,6 +47,7 @@ class Request:
 
     net: FlatNet
     storage: Mapping[str, str] = field(default_factory=dict)
+    initial: str | None = None
     steps: int | None = 1000
     seed: int | None = None
     until: int | float | None = None
@@ -99,13 +103,13 @@ class Failure:
             values = ", ".join(f"{k} = {v}" for k, v in (self.binding or {}).items())
             with_binding = f" with {values}" if values else ""
             notes.append(f"transition `{self.transition.name}`{with_binding}, after {steps} steps")
-        d.error(RUNTIME_ERROR, self.message, self.origin, notes=notes)
+        d.error(RUNTIME_ERROR, readable(self.message), self.origin, notes=notes)
 
     def row(self) -> dict[str, Any]:
         """For programs."""
         t = self.transition
         return {
-            "message": self.message,
+            "message": readable(self.message),
             "page": t.page if t else self.origin.page,
             "instance": t.instance_number if t else 1,
             "transition": t.short if t else "",

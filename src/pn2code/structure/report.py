@@ -6,6 +6,7 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
+from pn2code.base.readable import readable
 from pn2code.ml.core import terms as core
 from pn2code.net.dump import text_of
 from pn2code.net.flat import FlatNet
@@ -108,7 +109,11 @@ def constant_text(a: Analysis, invariant: ColouredInvariant) -> str | None:
             pass  # without bounds: it has no `all`
     plus = MultiSet({v: n for v, n in constant.items() if n > 0})
     minus = MultiSet({v: -n for v, n in constant.items() if n < 0})
-    texts = [" ".join(colours.multiset_text(colset, m).split()) for m in (plus, minus) if len(m)]
+    texts = [
+        " ".join(readable(colours.multiset_text(colset, m)).split())
+        for m in (plus, minus)
+        if len(m)
+    ]
     return " -- ".join(texts) if len(plus) else f"empty -- {texts[0]}"
 
 

@@ -5,6 +5,7 @@ Each line is written whole and flushed. When that fails, what there is of the li
 
 from __future__ import annotations
 
+import json
 import math
 import re
 from pathlib import Path
@@ -81,10 +82,20 @@ class TraceFile:
         assert self._path is not None
         return TraceUnwritableError(self._path, os_reason(problem))
 
-    def header(self, game: Game, by: str, seed: int) -> None:
-        """The first line; before the game begins."""
+    def header(self, game: Game, by: str, seed: int, initial: str | None = None) -> None:
+        """The first line; before the game begins.
+
+        Args:
+            game: the game.
+            by: who plays.
+            seed: of the random numbers.
+            initial: initial markings of its net that are not those of the net's file, as JSON.
+        """
         if self._file is not None:
-            self._line({**lines.header(game, by), "seed": seed})
+            first = lines.header(game, by)
+            if initial is not None:
+                first["initial"] = json.loads(initial)
+            self._line({**first, "seed": seed})
 
     def occurrence(self, game: Game, occurred: BindingElement) -> None:
         """The line of what has just been fired."""

@@ -16,6 +16,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
+from pn2code.base.readable import readable
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.ml.core.colsets import Kind
 from pn2code.ml.core.terms import PVar, Symbol
@@ -314,7 +315,7 @@ class _Closure:
 
     def shown(self, symbol: Symbol, value: Value) -> str:
         assert symbol.colset is not None
-        return self.colours.text(symbol.colset, value)
+        return readable(self.colours.text(symbol.colset, value))
 
     def result(self) -> Unfolding:
         """The net, in the documented order."""
@@ -329,7 +330,11 @@ class _Closure:
                 values = list(self.colours.all(p.colset))
             for value in values:
                 index[p.index, value] = len(places)
-                name = p.name if single else f"{p.name}[{self.colours.text(p.colset, value)}]"
+                name = (
+                    p.name
+                    if single
+                    else f"{p.name}[{readable(self.colours.text(p.colset, value))}]"
+                )
                 assert isinstance(tokens, MultiSet)
                 places.append(
                     UnfoldedPlace(len(places), p.index, value, name, tokens.coefficient(value))

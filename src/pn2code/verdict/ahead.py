@@ -6,6 +6,7 @@ look_ahead(partition, config, programs, d)
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from pathlib import Path
 
 from pn2code.arms import Arms
 from pn2code.cell.config import CellConfig
@@ -30,7 +31,11 @@ from pn2code.tdl.interpret import to_si
 
 
 def look_ahead(
-    partition: Partition, config: CellConfig, programs: Iterable[RobotIR], d: Diagnostics
+    partition: Partition,
+    config: CellConfig,
+    programs: Iterable[RobotIR],
+    d: Diagnostics,
+    inputs: Path | None = None,
 ) -> None:
     """Reports missing inputs, values of sensors that are none, arms that touch at HOME, constant poses out of reach.
 
@@ -39,9 +44,11 @@ def look_ahead(
         config: the cell, which is right as far as it can be seen without its robots moving.
         programs: of its robots and devices.
         d: gets the errors.
+        inputs: the input files of the run, if not those beside cell.toml; a folder with them may have files of sensors.
     """
-    begin(partition.net, config, d, is_started=True)
-    load_sensors(config, partition.net, (config.folder,), None, d)
+    begin(partition.net, config, d, is_started=True, given=inputs)
+    folders = (config.folder,) if inputs is None else (inputs, config.folder)
+    load_sensors(config, partition.net, folders, None, d)
     for layout in config.layouts or {"": ""}:
         chosen = config if layout == config.layout else load_cell(config.path, d, layout=layout)
         assert chosen is not None, "the layouts have been read before"

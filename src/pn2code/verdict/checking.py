@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 from pn2code.cell.channel_table import ChannelRow, rows
 from pn2code.cell.locate import locate
 from pn2code.diagnostics import Diagnostics
+from pn2code.input_files import begin
 from pn2code.net import emptiness, front
 from pn2code.net.front import Examined
 from pn2code.semantics.evaluation.constants import compute
@@ -40,7 +41,14 @@ class Checked:
     channels: tuple[ChannelRow, ...] = ()
 
 
-def check(path: Path, values: Mapping[str, str], d: Diagnostics, *, int_bits: int = 31) -> Checked:
+def check(
+    path: Path,
+    values: Mapping[str, str],
+    d: Diagnostics,
+    *,
+    int_bits: int = 31,
+    inputs: Path | None = None,
+) -> Checked:
     """Looks at a net or cell without running it.
 
     Args:
@@ -48,10 +56,13 @@ def check(path: Path, values: Mapping[str, str], d: Diagnostics, *, int_bits: in
         values: replace `val`s of the net, over those of cell.toml.
         d: gets the errors and warnings.
         int_bits: width of `int`.
+        inputs: the input files of the cell, if not those beside cell.toml.
     """
     found = locate(path, d)
     if found is None:
-        return Checked(path, Examined(None, None), is_fine=False)
+        described = path / "cell.toml"
+        where = described if described.is_file() else path
+        return Checked(where, Examined(None, None), is_fine=False)
     file, config = found
     replaced = {**(config.values if config else {}), **values}
     result = front.examine(file, d, replaced, int_bits=int_bits, compute=compute)
@@ -59,18 +70,26 @@ def check(path: Path, values: Mapping[str, str], d: Diagnostics, *, int_bits: in
         emptiness.warn(result.flat, d)
     channels: tuple[ChannelRow, ...] = ()
     if config is not None:
-        partition = examine_cell(file, config, result, d)
+        partition = examine_cell(file, config, result, d, inputs=inputs)
         if partition is not None:
             channels = rows(partition, config)
     else:
         _properties(file, None, result, d)
+        if inputs is not None and result.flat is not None:
+            begin(result.flat, None, d, given=inputs)
     return Checked(
         file, result, is_fine=result.flat is not None and not d.has_errors, channels=channels
     )
 
 
 def examine_cell(
-    net: Path, config: CellConfig, result: Examined, d: Diagnostics, *, ahead: bool = True
+    net: Path,
+    config: CellConfig,
+    result: Examined,
+    d: Diagnostics,
+    *,
+    ahead: bool = True,
+    inputs: Path | None = None,
 ) -> Partition | None:
     """What cell.toml says of the net; the robots' programs; the robots and the scene, in all layouts; properties.
 
@@ -80,6 +99,7 @@ def examine_cell(
         result: what the front end made of the net.
         d: gets the errors.
         ahead: whether files beside the cell and the robots' places are looked at, which takes longer.
+        inputs: the input files, if not those beside cell.toml.
 
     Returns:
         Who runs what; None after an error in that.
@@ -99,7 +119,7 @@ def examine_cell(
         from pn2code.verify.controller import short_timers
 
         short_timers.warn(partition, config, d)
-        look_ahead(partition, config, programs, d)
+        look_ahead(partition, config, programs, d, inputs)
     return partition
 
 

@@ -11,25 +11,28 @@ from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
 from pn2code.cell.locate import locate
 from pn2code.diagnostics import Diagnostics
-from pn2code.input_files import Given, begin
+from pn2code.input_files import Given, begin, begin_as
 from pn2code.net import emptiness, front
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.evaluation.constants import compute
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.token_game import Game
+from pn2code.trace.script import Trace, TraceRefusedError
 
 
 @frozen
 class OpenNet:
     """A net, the cell beside it, if there is one, and what the front end knows of it.
 
-    `given`: the markings that files gave; they are the initial markings of `flat`.
+    `given`: the markings that files gave; they are the initial markings of `flat`. `inputs`: where these files are, if
+    not beside cell.toml.
     """
 
     flat: FlatNet
     config: CellConfig | None
     examined: front.Examined
     given: tuple[Given, ...] = ()
+    inputs: Path | None = None
 
     @property
     def storage(self) -> Mapping[str, str]:
@@ -74,7 +77,23 @@ def read(
     return OpenNet(examined.flat, config, examined)
 
 
-def with_inputs(opened: OpenNet, d: Diagnostics) -> OpenNet:
-    """The net as a run of its cell begins it (`input_files`); `d` gets what is wrong with the files."""
-    begun = begin(opened.flat, opened.config, d)
-    return replace(opened, flat=begun.net, given=begun.given)
+def as_traced(opened: OpenNet, trace: Path) -> OpenNet:
+    """The net as a trace says that it began; what cannot be read of the trace is told when it is repeated."""
+    try:
+        initial = Trace.open(trace, opened.flat).header.initial
+    except (TraceRefusedError, OSError):
+        return opened
+    begun = begin_as(opened.flat, initial)
+    return opened if begun is None else replace(opened, flat=begun.net, given=begun.given)
+
+
+def with_inputs(opened: OpenNet, d: Diagnostics, inputs: Path | None = None) -> OpenNet:
+    """The net as a run of its cell begins it (`input_files`).
+
+    Args:
+        opened: the net.
+        d: gets what is wrong with the files.
+        inputs: other files than those beside cell.toml, as for `input_files.begin`.
+    """
+    begun = begin(opened.flat, opened.config, d, given=inputs)
+    return replace(opened, flat=begun.net, given=begun.given, inputs=inputs)

@@ -24,7 +24,7 @@ from pn2code.verify.answers.culprit import culprit
 from pn2code.verify.answers.outcome import Counts
 from pn2code.verify.answers.properties import Answer, Verdict, kind
 from pn2code.verify.answers.reasons import raised
-from pn2code.verify.codes import STATE_ERROR, TRACE_UNWRITABLE
+from pn2code.verify.codes import REPORT_UNWRITABLE, STATE_ERROR, TRACE_UNWRITABLE
 from pn2code.verify.controller import short_timers
 from pn2code.verify.controller.control_types import Control
 from pn2code.verify.exploring import nondeterminism
@@ -86,7 +86,7 @@ class Said:
         answers: to properties.
         control: the checks of a supervisor.
         medium: those of the shared files.
-        errors: how many errors are said besides.
+        errors: how many errors of the net are said besides.
         deadline: when it is over no run is played any more.
         config: of the cell; None: the net is none.
     """
@@ -247,7 +247,7 @@ def conclude(
         answers,
         control if checks.controller else None,  # else it was looked at for properties only
         looked.medium,
-        len(d.errors),
+        sum(e.code != REPORT_UNWRITABLE for e in d.errors),
         limits.deadline,
         opened.config,
     )

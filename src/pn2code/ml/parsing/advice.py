@@ -330,6 +330,8 @@ def syntax(
             return FOREIGN_OPERATORS["=>"]
         case "DARROW" if "OF" in expected:
             return "`case` is written `case value of pattern => result | pattern => result`"
+        case "DARROW" if texts.isdisjoint({"fn", "case", "handle"}):
+            return FOREIGN_OPERATORS["=>"]
         case "ID" if text in FOREIGN_OPERATORS:
             return FOREIGN_OPERATORS[text]
         case _ if start == "code" and not before:

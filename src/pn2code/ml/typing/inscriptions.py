@@ -393,7 +393,15 @@ class Inscriptions:
         shown = self._ctx.show(draft.type)
         is_list = self._ctx.unifier.attempt(draft.type, i_list(I_BOOL))
         if is_list and is_alone:
-            if not _is_written_list(e):
+            if isinstance(e, s.InfixExp) and e.operator.name != "::":
+                self._ctx.d.warning(
+                    codes.GUARD_OPERATOR,
+                    f"CPN Tools cannot check a page with this guard: `{e.operator.name}` makes its list of conditions",
+                    e.span,
+                    hint="write the conditions in one pair of brackets, `[a, b]`, or as one: "
+                    "`List.all (fn c => c) (..)`",
+                )
+            elif not _is_written_list(e):
                 self._ctx.d.warning(
                     codes.GUARD_LIST,
                     "CPN Tools accepts this guard, but does not test it: it computes a list of conditions",

@@ -14,6 +14,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from typing import Any
 
+from pn2code.base.readable import readable
 from pn2code.diagnostics import Diagnostics, Note, Origin, Span
 from pn2code.ml.core.terms import Exp, Lit, Pat, Symbol
 from pn2code.net.flat import (
@@ -54,8 +55,8 @@ class GameError(Exception):
     """
 
     def __init__(self, message: str, origin: Origin, span: Span | None = None) -> None:
-        super().__init__(message)
-        self.message = message
+        self.message = readable(message)
+        super().__init__(self.message)
         self.origin = origin
         self.span = span
 
@@ -519,7 +520,7 @@ class Enabling:
         )
         tokens = marking.places[missing.place]
         held = _one_line(place_text(self.colours, c, tokens))
-        text = f"place `{place.name}` lacks {wanted}`{self.colours.text(c, missing.value)}: it holds {held}"
+        text = f"place `{place.name}` lacks {wanted}`{readable(self.colours.text(c, missing.value))}: it holds {held}"
         if isinstance(tokens, TimedMultiSet):
             early = f" + {missing.early}" if missing.early else ""
             text += f" at time {marking.time}{early}"

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from pn2code.base.frozen import frozen
+from pn2code.base.readable import readable
 from pn2code.ml.core.colsets import Colset
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import FlatNet, FlatPlace, FlatTransition
@@ -64,13 +65,13 @@ def place_text(
     colours: Colours, c: Colset, tokens: PlaceMarking, *, earlier_first: bool = False
 ) -> str:
     """What a place holds, as CPN Tools prints it; `earlier_first` as in the nodes of its state spaces."""
-    return colours.multiset_text(c, tokens, earlier_first=earlier_first)
+    return readable(colours.multiset_text(c, tokens, earlier_first=earlier_first))
 
 
 def variable_text(colours: Colours, symbol: Symbol, value: Value) -> str:
     """The value of a variable as CPN Tools prints it."""
     assert symbol.colset is not None, "a net variable has a colour set"
-    return colours.text(symbol.colset, value)
+    return readable(colours.text(symbol.colset, value))
 
 
 def element_text(colours: Colours, net: FlatNet, element: BindingElement) -> str:

@@ -11,6 +11,7 @@ import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
+from pn2code.base.readable import readable
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset
 from pn2code.net.flat import FlatArc, Form
@@ -172,8 +173,8 @@ def _like(
     if tokens.coefficient(demand.value):
         return (demand.value,)
     c = enabling.net.places[demand.place].colset
-    text = colours.text(c, demand.value)
-    return next(((v,) for v in tokens.counts if colours.text(c, v) == text), None)
+    text = readable(colours.text(c, demand.value))
+    return next(((v,) for v in tokens.counts if readable(colours.text(c, v)) == text), None)
 
 
 def final_difference(
@@ -186,12 +187,12 @@ def final_difference(
 ) -> str:
     """How a place differs from its recorded marking, as far as it is known; "" if it does not."""
     left = counted(recorded, c)
-    for text, count in counted(colours.multiset_text(c, tokens), c).items():
+    for text, count in counted(readable(colours.multiset_text(c, tokens)), c).items():
         if left.get(text, 0) < count:
             return f"{count}`{text}"
         left[text] -= count
     for value, count in unknown.late_in(place).counts.items():
-        text = colours.text(c, value)
+        text = readable(colours.text(c, value))
         like = [found for found in left if found.rsplit("@", 1)[0] == text]
         for _ in range(count):
             found = next((x for x in like if left[x] > 0), None)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
+from pn2code.base.readable import readable
 from pn2code.net.flat import FlatNet, FlatPlace, FlatTransition
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.marking import BindingElement, Marking, element_text
@@ -128,7 +129,7 @@ def _changes(net: FlatNet, before: Marking, after: Marking) -> Iterator[Change]:
 def _text(place: FlatPlace, tokens: Iterable[Value]) -> str:
     """In one line."""
     some = tuple(tokens)
-    return " ".join(TEXTS.multiset_text(place.colset, some).split("\n")) if some else ""
+    return " ".join(readable(TEXTS.multiset_text(place.colset, some)).split("\n")) if some else ""
 
 
 def text(found: tuple[Step, ...], total: int) -> str:

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from pn2code.base.frozen import frozen
+from pn2code.base.readable import readable
 from pn2code.ml.core.colsets import Colset
 from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet
@@ -367,5 +368,5 @@ def multiset_text(colset: Colset, found: Sequence[tuple[int, Any]] | None) -> st
         return None
     values = [(from_json(colset, value), count) for count, value in found if count]
     values.sort(key=lambda item: TEXTS.key(colset, item[0]))
-    lines = [f"{count}`{TEXTS.text(colset, value)}" for value, count in values]
+    lines = [f"{count}`{readable(TEXTS.text(colset, value))}" for value, count in values]
     return "++\n".join(lines) or "empty"

@@ -97,6 +97,10 @@ static bool read_valued(const char *option, const char *value, sim_options_t *op
         options->trace = value;
         return true;
     }
+    if (strcmp(option, "--initial") == 0) {
+        options->initial = value;
+        return true;
+    }
     if (strcmp(option, "--files") == 0) {
         options->files = value;
         return true;
@@ -207,7 +211,7 @@ static bool play_with_trace(sim_t *sim)
         return false;
     }
     (void)snprintf(seed, sizeof seed, "\"seed\": %llu", (unsigned long long)sim->options.seed);
-    pn_trace_header_with(&sim->trace, &pn_net, "simulate", NULL, seed);
+    pn_trace_header_with(&sim->trace, &pn_net, "simulate", sim->options.initial, seed);
     if (sim->trace.failed) {
         (void)snprintf(sim->message, sizeof sim->message, "%s", strerror(errno));
     } else {

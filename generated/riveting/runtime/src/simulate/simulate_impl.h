@@ -17,11 +17,12 @@ typedef struct sim_options {
     uint64_t memory; /* bytes for lists and strings */
     uint64_t choice; /* of the choices after a replay */
     bool has_choice;
-    const char *trace;  /* NULL: none */
-    const char *report; /* NULL: none */
-    const char *files;  /* folder for the net's files; NULL: none */
-    const char *replay; /* NULL: none; "-": the standard input */
-    double progress_s;  /* seconds between two progress lines of the report; 0: none */
+    const char *trace;   /* NULL: none */
+    const char *report;  /* NULL: none */
+    const char *files;   /* folder for the net's files; NULL: none */
+    const char *initial; /* what the header of the trace says of initial markings; NULL: nothing */
+    const char *replay;  /* NULL: none; "-": the standard input */
+    double progress_s;   /* seconds between two progress lines of the report; 0: none */
     pn_time_t until;
     bool has_until;
     bool shows_enabled;

@@ -149,6 +149,20 @@ static bool stop_for_colour(sup_t *sup, const pn_cell_input_t *input, const inpu
                     text->path, text->line_of[0], token->column_of[0], place->colset, place->name);
 }
 
+/* What was proved of the cell (head of cell_config.c) holds for the token that it was checked with: says so where this
+ * is another one. */
+static void compare_with_checked(const sup_t *sup, const pn_cell_input_t *input, input_text_t *text)
+{
+    pn_leaf_t leaf[PN_CHANNEL_SCALARS];
+    const pn_bag_t *const bag = sup->net->place[input->place].bag;
+    const uint32_t count = pn_bag_token(bag, sup->marking, 0U, leaf, PN_CHANNEL_SCALARS);
+    const size_t length = pn_scalars_format(input->scalar, count, leaf, text->bytes, sizeof text->bytes);
+    if (pn_crc32(0U, text->bytes, length) != input->checked) {
+        sup_warn("%s: not the token that the cell was checked with: `pn2code verify --input` checks it with this one",
+                 text->path);
+    }
+}
+
 bool sup_read_inputs(sup_t *sup)
 {
     static input_text_t text;
@@ -166,6 +180,9 @@ bool sup_read_inputs(sup_t *sup)
             }
             sup->cx.error = PN_OK;
             return stop_for_colour(sup, input, &text, &token);
+        }
+        if (input->is_checked) {
+            compare_with_checked(sup, input, &text);
         }
     }
     return true;
