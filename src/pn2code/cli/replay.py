@@ -188,6 +188,7 @@ def _own(trace: Path, opened: OpenNet, files: Path | None, claims: Claims) -> di
         "line": result.line,
         "transition": result.transition,
         "ended": result.ended,
+        "given": list(result.given),
         "time": game.marking.time if game else None,
         "engine": Engine.REFERENCE.value,
         "places": places(opened.flat, game.marking) if game else [],
@@ -206,6 +207,9 @@ def _sentence(trace: Path, result: dict[str, Any]) -> str:
     text = f"{trace}: {steps}, each enabled when its turn came{ended}"
     if result["time"]:
         text += f", until time {time_text(result['time'])}"
+    if result.get("given"):
+        names = ", ".join(f"`{name}`" for name in result["given"])
+        text += f"; it begins with other tokens than the net in {names}, as its header says"
     if "ended" in result and not result["ended"]:
         text += "; its last line is missing, the run may have continued"
     return text + (f"\n{result['why']}" if result["why"] else "")

@@ -61,5 +61,6 @@ def claims(
         messages=frozenset(c.place for c in partition.channels),
         final=partition.final_places,
         digests=digests,
+        inputs=frozenset(i.place for i in partition.inputs),
     )
     return Claims(parties, not any_digest, may_fail, RunNotes(config, partition))

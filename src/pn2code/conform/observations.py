@@ -6,7 +6,8 @@ found.others[sight]              # {Sight(...): Turn("Robot1.Report {...}", 0)}:
 
 A supervisor sees its own places, the channels that it writes and reads, and the time. What robots do in between,
 it does not see: many markings of the net are one sight, and a program that does the right thing in each sight does it
-in each marking.
+in each marking. Messages that one occurrence gives it come one after the other (I5 of docs/protocol.md), and it may
+execute its cycle between two of them.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from collections import deque
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 
-from pn2code.cell.partition import Partition
+from pn2code.cell.partition import Channel, Partition
 from pn2code.conform.clock import Clock
 from pn2code.conform.scheme import SUPERVISOR, Scheme
 from pn2code.semantics.game.marking import Marking
@@ -58,6 +59,21 @@ class Observations:
     overruns: list[tuple[str, ...]] = field(default_factory=list)
 
 
+@dataclass(frozen=True, slots=True)
+class _State:
+    """Args:
+    marking: of the closed net.
+    read: as in `Observation`.
+    late: places of messages to the supervisor that have been put, and are not published yet.
+    signs: as in `Observation`.
+    """
+
+    marking: Marking
+    read: frozenset[int]
+    late: frozenset[int]
+    signs: frozenset[tuple[int, str]]
+
+
 _CYCLE = ObservedChange("the supervisor's cycle")
 
 
@@ -74,11 +90,12 @@ class _Closed:
         seen = {*scheme.touched(SUPERVISOR), *partition.final_places}
         channels = {c.place for c in partition.channels if SUPERVISOR in (c.writer, c.reader)}
         self._unseen = [p.index for p in partition.net.places if p.index not in seen | channels]
-        self._way: dict[Observation, tuple[Observation, ObservedChange] | None] = {}
+        self._incoming = [c for c in partition.channels if c.reader == SUPERVISOR]
+        self._way: dict[_State, tuple[_State, ObservedChange] | None] = {}
 
     def look(self) -> Observations:
         found = Observations()
-        start = self._after_cycle(self._start)
+        start = self._after_cycle(self._state(self._start, frozenset()))
         if start is None:
             return found
         self._way = {start: None}
@@ -103,9 +120,14 @@ class _Closed:
                 del others[sight]
         return found
 
+    def _state(
+        self, marking: Marking, read: frozenset[int], late: frozenset[int] = frozenset()
+    ) -> _State:
+        return _State(marking, read, late, self._scheme.nodes.signs(marking))
+
     def _following(
-        self, state: Observation, found: Observations
-    ) -> Iterator[tuple[ObservedChange, Observation]]:
+        self, state: _State, found: Observations
+    ) -> Iterator[tuple[ObservedChange, _State]]:
         """States with what leads there."""
         quiet = True
         for owner in self._partition.owners[SUPERVISOR + 1 :]:
@@ -113,31 +135,59 @@ class _Closed:
             if possible.steps or possible.raises:
                 quiet = False
             for step in possible.steps:
-                if self._is_overrun(state.marking, dict(step.changes)):
+                if self._is_overrun(state.marking, dict(step.changes.places)):
                     found.overruns.append((*self._way_to(state), step.text))
                 else:
-                    after_step = step.after(state.marking)
-                    yield ObservedChange(step.text), observed(self._scheme, after_step, state.read)
-        cycle = self._scheme.cycle(state.marking)
+                    marking = step.after(state.marking)
+                    late = self._put_late(state, marking, owner.index)
+                    yield ObservedChange(step.text), self._state(marking, state.read, late)
+        for channel in self._next_published(state):
+            quiet = False
+            late = state.late - {channel.place}
+            yield ObservedChange(f"{channel.file} is published"), replace(state, late=late)
+        cycle = self._scheme.cycle(self._published(state))
         if cycle.elements or cycle.stopped:
             quiet = False
-        after = self._after_cycle(state.marking)
+        after = self._after_cycle(state)
         if after is not None:
             yield _CYCLE, after
         if quiet:
             marking = self._game.advance_time(state.marking)
             if marking != state.marking:
                 later = marking.time - state.marking.time
-                after = observed(self._scheme, self._clock.relative(marking), state.read)
+                after = self._state(self._clock.relative(marking), state.read, state.late)
                 yield ObservedChange(f"time goes on by {later}", later), after
 
-    def _after_cycle(self, marking: Marking) -> Observation | None:
+    def _put_late(self, state: _State, after: Marking, writer: int) -> frozenset[int]:
+        """What is not published yet after an occurrence: of several messages that it puts, none is at first."""
+        own = [c.place for c in self._incoming if c.writer == writer]
+        put = {p for p in own if after.places[p] and not state.marking.places[p]}
+        is_alone = len(put) == 1 and state.late.isdisjoint(own)
+        return state.late if is_alone else state.late | put
+
+    def _next_published(self, state: _State) -> Iterator[Channel]:
+        """Of each writer the message that it publishes next: data before flags, as the channels of a partition are."""
+        late = [c for c in self._incoming if c.place in state.late]
+        for writer in {c.writer: None for c in late}:
+            yield next(c for c in late if c.writer == writer)
+
+    def _published(self, state: _State) -> Marking:
+        """The marking without the messages that are not published yet."""
+        places = list(state.marking.places)
+        for p in state.late:
+            places[p] = self._start.places[p]  # a channel is empty at the start
+        return replace(state.marking, places=tuple(places))
+
+    def _after_cycle(self, state: _State) -> _State | None:
         """None: the supervisor stops, or has finished."""
-        cycle = self._scheme.cycle(marking)
+        cycle = self._scheme.cycle(self._published(state))
         if cycle.stopped or self._scheme.is_final(cycle.marking):
             return None
-        read = self._scheme.unconsumed(cycle.marking)
-        return observed(self._scheme, cycle.marking, read)
+        places = list(cycle.marking.places)
+        for p in state.late:
+            places[p] = state.marking.places[p]
+        after = replace(cycle.marking, places=tuple(places))
+        return self._state(after, self._scheme.unconsumed(cycle.marking), state.late)
 
     def _is_overrun(self, before: Marking, changes: dict[int, object]) -> bool:
         """Whether somebody else writes a message where one is, or two at once."""
@@ -149,14 +199,14 @@ class _Closed:
                     return True
         return False
 
-    def _sight(self, state: Observation) -> Observation:
-        places = list(state.marking.places)
+    def _sight(self, state: _State) -> Observation:
+        places = list(self._published(state).places)
         for p in self._unseen:
             places[p] = self._start.places[p]
         marking = replace(state.marking, places=tuple(places))
         return observed(self._scheme, marking, state.read)
 
-    def _way_to(self, state: Observation) -> tuple[str, ...]:
+    def _way_to(self, state: _State) -> tuple[str, ...]:
         way = []
         while (step := self._way[state]) is not None:
             state, turn = step

@@ -6,7 +6,8 @@ The script is interpreted step by step while all other owners do what the net le
 announces a transition (`mark`), that transition must be enabled with that binding; the commands since the mark before
 must be the calls of primitives that the net makes there; the files that it reads, empties and writes must be the
 places. Where it waits or has ended, the page must have nothing to do. What the net leaves open to a sensor is tried
-with every value.
+with every value. Messages that one occurrence gives the script come one after the other (I5 of docs/protocol.md), and
+it may go on between two of them.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import astuple, dataclass, replace
 
 from pn2code.cell.config import CellConfig
-from pn2code.cell.partition import ChannelKind, Partition
+from pn2code.cell.partition import Channel, ChannelKind, Partition
 from pn2code.conform.clock import Clock
 from pn2code.conform.messages import scalars
 from pn2code.conform.scheme import MOST_STATES, Scheme
@@ -93,6 +94,7 @@ class _State:
     until: model time at which a wait ends.
     owed: model time that the script still has to wait before it goes on: the delay of the last transition.
     looked: files that it has seen to be filled and not emptied since.
+    late: messages to it that have been put, and are not published yet.
     """
 
     marking: Marking
@@ -105,14 +107,16 @@ class _State:
     looked: frozenset[str] = frozenset()
     signs: object = None
     """of the zeros in the marking and in the script's variables: equal ones can be told apart"""
+    late: frozenset[str] = frozenset()
 
 
 class PlacesAsFiles:
     """The channels of a marking as the script sees its files; what it does is kept apart.
 
-    Here a message is seen at once, in a run perhaps later, and nobody comes between two statements. So what is read
-    must have been waited for; what is emptied or written must have been announced; what is taken is emptied before an
-    answer is given, or the next message could be emptied in its place; and data are written before flags.
+    Here a message is seen when it is published, in a run perhaps later, and nobody comes between two statements. So
+    what is read must have been waited for; what is emptied or written must have been announced; what is taken is
+    emptied before an answer is given, or the next message could be emptied in its place; and data are written before
+    flags.
 
     Args:
         data: channels of data.
@@ -200,6 +204,8 @@ class _Product:
             for channel in partition.channels
             if owner in (channel.writer, channel.reader)
         }
+        self._incoming = [c for c in partition.channels if c.reader == owner]
+        self._late: frozenset[str] = frozenset()
         data = {c.name for c in partition.channels if c.kind is ChannelKind.DATA}
         self._files = PlacesAsFiles(frozenset(data & self._channels.keys()))
         self._listener = Listener(game, config.primitives)
@@ -209,7 +215,7 @@ class _Product:
         self._scheme = Scheme(partition, game)
         self._clock = Clock(partition.net)
         self._interpreter = Script(program, self._files, self._heard)
-        self._marking = game.marking
+        self._marking = self._start = game.marking
         self._done: list[commands.Command] = []
         self._owed = 0.0
         self._heard_of: list[tuple[str, Scalar]] = []
@@ -269,7 +275,13 @@ class _Product:
             ):  # an owner that raises stops, and the cell with it
                 quiet = False
             for step in possible.steps:
-                yield step.text, replace(state, marking=step.after(state.marking))
+                marking = step.after(state.marking)
+                late = self._put_late(state, marking, owner.index)
+                yield step.text, replace(state, marking=marking, late=late)
+        for channel in self._next_published(state):
+            quiet = False
+            yield f"{channel.file} is published", replace(state, late=state.late - {channel.name})
+        self._late = state.late
         for text, after in self._resumed(state):
             quiet = False
             yield text, after
@@ -277,6 +289,19 @@ class _Product:
             later = self._later(state)
             if later is not None:
                 yield f"time goes on by {later.marking.time - state.marking.time}", later
+
+    def _put_late(self, state: _State, after: Marking, writer: int) -> frozenset[str]:
+        """What is not published yet after an occurrence: of several messages that it puts, none is at first."""
+        own = [c for c in self._incoming if c.writer == writer]
+        put = {c.name for c in own if after.places[c.place] and not state.marking.places[c.place]}
+        is_alone = len(put) == 1 and state.late.isdisjoint(c.name for c in own)
+        return state.late if is_alone else state.late | put
+
+    def _next_published(self, state: _State) -> Iterator[Channel]:
+        """Of each writer the message that it publishes next: data before flags, as the channels of a partition are."""
+        late = [c for c in self._incoming if c.name in state.late]
+        for writer in {c.writer: None for c in late}:
+            yield next(c for c in late if c.writer == writer)
 
     def _later(self, state: _State) -> _State | None:
         """Time goes on to where something can happen."""
@@ -306,7 +331,7 @@ class _Product:
             case Finished():
                 self._nothing_to_do(state, "the script has ended")
             case Fault(message=message, line=line):
-                if not self._must_stop(state.marking):
+                if not self._must_stop(self._published(state.marking)):
                     self._nothing_to_do(state, f"the script stops in line {line} ({message})")
             case AwaitFile(names=names, line=line):
                 view = self._view(state.marking)
@@ -348,7 +373,7 @@ class _Product:
 
     def _nothing_to_do(self, state: _State, why: str) -> None:
         try:
-            element = next(self._scheme.enabled(self._owner, state.marking), None)
+            element = next(self._scheme.enabled(self._owner, self._published(state.marking)), None)
         except GivenUpError:
             raise
         except GameError as error:
@@ -367,7 +392,7 @@ class _Product:
     def _said(self, state: _State, sensor: str) -> list[Scalar]:
         """Every value that the net leaves open to the sensor here: those of its variable in what is enabled."""
         found: dict[Scalar, None] = {}
-        for element in self._scheme.enabled(self._owner, state.marking):
+        for element in self._scheme.enabled(self._owner, self._published(state.marking)):
             for symbol, value in element.values:
                 if self._sensors.get(symbol.name) != sensor:
                     continue
@@ -407,6 +432,7 @@ class _Product:
             until,
             self._owed,
             frozenset(self._files.looked),
+            self._late,
         )
         return f"{self._name}: the script goes on after line {before}", after
 
@@ -467,7 +493,7 @@ class _Product:
     ) -> Iterator[tuple[Marking, BindingElement]]:
         """The ways in which a transition can occur, each with what it leads to; the calls of the last are noted."""
         try:
-            for element in self._scheme.enabled(self._owner, self._marking):
+            for element in self._scheme.enabled(self._owner, self._published(self._marking)):
                 if element.transition == t.index:
                     self._called.clear()
                     yield self._game.occur(self._marking, element)
@@ -505,11 +531,21 @@ class _Product:
                 f"{where}: the script has commanded {_list(done)}, the net calls {_list(called)}"
             )
 
+    def _published(self, marking: Marking) -> Marking:
+        """The marking without the messages that are not published yet."""
+        if not self._late:
+            return marking
+        places = list(marking.places)
+        for name in self._late:
+            place = self._channels[name]
+            places[place] = self._start.places[place]  # a channel is empty at the start
+        return replace(marking, places=tuple(places))
+
     def _view(self, marking: Marking) -> dict[str, tuple[Scalar, ...]]:
         found = {}
         for name, place in self._channels.items():
             tokens = list(marking.places[place])
-            if tokens:
+            if tokens and name not in self._late:
                 found[name] = scalars(self._net.places[place].colset, tokens[0])
         return found
 

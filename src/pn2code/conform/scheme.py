@@ -5,8 +5,8 @@ done = scheme.cycle(marking)          # Cycle(marking, elements, stopped): what 
 for step in scheme.steps(1, marking).steps:
     step.after(marking)               # what the first robot may do
 
-What an owner does depends on the places that it touches and on the time, so it is worked out once for each of
-those, however many markings they occur in.
+What an owner does depends on the places that it touches, on the time, and on what references hold, so it is worked out
+once for each of those, however many markings they occur in.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 
 from pn2code.cell.partition import Partition
 from pn2code.net.flat import FlatTransition
+from pn2code.semantics.evaluation.references import Held
 from pn2code.semantics.game.enabling import GivenUpError
 from pn2code.semantics.game.graph import Nodes
 from pn2code.semantics.game.marking import BindingElement, Marking, PlaceMarking, element_text
@@ -25,8 +26,26 @@ MOST_STATES = 20_000
 """Up to which a program is compared in all states, unless somebody says otherwise."""
 SUPERVISOR = 0
 """Its number among the owners of a partition."""
-Changes = tuple[tuple[int, PlaceMarking], ...]
-"""Places with what they hold from then on."""
+
+
+@dataclass(frozen=True, slots=True)
+class Changes:
+    """What is different after an occurrence.
+
+    Args:
+        places: those that changed, with what they hold from then on.
+        references: what these hold from then on.
+    """
+
+    places: tuple[tuple[int, PlaceMarking], ...]
+    references: Held
+
+    def of(self, marking: Marking) -> Marking:
+        """The marking with them."""
+        places = list(marking.places)
+        for place, tokens in self.places:
+            places[place] = tokens
+        return replace(marking, places=tuple(places), references=self.references)
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,14 +67,14 @@ class Cycle:
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """An occurrence, in words, and the places that it changes."""
+    """An occurrence, in words, and what it changes."""
 
     text: str
     changes: Changes
 
     def after(self, marking: Marking) -> Marking:
         """The marking after it."""
-        return _changed(marking, self.changes)
+        return self.changes.of(marking)
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,7 +110,7 @@ class Scheme:
         self._cycles: dict[tuple[object, ...], tuple[Changes, Cycle]] = {}
 
     def touched(self, owner: int) -> list[int]:
-        """The places on which what the owner does depends."""
+        """The places on which what the owner does depends, besides the time and the references."""
         return self._touched[owner]
 
     def cycle(self, marking: Marking) -> Cycle:
@@ -101,7 +120,7 @@ class Scheme:
             cycle = self._played(marking)
             self._cycles[seen] = self._changes(SUPERVISOR, marking, cycle.marking), cycle
         changes, cycle = self._cycles[seen]
-        return replace(cycle, marking=_changed(marking, changes))
+        return replace(cycle, marking=changes.of(marking))
 
     def unconsumed(self, marking: Marking) -> frozenset[int]:
         """The channels with a message to the supervisor; after a cycle it has read these."""
@@ -139,15 +158,17 @@ class Scheme:
     def _seen(self, owner: int, marking: Marking) -> tuple[object, ...]:
         touched = self._touched[owner]
         signs = frozenset(x for x in self.nodes.signs(marking) if x[0] in touched)
-        return owner, marking.time, signs, *(marking.places[p] for p in touched)
+        held = (marking.places[p] for p in touched)
+        return owner, marking.time, signs, marking.references, *held
 
     def _changes(self, owner: int, before: Marking, after: Marking) -> Changes:
         turned = {p for p, _ in self.nodes.signs(before) ^ self.nodes.signs(after)}
-        return tuple(
+        places = (
             (p, after.places[p])
             for p in self._touched[owner]
             if p in turned or after.places[p] != before.places[p]
         )
+        return Changes(tuple(places), after.references)
 
     def _played(self, marking: Marking) -> Cycle:
         done: list[BindingElement] = []
@@ -193,10 +214,3 @@ class Scheme:
         except GameError:
             raises = True
         return Steps(tuple(steps), raises)
-
-
-def _changed(marking: Marking, changes: Changes) -> Marking:
-    places = list(marking.places)
-    for place, tokens in changes:
-        places[place] = tokens
-    return replace(marking, places=tuple(places))

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
+from pn2code.net.flat import ArcKind, FlatNet, FlatPlace, FlatTransition
 
 SIMULATORS = frozenset({"simulate", "reference"})
 """`by` of traces in which one clock and one scheduler rule the whole net."""
@@ -32,6 +32,7 @@ class Parties:
         digests: what the heads of traces of these programs say, besides the net's own.
         is_cell: whether a `cell.toml` says so; else one program runs the whole net.
         is_known: whether who runs what is known at all.
+        inputs: places whose first token a file brings.
     """
 
     names: tuple[str, ...]
@@ -41,6 +42,7 @@ class Parties:
     digests: frozenset[str]
     is_cell: bool = True
     is_known: bool = True
+    inputs: frozenset[int] = frozenset()
 
     @staticmethod
     def one(net: FlatNet, digests: frozenset[str] = frozenset()) -> Parties:
@@ -60,6 +62,16 @@ class Parties:
             return None
         what = "cell" if self.is_cell else "net"
         return f'it is `by` "{by}", but only these write traces of this {what}: {", ".join(known)}'
+
+    def not_given(self, place: FlatPlace, tokens: int) -> str | None:
+        """Why a run cannot have begun with other tokens in a place than the net's; None: it can, or nobody knows."""
+        if not self.is_known or not self.is_cell:
+            return None
+        if place.index not in self.inputs:
+            return f"the header gives `{place.name}` other tokens than the net, but no `[[input]]` of the cell does"
+        if tokens != 1:
+            return f"the header gives `{place.name}` {tokens} tokens, but an `[[input]]` brings one"
+        return None
 
     def not_by(self, by: str, transition: int) -> str | None:
         """Why a writer cannot have made a step; None: it can."""

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -71,6 +71,7 @@ class ReplayResult:
         ended: the trace's own last word (`why` of its `end` line), None when it just stops.
         game: the game after the last step that was repeated; None when the net itself could not be started.
         given_up: whether the next step is not known to be wrong: the token game gave up an evaluation.
+        given: places that begin with other tokens than the net's, because the header says so.
     """
 
     ok: bool
@@ -81,6 +82,7 @@ class ReplayResult:
     ended: str | None
     game: Game | None
     given_up: bool = False
+    given: tuple[str, ...] = ()
 
     @property
     def marking(self) -> Marking | None:
@@ -210,6 +212,7 @@ def replay_lines(
     who = parties or Parties.unknown(net)
     steps, at, ended, transition, source, by = 0, 0, None, "", net.name, ""
     names = {t.name: t for t in net.transitions}
+    given: tuple[str, ...] = ()
     markings: list[Marking] = []
     latest = 0.0
     try:
@@ -223,12 +226,13 @@ def replay_lines(
             if game is None:
                 by, source = str(line.get("by", "")), str(line.get("net", source))
                 _refuse(digest_problem(line, net, who) if check_digest else None)
-                initial = _initial(net, line)
+                initial = _initial(net, line, who)
                 _refuse(who.stranger(by))
                 still = line.get("still") is True
                 game = Game(
                     net, storage, initial, seed=_seed(line), still=still, limits=limits, files=files
                 )
+                given = tuple(_given(game, initial))
                 rules = rules or _rules_for(by, time_unit)
                 if notes is not None:
                     notes.begin(game, by)
@@ -256,8 +260,8 @@ def replay_lines(
     except (_Wrong, GameError) as wrong:
         why = str(wrong) if source == net.name else f"{wrong}; the trace is of net `{source}`"
         gave_up = isinstance(wrong, GivenUpError)
-        return ReplayResult(False, steps, why, at, transition, ended, game, gave_up)
-    return ReplayResult(True, steps, "", 0, "", ended, game)
+        return ReplayResult(False, steps, why, at, transition, ended, game, gave_up, given)
+    return ReplayResult(True, steps, "", 0, "", ended, game, given=given)
 
 
 def _refuse(problem: str | None) -> None:
@@ -280,7 +284,7 @@ def _object(text: str) -> dict[str, Any]:
     return data
 
 
-def _initial(net: FlatNet, header: dict[str, Any]) -> dict[str, PlaceMarking]:
+def _initial(net: FlatNet, header: dict[str, Any], parties: Parties) -> dict[str, PlaceMarking]:
     """The overrides of initial markings that the header lists."""
     if header.get("trace") != 1:
         raise _Wrong('the first line is not the header of a trace: `"trace": 1` is missing')
@@ -296,7 +300,16 @@ def _initial(net: FlatNet, header: dict[str, Any]) -> dict[str, PlaceMarking]:
             found[name] = place_from_json(places[name].colset, data)
         except JsonError as error:
             raise _Wrong(f"initial marking of `{name}`: {error}") from None
+        _refuse(parties.not_given(places[name], len(found[name])))
     return found
+
+
+def _given(game: Game, initial: Mapping[str, PlaceMarking]) -> Iterator[str]:
+    """The places that begin with other tokens than the net's."""
+    own = game.own_initial_marking.places
+    for place in game.net.places:
+        if place.name in initial and own[place.index] != game.marking.places[place.index]:
+            yield place.name
 
 
 def _seed(header: dict[str, Any]) -> int:

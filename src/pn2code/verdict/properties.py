@@ -27,7 +27,8 @@ from pn2code.verdict.asked import Asked, as_text
 from pn2code.verdict.opened import OpenNet
 from pn2code.verify.answers import confirm
 from pn2code.verify.answers.lasso import write_loop
-from pn2code.verify.answers.properties import Answer, Evidence, answers, drawn
+from pn2code.verify.answers.properties import Answer, Evidence, answers, counted, drawn
+from pn2code.verify.answers.reasons import clause
 from pn2code.verify.codes import TRACE_UNWRITABLE
 from pn2code.verify.controller.cell_answers import of_cell
 from pn2code.verify.controller.control_types import Control
@@ -88,11 +89,11 @@ def of_bindings(
             )
         closed = []
         for answer in answers(about, seen.answers if seen else (), seen or found):
-            if answer.evidence is not None and seen is not None:
+            run = answer.evidence
+            if run is not None and seen is not None:
                 answer = _confirmed(answer, about, split.net, opened, seen, limits.deadline, d)
-                assert answer.evidence is not None
                 with suppress(OSError):
-                    split.restore(answer.evidence.trace)
+                    split.restore(run.trace)
             closed.append(replace(answer, about=of[answer.about.name], node=None))
         group = tuple(of[p.name] for p in about.properties)
         given += _bindings_of_cell(asked, group, opened, control, closed, number, limits, wishes, d)
@@ -220,6 +221,8 @@ def answered(
         plain = tuple(_pumped(a, found.covering, opened, folder) for a in plain)
     if nondeterminism.draws(opened.flat):
         plain, more = tuple(map(drawn, plain)), tuple(map(drawn, more))
+    if nondeterminism.counts(opened.flat):
+        plain, more = tuple(map(counted, plain)), tuple(map(counted, more))
     if control is not None and (partition := divided(opened, d)) is not None:
         plain = tuple(
             of_cell(asked.plain, control.answers, control, partition, plain, storage=opened.storage)
@@ -285,10 +288,15 @@ def _confirmed(
     deadline: Deadline,
     d: Diagnostics,
 ) -> Answer:
-    """The answer, of which it is known whether its run has been looked at again."""
+    """The answer, of which it is known whether its run has been looked at again.
+
+    Where the number of steps decides, it is not known without a run that can be played: the explorer counts none.
+    """
     assert answer.evidence is not None
+    counts = nondeterminism.counts(net)
+    unplayed = Answer(answer.about, "inconclusive", clause("steps")) if counts else answer
     if answer.evidence.steps > confirm.MOST_STEPS:
-        return answer
+        return unplayed
     try:
         with deadline.enforced():
             problem = confirm.problem(
@@ -300,8 +308,10 @@ def _confirmed(
                 as_net=not answer.cell,
             )
     except TimeIsOverError:
-        return answer
+        return unplayed
     except (GivenUpError, MlLimit) as limit:
+        if counts:
+            return unplayed
         d.warning(
             codes.UNPLAYED,
             f"the run that shows why `{answer.about.name}` is {_CALLED[answer.answer]} could not be played again: "
@@ -313,6 +323,8 @@ def _confirmed(
         return answer
     except (TraceRefusedError, GameError, OSError, ValueError, MlException) as error:
         problem = str(error)
+    if problem is not None and counts:
+        return unplayed
     if problem is not None:
         d.error(
             codes.EVIDENCE,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -314,6 +315,43 @@ def test_the_end_of_a_cell(net: FlatNet, steps: int, end: dict[str, Any], why: s
     run = [changed(written[0], by="run", digest="d"), *written[1 : 1 + steps], last]
     result = replay_lines(run, net, parties=cell(net), check_digest=True)
     assert result.ok is (why == "") and why in result.why
+
+
+def test_a_cell_begins_with_tokens_of_its_input_files_only(net: FlatNet) -> None:
+    """Any other place, and any other number of tokens, would make steps possible that are not."""
+    head, *steps = lines(net)
+    (count,) = (p.index for p in net.places if p.name == "Top.Count")
+    fed = replace(cell(net), inputs=frozenset({count}))
+    forged = [changed(head, initial={"Top.Done": [[1, {"y": 1.0, "x": 7.5}]]}), *steps[:1]]
+    assert "`Top.Done` other tokens" in refused(net, forged, parties=fed).why
+    twice = [changed(head, initial={"Top.Count": [[2, 0]]}), *steps[:1]]
+    assert "2 tokens, but an `[[input]]` brings one" in refused(net, twice, parties=fed).why
+    given = [changed(head, initial={"Top.Count": [[1, 0]]}), *steps[:1]]
+    assert replay_lines(given, net, parties=fed).ok
+    assert "`Top.Count` other tokens" in refused(net, given, parties=cell(net)).why
+
+
+def test_what_begins_otherwise_than_the_net_is_named() -> None:
+    net = flat("""
+        net Few
+          standard
+          colset FEW = int with 0..3;
+          var n: FEW;
+          page Top
+            place P : FEW
+            place Q : FEW = 1`1
+            trans T
+              in P : n
+              out Q : n
+    """)
+    head, end = lines(net)
+    step = json.dumps({"step": 1, "t": 0, "transition": "Top.T", "binding": {"n": 2}})
+    found = replay_lines([changed(head, initial={"Top.P": [[1, 2]]}), step, end], net)
+    assert found.ok and found.given == ("Top.P",)
+    same = replay_lines([changed(head, initial={"Top.Q": [[1, 1]]}), end], net)
+    assert same.ok and same.given == ()
+    large = [changed(head, initial={"Top.P": [[1, 4]]}), end]
+    assert "it is not in the colour set `FEW`" in refused(net, large).why
 
 
 def test_the_writer_and_the_digest_of_a_cell(net: FlatNet) -> None:

@@ -14,9 +14,14 @@ from typing import Literal
 from pn2code.net.flat import FlatNet
 from pn2code.verify.answers import basis
 from pn2code.verify.answers.reasons import clause, raised
+from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.result import Exploration
 
 Word = Literal["yes", "no", "inconclusive"]
+_MORE = {
+    "chance": "the net draws random numbers or reads files",
+    "steps": "the net asks for the number of steps",
+}
 _OPEN_YET = "nothing that was asked of this state space was open any more"
 
 
@@ -80,7 +85,11 @@ def closing(net: FlatNet, found: Exploration, counts: Counts) -> str:
     if counts.all and (counts.asked or found.complete):
         return f"Verdict: YES. All {counts.all} answers are as they should be."
     if found.complete:
-        return "Verdict: COMPLETE. All reachable markings were seen, and there are no properties to check."
+        one = nondeterminism.undetermined(net)
+        what = (
+            f"markings of one of many state spaces ({_MORE[one]})" if one else "reachable markings"
+        )
+        return f"Verdict: COMPLETE. All {what} were seen, and there are no properties to check."
     why = _why(found, counts)
     known = f"All {counts.all} answers are as they should be, but " if counts.all else ""
     return f"Verdict: NOT COMPLETE. {known}{why if known else why[:1].upper() + why[1:]}."

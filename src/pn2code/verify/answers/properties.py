@@ -152,6 +152,15 @@ def drawn(answer: Answer) -> Answer:
     return Answer(answer.about, "inconclusive", clause("chance"))
 
 
+def counted(answer: Answer) -> Answer:
+    """What is known where the number of steps decides: what a run shows that the token game can play."""
+    e = answer.evidence
+    is_shown = isinstance(answer.about.asked, m.Invariant | m.Bound) and e is not None
+    if answer.answer == "inconclusive" or is_shown:
+        return answer
+    return Answer(answer.about, "inconclusive", clause("steps"))
+
+
 def kind(a: Answer) -> str:
     """How it came out: "good", "bad" or "open"."""
     return "open" if a.answer == "inconclusive" else "good" if a.is_expected else "bad"

@@ -25,6 +25,7 @@ _CLAUSES = {
     "in lock-step stops",
     "poses": "it is not known whether the cell comes to a move that an arm cannot make",
     "chance": "it depends on random numbers or files, and other values than those drawn may lead to another answer",
+    "steps": "it depends on the number of steps (`step ()`), which is no part of a state",
     "compiler": "there is no C compiler",
 }
 

@@ -130,7 +130,7 @@ def of_cell(
         ]
     else:
         looked = answers(properties, said, found)
-    drawn = nondeterminism.draws(partition.net)
+    undetermined = nondeterminism.undetermined(partition.net)
     for of_net, answer in zip(closed, looked, strict=True):
         if of_net.about.of_net:
             yield of_net
@@ -139,7 +139,7 @@ def of_cell(
             of_net.about.asked
         )  # of parts of transitions, what is assumed is a part of the formula
         is_fair = isinstance(asked, m.Linear) and bool(asked.fair)
-        certain = _certain(answer, control, drawn, all_orders, is_fair)
+        certain = _certain(answer, control, undetermined, all_orders, is_fair)
         if certain.evidence is not None and not _can_be_done(answer, control, storage or {}):
             certain = Answer(answer.about, "inconclusive", _OVERTAKEN)
         certain = _projected(certain, control)
@@ -149,9 +149,10 @@ def of_cell(
 
 
 def _certain(
-    answer: Answer, control: Control, drawn: bool, all_orders: bool, is_fair: bool
+    answer: Answer, control: Control, undetermined: str, all_orders: bool, is_fair: bool
 ) -> Answer:
-    """Without what the cell's own steps, chance or durations leave open; `is_fair`: fairness is assumed."""
+    """Without what the cell's own steps, chance, numbers of steps or durations leave open; `is_fair`: fairness is
+    assumed."""
     asked, running = answer.about.asked, control.running
     open_ = ""
     if answer.answer == "inconclusive":
@@ -169,8 +170,9 @@ def _certain(
         open_ = control.stops
     if not open_ and answer.answer == "yes" and running is not None and running.meek:
         open_ = "" if is_about_all(asked) or _is_shown(answer) else _ORDERS
-    if not open_ and drawn and answer.evidence is None:
-        open_ = clause("chance")
+    # Each program of a cell counts its own steps, which no run of the net shows.
+    if not open_ and undetermined and (undetermined == "steps" or answer.evidence is None):
+        open_ = clause(undetermined)
     if open_:
         return Answer(answer.about, "inconclusive", open_)
     return replace(answer, node=None)

@@ -258,8 +258,9 @@ def examine(
         refused = refusal(partition, found, keep)
         if refused is not None:
             checks = tuple(refused if c.name == BLOCKING else c for c in checks)
-        if nondeterminism.draws(partition.net):
-            checks = tuple(drawn(c) for c in checks)
+        why = nondeterminism.undetermined(partition.net)
+        if why:
+            checks = tuple(drawn(c, why) for c in checks)
         late = plan.premises.replies.late or silent(running, said)
         premises = plan.premises
         premises = replace(premises, moving=not is_short(said, STILL))

@@ -154,11 +154,11 @@ def settled(control: Control) -> Control:
     return replace(control, checks=tuple(checks))
 
 
-def drawn(check: Check) -> Check:
-    """What rests on random numbers is one of many outcomes."""
+def drawn(check: Check, why: str) -> Check:
+    """What rests on random numbers, or on the number of steps, is one of many outcomes; `why` is the word for that."""
     if check.answer != "yes" or check.name == OWNERSHIP:
         return check
-    return replace(unknown(check.name, {"why": "chance"}), value=check.value)
+    return replace(unknown(check.name, {"why": why}), value=check.value)
 
 
 def is_short(rows: Sequence[Mapping[str, Any]], number: int) -> bool:

@@ -7,7 +7,7 @@ from typing import Any
 
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet, FlatTransition
-from pn2code.semantics.evaluation.effects import Effect, effects_of, outside
+from pn2code.semantics.evaluation.effects import Effect, effects_of, outside, texts
 from pn2code.semantics.evaluation.references import occurring, searching
 from pn2code.verify.codes import (
     CHANGES_REFERENCES,
@@ -60,6 +60,16 @@ def warn(net: FlatNet, d: Diagnostics) -> None:
 def draws(net: FlatNet) -> bool:
     """Whether random numbers or files decide anything, the initial marking included."""
     return outside(effects_of(net.program), net)
+
+
+def counts(net: FlatNet) -> bool:
+    """Whether the number of steps (`step ()`) decides anything: a state has none, so the explorer's never changes."""
+    return Effect.COUNT in effects_of(net.program).of(*texts(net))
+
+
+def undetermined(net: FlatNet) -> str:
+    """Why the state space does not show all that the net can do, a word of `answers.reasons`; "": it does."""
+    return "steps" if counts(net) else "chance" if draws(net) else ""
 
 
 def refuse(net: FlatNet, d: Diagnostics) -> bool:

@@ -7,7 +7,8 @@ The structure of the net comes first (it needs no state space, and holds whateve
 complete state space of the cell, unless cell.toml declares the bound. A room without a bound is *assumed*.
 
 What the state space says of a cell with input files is said of the tokens that these hold now, and the program is for
-any: its places get room for twice as many tokens, and no less than a place of which nothing is known.
+any: its places get room for twice as many tokens, and no less than a place of which nothing is known. The same is true
+of a net that draws random numbers, reads files or asks for the number of steps: what was explored is one of many.
 """
 
 from __future__ import annotations
@@ -26,6 +27,7 @@ from pn2code.semantics.game.enabling import GameError
 from pn2code.structure.bounds import PlaceBound
 from pn2code.structure.report import Names, weighted
 from pn2code.verify.codes import CAPACITY_ASSUMED, CAPACITY_LARGE, CAPACITY_UNPROVED
+from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.covering import Covering, Search
 from pn2code.verify.exploring.result import Exploration
 
@@ -44,7 +46,11 @@ MOST_DOUBLED = 1 << 16
 _ONE_MESSAGE = (
     "a channel holds one message: a second one stops the supervisor (docs/protocol.md, I3)"
 )
-_ROOM = "other files may lead to more tokens, so there is room for more (the supervisor stops where it is used up)"
+_ROOM = "so there is room for more (the supervisor stops where it is used up)"
+_INPUTS = f"with the input files as they are, all {{}} states: other files may lead to more tokens, {_ROOM}"
+_CHANCE = f"with the random numbers and files that there were, all {{}} states: others may lead to more tokens, {_ROOM}"
+_STEPS = f"without a number of steps, all {{}} states: a run, which has one, may lead to more tokens, {_ROOM}"
+_ONE_OF_MANY = {"chance": _CHANCE, "steps": _STEPS}
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,6 +89,8 @@ def rooms(
     names = Names(net)
     channels = {c.place for c in partition.channels}
     counts = found.bounds if found is not None and found.complete else None
+    is_one = nondeterminism.undetermined(net)
+    open_ = _ONE_OF_MANY[is_one] if is_one else _INPUTS if partition.inputs else ""
     result = []
     for place in net.places:
         own = structural.get(place.index)
@@ -96,11 +104,11 @@ def rooms(
             terms = weighted((names.place(p), w) for p, w in sorted(weights.items()))
             text = f"{kind} {terms} {relation} {own.proof.initial}" if weights else kind
             result.append(PlaceCapacity(own.bound, kind, text))
-        elif counts is not None and partition.inputs and place.index in channels:
+        elif counts is not None and open_ and place.index in channels:
             result.append(PlaceCapacity(1, CHANNEL, _ONE_MESSAGE))
-        elif counts is not None and partition.inputs:
+        elif counts is not None and open_:
             assert found is not None
-            text = f"the state space of the cell with the input files as they are, all {found.nodes:,} states: {_ROOM}"
+            text = f"the state space of the cell {open_.format(f'{found.nodes:,}')}"
             seen = counts[place.index].upper
             result.append(PlaceCapacity(None, INPUTS, text, seen))
         elif counts is not None:
