@@ -200,12 +200,12 @@ class _Emitter(Transitions):
         wrappers = _wrappers(functions)
         tables = c_tables.Tables(self._types, self._descriptors, wrappers)
         recursive = tables.to_declare(keys)
-        transitions = [self._transition(g) for g in self._shared]  # what they call is known then
+        transitions = [self._transition(g) for g in net.shared]  # what they call is known then
         rows = sorted(
             (
-                (t.index, self._row(t, g, code), code)
-                for g, code in zip(self._shared, transitions, strict=True)
-                for t in g.instances
+                (i, self._row(net.transitions[i], g, code), code)
+                for g, code in zip(net.shared, transitions, strict=True)
+                for i in g.instances
             ),
             key=lambda row: row[0],
         )
@@ -237,7 +237,7 @@ class _Emitter(Transitions):
             "packed_words": (packed_bits(net.places) + 63) // 64,
             "packed_size": (packed_bits(net.places) + 31) // 32 * 4,
             "transitions": transitions,
-            "place_tables": [self._place_table(x) for x in self._place_tables],
+            "place_tables": [self._place_table(x) for x in net.place_tables],
             "rows": [row for _, row, _ in rows],
             "each": c_rows.each(
                 (i, str(code["stem"]), bool(code["is_plain"])) for i, _, code in rows

@@ -6,7 +6,6 @@ from pn2code.diagnostics import Origin
 from pn2code.emission import c_orders, c_packed
 from pn2code.emission.c_expressions import Expressions, Types
 from pn2code.emission.c_own import OwnPlaces
-from pn2code.emission.c_shared import share, tables
 from pn2code.emission.c_statements import Statements
 from pn2code.emission.c_values import constant
 from pn2code.emission.names import Names, Scope
@@ -57,15 +56,6 @@ class Frame:
         self._referring = tuple(p.index for p in net.places if p.refers)
         self._kept = tuple(map(self._kept_in, net.places))
         self._room = self._rooms_of_arrays()
-        # Explorers have a function for each instance, so that the compiler can put it where it is called.
-        self._shared = share(
-            net.transitions, lambda a, b: not net.has_successors and self._agree(a, b)
-        )
-        self._place_tables = tables(self._shared)
-
-    def _agree(self, a: int, b: int) -> bool:
-        """Whether two places are kept in the same way, and hold the same colours."""
-        return a == b or (self._kept[a] != "" and self._kept[a] == self._kept[b])
 
     def _kept_in(self, p: ir.Place) -> str:
         """The stem of the C type that holds the tokens of a place, and of its functions; "": it is packed."""

@@ -48,6 +48,21 @@ class _Dump:
         for t in net.transitions:
             if only in t.name:
                 yield from self._transition(t)
+        yield from self._shared(only)
+
+    def _shared(self, only: str) -> Iterator[str]:
+        """Which transitions have one C function, and which places stand in it for others."""
+        for shared in self._net.shared:
+            names = [self._net.transitions[i].name for i in shared.instances]
+            if len(names) == 1 or not any(only in name for name in names):
+                continue
+            yield f"shared by {', '.join(names)}"
+            if shared.table is None:
+                continue
+            table = self._net.place_tables[shared.table]
+            for column in shared.columns:
+                places = (self._place_name(row[column]) for row in table.rows)
+                yield f"  {table.names[column]} is {', '.join(places)}"
 
     @staticmethod
     def _definition(d: ir.Definition) -> str:

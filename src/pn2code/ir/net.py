@@ -187,6 +187,51 @@ class Transition:
     fire_needs_context: bool = False
     """an occurrence may raise (not only since a token or room is missing), allocate, or look at the time"""
 
+    @property
+    def path(self) -> str:
+        """Its page instance: "Cell.Supervisor.Approach.Move both"."""
+        return self.name.rsplit(".", 1)[0]
+
+    @property
+    def short(self) -> str:
+        """Its name on the page."""
+        return self.name.rsplit(".", 1)[-1]
+
+
+@frozen
+class Shared:
+    """A transition of a page, with the instances that share its code.
+
+    Args:
+        instances: indices of transitions, in order; the code is made from the first.
+        table: number of the `PlaceTable` by which the code reaches the places that each instance has for its own; None:
+            there are none, since all do the same with the same places, or there is one instance.
+        varying: the places of the first in whose stead the others have other places, in order.
+        columns: where each of these is in the table.
+    """
+
+    instances: tuple[int, ...]
+    table: int | None = None
+    varying: tuple[int, ...] = ()
+    columns: tuple[int, ...] = ()
+
+
+@frozen
+class PlaceTable:
+    """The places of a page that its instances have for their own.
+
+    Args:
+        page: its name.
+        paths: the page instances.
+        names: of the places on the page, a column each.
+        rows: for each page instance its places, in the order of `names`.
+    """
+
+    page: str
+    paths: tuple[str, ...]
+    names: tuple[str, ...]
+    rows: tuple[tuple[int, ...], ...]
+
 
 @frozen
 class Predicate:
@@ -241,6 +286,8 @@ class NetIR:
         roots: the `globals` that are state besides the marking, in order.
         used: what of it comes into the program.
         has_moves: whether there are lists of moves: not all is done by functions of the places.
+        shared: all transitions, those together that share their code, in order of the first of each.
+        place_tables: for each page and set of its instances one, in order; none where there is nothing to tell.
     """
 
     name: str
@@ -264,6 +311,8 @@ class NetIR:
     roots: tuple[str, ...] = ()
     used: Used = field(default_factory=Used)
     has_moves: bool = False
+    shared: tuple[Shared, ...] = ()
+    place_tables: tuple[PlaceTable, ...] = ()
 
     def definition(self, name: str) -> Definition:
         """A type's definition by key."""

@@ -10,6 +10,7 @@ from pn2code.lowering.passes.effects import with_effects
 from pn2code.lowering.passes.move_lists import with_move_lists
 from pn2code.lowering.passes.moves import with_moves
 from pn2code.lowering.passes.reach import Reach
+from pn2code.lowering.passes.shared import with_shared
 from pn2code.lowering.passes.slots import with_slots
 from pn2code.lowering.passes.sums import with_sums
 from pn2code.lowering.passes.unseen import with_seen
@@ -25,5 +26,5 @@ def analysed(net: ir.NetIR) -> ir.NetIR:
 
 
 def bounded(net: ir.NetIR) -> ir.NetIR:
-    """The net, with what passes find that look at the bounds of places: again when these have become known."""
-    return with_move_lists(with_slots(net))
+    """The net, with what passes find that look at how places are kept: again when their bounds have become known."""
+    return with_shared(with_move_lists(with_slots(net)))
