@@ -98,6 +98,11 @@ class _Dump:
             yield f"allocates in {', '.join(used.makers)}"
         if self._net.has_moves:
             yield "has lists of moves"
+        arena = self._net.arena
+        if arena.bytes is None:
+            yield f"arena not proven: {arena.why}"
+        else:
+            yield f"arena {arena.bytes:,} bytes"
 
     def _use(self, f: ir.Function) -> str:
         used = self._net.used
@@ -116,7 +121,7 @@ class _Dump:
     def _place(self, p: ir.Place) -> Iterator[str]:
         timed = " timed" if p.timed else ""
         added = f" + {p.added}" if p.added else ""
-        flags = _flags(slot=p.is_slot, refers=p.refers)
+        flags = _flags(slot=p.is_slot, refers=p.refers, arrives=p.arrives)
         yield f"place {p.index} {p.name} : {p.colset}{timed} capacity {p.capacity}{added} owner {p.owner}{flags}"
         yield from self._block(p.initial, 1)
 

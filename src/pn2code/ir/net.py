@@ -102,6 +102,8 @@ class Place:
     """kept as a value, and whether it is there: it holds one token at most, and nobody moves more at a time"""
     refers: bool = False
     """its tokens refer into the arena"""
+    arrives: bool = False
+    """tokens come to it in messages or from an input file"""
 
 
 @frozen
@@ -271,6 +273,19 @@ class Used:
 
 
 @frozen
+class Arena:
+    """What is proven of the memory for lists, strings and the moves of a firing.
+
+    Args:
+        bytes: that are enough, whatever files and robots bring; None: nothing is proven.
+        why: in that case the reason, a few words for people.
+    """
+
+    bytes: int | None = None
+    why: str = "not looked at"
+
+
+@frozen
 class NetIR:
     """The whole net.
 
@@ -288,6 +303,7 @@ class NetIR:
         has_moves: whether there are lists of moves: not all is done by functions of the places.
         shared: all transitions, those together that share their code, in order of the first of each.
         place_tables: for each page and set of its instances one, in order; none where there is nothing to tell.
+        arena: how much memory its program needs.
     """
 
     name: str
@@ -313,6 +329,7 @@ class NetIR:
     has_moves: bool = False
     shared: tuple[Shared, ...] = ()
     place_tables: tuple[PlaceTable, ...] = ()
+    arena: Arena = field(default_factory=Arena)
 
     def definition(self, name: str) -> Definition:
         """A type's definition by key."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pn2code.ir import nodes as ir
+from pn2code.lowering.passes.arena import with_arena
 from pn2code.lowering.passes.context import with_context
 from pn2code.lowering.passes.counting import with_counts
 from pn2code.lowering.passes.direct import with_direct
@@ -27,4 +28,4 @@ def analysed(net: ir.NetIR) -> ir.NetIR:
 
 def bounded(net: ir.NetIR) -> ir.NetIR:
     """The net, with what passes find that look at how places are kept: again when their bounds have become known."""
-    return with_shared(with_move_lists(with_slots(net)))
+    return with_arena(with_shared(with_move_lists(with_slots(net))))
