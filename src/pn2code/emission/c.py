@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from pn2code.emission import c_rows, c_tables, c_values
+from pn2code.emission import c_rows, c_tables
 from pn2code.emission.c_expressions import c_big_initialiser
 from pn2code.emission.c_lines import wrap
 from pn2code.emission.c_proofs import proofs
@@ -107,7 +107,7 @@ class _Emitter(Transitions):
         s.body(g.setup)
         name = self._names.value(g.name, g.hint)
         constant = ""
-        value = c_values.constant(g)
+        value = g.constant
         if value is not None and value.type.rep in (Rep.INT, Rep.REAL, Rep.BOOL):
             constant = x.text(value)
         elif value is not None and isinstance(value.value, int) and value.type == ir.BIG:

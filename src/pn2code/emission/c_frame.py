@@ -7,7 +7,6 @@ from pn2code.emission import c_orders, c_packed
 from pn2code.emission.c_expressions import Expressions, Types
 from pn2code.emission.c_own import OwnPlaces
 from pn2code.emission.c_statements import Statements
-from pn2code.emission.c_values import constant
 from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import NetIR
@@ -27,7 +26,6 @@ class Frame:
         self._definitions = {d.name: d for d in net.definitions}
         self._types = Types(self._names, self._definitions)
         self._descriptors = {d.name: d for d in net.descriptors}
-        self._constants = {g.name: value for g in net.globals if (value := constant(g)) is not None}
         self._functions = {f.key: f for f in net.functions}
         self._blocks: dict[str, tuple[str, str, Origin]] = {}
         self._place_names = tuple(self._names.place(p.index, p.name) for p in net.places)

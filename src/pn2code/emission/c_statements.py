@@ -12,7 +12,6 @@ from pn2code.emission.c_expressions import (
 )
 from pn2code.emission.c_lines import WIDTH, wrap
 from pn2code.emission.c_sums import SumFunction
-from pn2code.emission.c_values import SCALARS
 from pn2code.emission.environment import c_comment
 from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
@@ -22,6 +21,8 @@ from pn2code.lowering.expressions.values import is_atomic
 from pn2code.lowering.passes.moves import is_pair
 
 _INDENT = "    "
+_SCALARS = frozenset({Rep.BOOL, Rep.INT, Rep.CHAR, Rep.ENUM})
+"""Representations whose values C compares with `==`."""
 
 
 class Statements:
@@ -414,7 +415,7 @@ class Statements:
         rep = self.token_types[place].rep
         if rep is Rep.UNIT:
             return f"!{slot}full"
-        if rep in SCALARS:
+        if rep in _SCALARS:
             return f"!{slot}full || ({slot}value != {value})"
         table = self.tables_of_places[place]
         return f"!{slot}full || !pn_same(&{table}, &{slot}value, {pointer})"

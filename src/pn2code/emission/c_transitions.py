@@ -252,17 +252,12 @@ class Transitions(Frame):
                 x,
                 scope,
                 self._net.real_time,
-                descriptors=self._descriptors,
-                tables=tuple("" if v.is_output else v.table for v in t.variables),
-                place_tables=tuple(p.table for p in self._net.places),
                 puts_back=not self._net.has_successors,
             )
             direct.bags, direct.timed = printer.bags, printer.timed
             direct.tables_of_places = printer.tables_of_places
             direct.token_types = printer.token_types
             direct.slots = self._slots
-            direct.references = frozenset(g.name for g in self._net.globals if g.is_reference)
-            direct.constants = self._constants
             direct.sums = self._sums(t)
             direct.otherwise = f"{name}_fire_lists(cx, m, self, b)"
             direct.variable_types = tuple(v.type for v in t.variables)

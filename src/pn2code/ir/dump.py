@@ -81,7 +81,7 @@ class _Dump:
 
     def _globals(self) -> Iterator[str]:
         for g in self._net.globals:
-            flags = _flags(held=g.is_held)
+            flags = _flags(held=g.is_held, constant=g.constant is not None)
             yield f"{'ref' if g.is_reference else 'val'} {g.name}: {g.type}{flags}"
             yield from self._block(g.setup, 1)
         if self._net.roots:
@@ -254,9 +254,13 @@ class _Dump:
             case ir.Yield():
                 return "yield"
             case ir.Take():
-                return f"take {self._move(s.place, s.count, s.value, s.limit)}{_note(s.note)}"
+                flags = _flags(found=s.is_found)
+                return (
+                    f"take {self._move(s.place, s.count, s.value, s.limit)}{flags}{_note(s.note)}"
+                )
             case ir.Put():
-                return f"put {self._move(s.place, s.count, s.value, s.stamp)}{_note(s.note)}"
+                flags = _flags(legal=s.is_legal)
+                return f"put {self._move(s.place, s.count, s.value, s.stamp)}{flags}{_note(s.note)}"
             case ir.TakeAll():
                 return f"take all {self._place_name(s.place)} {x(s.multiset)}{_note(s.note)}"
             case ir.PutAll():

@@ -8,7 +8,7 @@ from dataclasses import field
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import NOWHERE, Origin
 from pn2code.ir.effects import Effects
-from pn2code.ir.expressions import Ir, Local
+from pn2code.ir.expressions import Const, Ir, Local
 from pn2code.ir.statements import Stmt
 from pn2code.ir.types import Definition, Descriptor, IrType
 
@@ -58,6 +58,8 @@ class Global:
     origin: Origin
     is_held: bool = False
     """it is, or may lead to, cells in the arena, which are kept for it"""
+    constant: Const | None = None
+    """what it always is, where that is known"""
 
 
 @frozen

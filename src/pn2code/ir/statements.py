@@ -240,13 +240,15 @@ class Yield:
 
 @frozen
 class Take:
-    """Takes `count` tokens `value`; `limit`: latest stamp (INT or REAL) in a timed place."""
+    """Takes `count` tokens `value`; `limit`: latest stamp (INT or REAL) in a timed place. `is_found`: the value is the
+    one that the search has found, since every evaluation gives the same."""
 
     place: int
     count: Ir
     value: Ir
     limit: Ir | None
     note: str = ""
+    is_found: bool = False
 
 
 @frozen
@@ -262,13 +264,15 @@ class TakeAll:
 
 @frozen
 class Put:
-    """Puts `count` tokens `value`, stamped `stamp` (INT or REAL) in a timed place."""
+    """Puts `count` tokens `value`, stamped `stamp` (INT or REAL) in a timed place. `is_legal`: the value is known to be
+    of the place's colour set."""
 
     place: int
     count: Ir
     value: Ir
     stamp: Ir | None
     note: str = ""
+    is_legal: bool = False
 
 
 @frozen

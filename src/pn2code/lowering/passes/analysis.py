@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from pn2code.ir import nodes as ir
 from pn2code.lowering.passes.arena import with_arena
+from pn2code.lowering.passes.checks import with_checks
+from pn2code.lowering.passes.constants import with_constants
 from pn2code.lowering.passes.context import with_context
 from pn2code.lowering.passes.counting import with_counts
 from pn2code.lowering.passes.direct import with_direct
@@ -20,7 +22,7 @@ from pn2code.lowering.passes.used import with_used
 
 def analysed(net: ir.NetIR) -> ir.NetIR:
     """The net, with what all passes find."""
-    net = with_seen(net)
+    net = with_checks(with_constants(with_seen(net)))
     reach = Reach(net)
     net = with_sums(with_effects(with_moves(net), reach), reach)
     return bounded(with_used(with_context(with_counts(with_direct(net, reach)))))
