@@ -10,6 +10,7 @@ from pn2code.ir import nodes as ir
 from pn2code.ir import operations
 from pn2code.ir.nodes import Ir, IrType, Rep
 from pn2code.ir.operations import OPS, Call, Compared, Infix, Literal, Prefix
+from pn2code.ir.printed import is_nil
 
 _PRIMARY, _POSTFIX, _UNARY, _CONDITIONAL = 17, 16, 14, 3
 
@@ -66,16 +67,6 @@ def c_big(value: int) -> str:
 def c_big_initialiser(value: int) -> str:
     """A pn_big_t that a static variable starts with."""
     return c_big(value).replace("PN_BIG", "PN_BIG_INIT", 1)
-
-
-def _is_nil(value: Ir) -> bool:
-    """Whether a list is known to be empty where the code is made; what would be behind it is, too."""
-    match value:
-        case ir.Op(name="list.nil" | "zero"):
-            return True
-        case ir.Head(list=inner) | ir.Tail(list=inner):
-            return _is_nil(inner)
-    return False
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,7 +200,7 @@ class Expressions:
                     return False
                 return self._is_boxed(e) or self._is_object(inner)
             case ir.Head(list=inner):
-                return not _is_nil(inner)
+                return not is_nil(inner)
         return False
 
     def _is_boxed(self, e: ir.Argument) -> bool:
@@ -286,15 +277,15 @@ class Expressions:
                 then, otherwise = (self.inside(x, _CONDITIONAL) for x in (e.then, e.otherwise))
                 return f"{self.condition(e.condition)} ? {then} : {otherwise}", _CONDITIONAL
             case ir.Head(list=inner):
-                if _is_nil(inner):  # nobody comes here
+                if is_nil(inner):  # nobody comes here
                     return self._types.zero(e.type), _POSTFIX
                 return f"{self.inside(inner, _UNARY)}->head", _POSTFIX
             case ir.Tail(list=inner):
-                if _is_nil(inner):
+                if is_nil(inner):
                     return "NULL", _PRIMARY
                 return f"{self.inside(inner, _UNARY)}->tail", _POSTFIX
             case ir.IsNil(list=inner):
-                if _is_nil(inner):
+                if is_nil(inner):
                     return "true", _PRIMARY
                 return f"{self.inside(inner, operations.EQUALITY)} == NULL", operations.EQUALITY
             case ir.Ok():
@@ -482,7 +473,7 @@ class Expressions:
     def _negation(self, e: Ir) -> tuple[str, int]:
         """Not, put into the comparison where that is exact."""
         match e:
-            case ir.IsNil(list=inner) if not _is_nil(inner):
+            case ir.IsNil(list=inner) if not is_nil(inner):
                 return f"{self.inside(inner, operations.EQUALITY)} != NULL", operations.EQUALITY
             case ir.Op(name="=" | "same"):
                 return self._equality(e, "!=")

@@ -5,7 +5,6 @@ from __future__ import annotations
 from pn2code.emission import c_rows, c_sums
 from pn2code.emission.c_firing import DirectFiring
 from pn2code.emission.c_frame import Frame
-from pn2code.emission.c_lines import mentions
 from pn2code.emission.c_own import OwnPlaces
 from pn2code.emission.c_statements import Statements
 from pn2code.emission.c_sums import SumFunction
@@ -148,10 +147,9 @@ class Transitions(Frame):
         search.body(t.enumerate)
         search.end_search()
         fire = self._firing(t, t.is_direct, variables, own, name)
-        has_lists = t.is_direct and any(isinstance(s, ir.TakeAll | ir.PutAll) for s in t.fire)
-        lists = self._firing(t, False, variables, own, name) if has_lists else None
+        lists = self._firing(t, False, variables, own, name) if t.lists_access else None
         thresholds = self._thresholds(t, variables, own)
-        text = "\n".join(fire.lines)
+        called = {*t.search_access.sums, *t.fire_access.sums}
         return {
             "marks": [
                 self._block(x.name, "transition", x.origin)
@@ -178,23 +176,25 @@ class Transitions(Frame):
             "keeps": search.keeps and search.releases,
             "is_flat": search.is_flat,
             "search": search.lines,
-            "search_reach": own.reach(search.lines, is_const=True) if own else [],
+            "search_reach": own.reach(t.search_access, is_const=True) if own else [],
             "thresholds": thresholds,
-            "thresholds_reach": own.reach(thresholds, is_const=True) if own else [],
+            "thresholds_reach": own.reach(t.thresholds_access, is_const=True) if own else [],
             "thresholds_draw": t.effects.thresholds_draw,
             "fire": fire.lines,
-            "fire_reach": own.reach(fire.lines, is_const=False) if own else [],
+            "fire_reach": own.reach(t.fire_access, is_const=False) if own else [],
             "is_counting": False,
             "is_direct": t.is_direct,
             "sums": [
                 self._sum_function(s, t, name, variables)
-                for s in sums.values()
-                if any(f"{s.name}(" in line for line in search.lines + fire.lines)
+                for number, s in enumerate(sums.values())
+                if number in called
             ],
             "lists": lists.lines if lists else [],
-            "lists_reach": own.reach(lists.lines, is_const=False) if own and lists else [],
-            "lists_use_binding": lists is not None and mentions("b", "\n".join(lists.lines)),
-            "uses_binding": mentions("b", text),
+            "lists_reach": own.reach(t.lists_access, is_const=False)
+            if own and t.lists_access
+            else [],
+            "lists_use_binding": t.lists_access is not None and t.lists_access.binding,
+            "uses_binding": t.fire_access.binding,
             "touched_bags": [
                 self._place_names[i] for i in t.effects.touched if not self._net.places[i].packed
             ],

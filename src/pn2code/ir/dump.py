@@ -134,6 +134,14 @@ class _Dump:
         if t.staying:
             yield f"  stays {', '.join(self._staying(t))}"
         yield from self._effects(t.effects)
+        for what, access in (
+            ("search", t.search_access),
+            ("fire", t.fire_access),
+            ("fire by lists", t.lists_access),
+            ("thresholds", t.thresholds_access),
+        ):
+            if access is not None and (said := self._access(access)):
+                yield f"  {what} names {said}"
         for found in t.sums:
             place, x = self._place_name(found.place), self._expression
             yield f"  once for each of {found.count} {place} {x(found.multiset)}{_note(found.note)}"
@@ -155,6 +163,13 @@ class _Dump:
             take = t.fire[position]
             assert isinstance(take, ir.Take)
             yield self._move(take.place, take.count, take.value, None)
+
+    def _access(self, a: ir.Access) -> str:
+        """What a program names in C; "": nothing."""
+        parts = [self._place_name(p) for p in a.holders]
+        parts += [f"table of {self._place_name(p)}" for p in a.tables]
+        parts += [f"sum {number + 1}" for number in a.sums]
+        return ", ".join([*parts, "binding"] if a.binding else parts)
 
     def _effects(self, e: Effects) -> Iterator[str]:
         for verb, places in (("reads", e.read), ("touches", e.touched)):

@@ -156,6 +156,23 @@ class Sum:
 
 
 @frozen
+class Access:
+    """What a program of a transition looks at by name in C; places that are packed have functions of their own instead.
+
+    Args:
+        holders: places whose slot or array it reads or writes itself, or by an inline function, in order.
+        tables: places whose table (`pn_bag_t`) it gives to the runtime, in order.
+        sums: which of the transition's `sums` it calls, in order.
+        binding: whether it looks at the binding, or gives it to a sum.
+    """
+
+    holders: tuple[int, ...] = ()
+    tables: tuple[int, ...] = ()
+    sums: tuple[int, ...] = ()
+    binding: bool = False
+
+
+@frozen
 class Transition:
     """A transition as two programs; and one more if delays of its input arcs have to be computed: `Threshold`s for all
     bindings that are possible whatever the stamps are."""
@@ -190,6 +207,11 @@ class Transition:
     """the search may raise, allocate, or look at the time; its demands, which clean up behind them, do not count"""
     fire_needs_context: bool = False
     """an occurrence may raise (not only since a token or room is missing), allocate, or look at the time"""
+    search_access: Access = field(default_factory=Access)
+    fire_access: Access = field(default_factory=Access)
+    lists_access: Access | None = None
+    """of the occurrence move by move, for when a sum is not known; None: there is no such function beside `fire`"""
+    thresholds_access: Access = field(default_factory=Access)
 
     @property
     def path(self) -> str:

@@ -45,6 +45,7 @@ from pn2code.ir.expressions import (
     Use,
 )
 from pn2code.ir.net import (
+    Access,
     Arena,
     Count,
     Function,
@@ -119,14 +120,14 @@ from pn2code.ir.types import (
 )
 
 __all__ = [
-    "AddressOf", "Arena", "Argument", "Assign", "BIG", "BOOL", "Bind", "Bound", "CHAR", "ClearError", "Const",
-    "Contents", "Count", "Declare", "Definition", "Descriptor", "Do", "EnumDef", "EnumValue", "Fill", "ForCount",
-    "ForList", "ForTokens", "ForValues", "FunCall", "Function", "Global", "GlobalUse", "HasError", "HasPacket",
-    "Head", "INT", "If", "Ir", "IrType", "IsNil", "IsTag", "Let", "ListDef", "Local", "MakeStruct", "MakeUnion",
-    "Member", "NetIR", "NewRef", "Note", "Now", "Ok", "Op", "Packed", "Packet", "Place", "PlaceTable",
-    "PlaceTokens", "PlaceTotal", "Predicate", "Put", "PutAll", "REAL", "Raise", "RaiseValue", "RefDef", "Rep",
-    "Reset", "Return", "STRING", "Select", "SelfCall", "SetContents", "SetGlobal", "Shared", "Stmt", "StructDef",
-    "Sum", "TIME", "Tail", "Take", "TakeAll", "Threshold", "TokenValue", "Transition", "UNIT", "UnionDef",
-    "Unless", "UnlessAvailable", "UnlessBind", "UnlessEmpty", "UnlessHeld", "UnlessLegal", "Use", "Used",
-    "Variable", "Wanted", "While", "Yield", "parts",
+    "Access", "AddressOf", "Arena", "Argument", "Assign", "BIG", "BOOL", "Bind", "Bound", "CHAR", "ClearError",
+    "Const", "Contents", "Count", "Declare", "Definition", "Descriptor", "Do", "EnumDef", "EnumValue", "Fill",
+    "ForCount", "ForList", "ForTokens", "ForValues", "FunCall", "Function", "Global", "GlobalUse", "HasError",
+    "HasPacket", "Head", "INT", "If", "Ir", "IrType", "IsNil", "IsTag", "Let", "ListDef", "Local", "MakeStruct",
+    "MakeUnion", "Member", "NetIR", "NewRef", "Note", "Now", "Ok", "Op", "Packed", "Packet", "Place",
+    "PlaceTable", "PlaceTokens", "PlaceTotal", "Predicate", "Put", "PutAll", "REAL", "Raise", "RaiseValue",
+    "RefDef", "Rep", "Reset", "Return", "STRING", "Select", "SelfCall", "SetContents", "SetGlobal", "Shared",
+    "Stmt", "StructDef", "Sum", "TIME", "Tail", "Take", "TakeAll", "Threshold", "TokenValue", "Transition",
+    "UNIT", "UnionDef", "Unless", "UnlessAvailable", "UnlessBind", "UnlessEmpty", "UnlessHeld", "UnlessLegal",
+    "Use", "Used", "Variable", "Wanted", "While", "Yield", "parts",
 ]  # fmt: skip

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pn2code.ir import nodes as ir
+from pn2code.lowering.passes.access import with_access
 from pn2code.lowering.passes.arena import with_arena
 from pn2code.lowering.passes.checks import with_checks
 from pn2code.lowering.passes.constants import with_constants
@@ -30,4 +31,4 @@ def analysed(net: ir.NetIR) -> ir.NetIR:
 
 def bounded(net: ir.NetIR) -> ir.NetIR:
     """The net, with what passes find that look at how places are kept: again when their bounds have become known."""
-    return with_arena(with_shared(with_move_lists(with_slots(net))))
+    return with_arena(with_shared(with_access(with_move_lists(with_slots(net)))))
