@@ -48,15 +48,14 @@ from pn2code.run.record import ActionRecord, ActivityRecord, MessageRecord, RunR
 from pn2code.run.sensors import Sensors
 from pn2code.run.supervisor import SupervisorProcess
 from pn2code.tdl.check import CheckedProgram
-from pn2code.tdl.interpret import (
-    MOST_AT_ONCE,
+from pn2code.tdl.interpret import MOST_AT_ONCE, Interpreter
+from pn2code.tdl.requests import (
     AwaitFile,
     Event,
     Execute,
     Fault,
     FileError,
     Finished,
-    Interpreter,
     Marked,
     MessageConsumed,
     MessageWritten,

@@ -24,7 +24,7 @@ from pn2code.robot_scripts.ir import Chain, Line, Node, Region, Repeat, RobotIR
 from pn2code.run.sensors import load as load_sensors
 from pn2code.tdl import tree as t
 from pn2code.tdl.evaluate import ScriptError, ScriptPose, ScriptValue, evaluate
-from pn2code.tdl.interpret import to_si
+from pn2code.tdl.messages import to_si
 
 
 def look_ahead(
