@@ -14,7 +14,8 @@ from markupsafe import Markup
 
 from pn2code.base import resources
 from pn2code.drawing.geometry import Box
-from pn2code.drawing.scene import Scene, build
+from pn2code.drawing.scene import build
+from pn2code.drawing.shapes import Scene
 from pn2code.drawing.svg import MARGIN, Links, Overlay, figure, svg_attributes
 from pn2code.reading.document import Document, RawPage
 from pn2code.verify.report.trace_frames import TraceFrame
