@@ -27,7 +27,7 @@ from pn2code.robot.backend import BackendName, Camera, Clearance, ClearanceKind,
 from pn2code.robot.commands import Pose
 from pn2code.robot.geometry import Body, Solid, bodies
 from pn2code.robot.looks import Look
-from pn2code.robot.scene import CellRobot, RobotCell
+from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array
 
 _SKY = (148.0, 166.0, 186.0)

@@ -23,7 +23,7 @@ from pn2code.robot.panel import (
     stand_places,
     stringers,
 )
-from pn2code.robot.scene import Colour, PanelConfig, SceneObject
+from pn2code.robot.robot_cell import Colour, PanelConfig, SceneObject
 from pn2code.robot.transforms import Array, matrix_of
 
 _PRIMER = (0.62, 0.68, 0.52, 1.0)  # the green of zinc chromate primer

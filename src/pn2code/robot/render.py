@@ -18,7 +18,7 @@ import imageio.v2 as imageio
 import numpy as np
 
 from pn2code.robot.backend import Backend, Camera, Picture
-from pn2code.robot.scene import RobotCell
+from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array
 
 WIDTH, HEIGHT = 1280, 720

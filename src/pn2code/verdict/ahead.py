@@ -19,7 +19,7 @@ from pn2code.robot.choose_backend import open_backend
 from pn2code.robot.commands import MoveJoint, MoveLinear
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor
-from pn2code.robot.scene import RobotCell
+from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot_scripts.ir import Chain, Line, Node, Region, Repeat, RobotIR
 from pn2code.run.sensors import load as load_sensors
 from pn2code.tdl import tree as t
