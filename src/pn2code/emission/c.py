@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 from pn2code.emission import c_rows, c_tables
-from pn2code.emission.c_expressions import c_big_initialiser
 from pn2code.emission.c_lines import wrap
+from pn2code.emission.c_literals import c_big_initialiser
 from pn2code.emission.c_proofs import proofs
 from pn2code.emission.c_texts import comment_lines, initial, where
 from pn2code.emission.c_transitions import Transitions

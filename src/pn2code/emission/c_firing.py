@@ -9,8 +9,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from pn2code.emission.c_expressions import Expressions, Types
+from pn2code.emission.c_expressions import Expressions
 from pn2code.emission.c_statements import Statements
+from pn2code.emission.c_types import Types
 from pn2code.emission.names import Scope
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Rep, Stmt

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from pn2code.diagnostics import Origin
 from pn2code.emission import c_orders, c_packed
-from pn2code.emission.c_expressions import Expressions, Types
+from pn2code.emission.c_expressions import Expressions
 from pn2code.emission.c_own import OwnPlaces
 from pn2code.emission.c_statements import Statements
+from pn2code.emission.c_types import Types
 from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import NetIR

@@ -4,14 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from pn2code.emission.c_expressions import (
-    Expressions,
-    PackedPlace,
-    Types,
-    c_bytes,
-)
+from pn2code.emission.c_expressions import Expressions, PackedPlace
 from pn2code.emission.c_lines import WIDTH, wrap
+from pn2code.emission.c_literals import c_bytes
 from pn2code.emission.c_sums import SumFunction
+from pn2code.emission.c_types import Types
 from pn2code.emission.environment import c_comment
 from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
