@@ -6,7 +6,6 @@ it is in `DIRECT` or has a method here or in `higher_order`.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from pn2code.diagnostics import Span
@@ -270,8 +269,7 @@ def _combinations(body: Body, multisets: Val, t: IrType, declared: tuple[str, ..
 
     `declared`: the labels of a record; none for a product.
     """
-    element = body.element(t)
-    definition = body.program.types.definition(element)
+    definition = body.program.types.definition(body.element(t))
     assert isinstance(definition, ir.StructDef)
     order = list(declared) or [label for label, _ in definition.fields]
     parts = body.components(multisets, len(order))
@@ -279,15 +277,4 @@ def _combinations(body: Body, multisets: Val, t: IrType, declared: tuple[str, ..
         label: body.atomic(body.code(part), "items")
         for label, part in zip(order, parts, strict=True)
     }
-
-    def combine(labels: list[str], chosen: dict[str, Ir], keep: Callable[[Ir], None]) -> None:
-        if not labels:
-            fields = tuple((label, chosen[label]) for label, _ in definition.fields)
-            keep(ir.MakeStruct(element, fields))
-            return
-        label, *rest = labels
-        higher_order.for_each(
-            body, lists[label], lambda x: combine(rest, {**chosen, label: x}, keep)
-        )
-
-    return higher_order.collect(body, t, lambda keep: combine(order, {}, keep))
+    return higher_order.combinations(body, lists, t)

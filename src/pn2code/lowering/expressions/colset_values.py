@@ -118,21 +118,7 @@ def _combinations(body: Body, c: Colset, t: ir.IrType, at: Span) -> Ir:
     labels = c.labels or tuple(str(i) for i in range(1, len(c.components) + 1))
     parts = {x: p for x, p in zip(labels, c.components, strict=True) if p is not None}
     lists = {x: body.atomic(all_values(body, p, at), "all") for x, p in parts.items()}
-    element = body.element(t)
-    definition = body.program.types.definition(element)
-    assert isinstance(definition, ir.StructDef)
-
-    def combine(rest: list[str], chosen: dict[str, Ir], keep: Callable[[Ir], None]) -> None:
-        if not rest:
-            fields = tuple((label, chosen[label]) for label, _ in definition.fields)
-            keep(ir.MakeStruct(element, fields))
-            return
-        label, *others = rest
-        higher_order.for_each(
-            body, lists[label], lambda x: combine(others, {**chosen, label: x}, keep)
-        )
-
-    return higher_order.collect(body, t, lambda keep: combine(list(labels), {}, keep))
+    return higher_order.combinations(body, lists, t)
 
 
 def _constructors(body: Body, c: Colset, t: ir.IrType, at: Span) -> Ir:
