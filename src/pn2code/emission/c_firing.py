@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from pn2code.emission.c_expressions import Expressions
-from pn2code.emission.c_statements import Statements
+from pn2code.emission.c_net_statements import NetStatements
 from pn2code.emission.c_types import Types
 from pn2code.emission.names import Scope
 from pn2code.ir import nodes as ir
@@ -64,7 +64,7 @@ class _SlotMove:
     is_one: bool = True
 
 
-class DirectFiring(Statements):
+class DirectFiring(NetStatements):
     """Prints the `fire` of a transition that `is_direct`.
 
     Args:

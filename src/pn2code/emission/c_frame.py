@@ -5,8 +5,8 @@ from __future__ import annotations
 from pn2code.diagnostics import Origin
 from pn2code.emission import c_orders, c_packed
 from pn2code.emission.c_expressions import Expressions
+from pn2code.emission.c_net_statements import NetStatements
 from pn2code.emission.c_own import OwnPlaces
-from pn2code.emission.c_statements import Statements
 from pn2code.emission.c_types import Types
 from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
@@ -79,7 +79,7 @@ class Frame:
 
     def _printer(
         self, statements: tuple[ir.Stmt, ...], binding: str = "", own: OwnPlaces | None = None
-    ) -> tuple[Statements, Expressions, Scope]:
+    ) -> tuple[NetStatements, Expressions, Scope]:
         scope = Scope()
         x = Expressions(self._types, self._net.real_time, scope, binding)
         x.functions = self._functions
@@ -91,7 +91,7 @@ class Frame:
         x.packed = self._packed
         x.slots = self._slots
         x.global_hints = {g.name: g.hint for g in self._net.globals}
-        s = Statements(self._types, x, scope, self._net.real_time)
+        s = NetStatements(self._types, x, scope, self._net.real_time)
         s.bags = self._bags
         s.timed = self._timed
         s.slots = self._slots

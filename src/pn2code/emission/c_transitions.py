@@ -5,8 +5,8 @@ from __future__ import annotations
 from pn2code.emission import c_rows, c_sums
 from pn2code.emission.c_firing import DirectFiring
 from pn2code.emission.c_frame import Frame
+from pn2code.emission.c_net_statements import NetStatements
 from pn2code.emission.c_own import OwnPlaces
-from pn2code.emission.c_statements import Statements
 from pn2code.emission.c_sums import SumFunction
 from pn2code.emission.c_texts import where
 from pn2code.emission.environment import c_comment
@@ -242,7 +242,7 @@ class Transitions(Frame):
         variables: tuple[str, ...],
         own: OwnPlaces | None,
         name: str,
-    ) -> Statements:
+    ) -> NetStatements:
         printer, x, scope = self._printer(t.fire, "b->", own)
         x.variables = variables
         if is_direct:

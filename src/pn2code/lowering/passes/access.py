@@ -2,7 +2,8 @@
 
 What a function does not name it does not declare, since compilers warn of that. `with_access` writes it into the
 transitions (`search_access`, `fire_access`, `lists_access`, `thresholds_access`), and again whenever it has become
-known which places are slots. It follows what `emission.c_statements` and `emission.c_firing` print for each statement.
+known which places are slots. It follows what `emission.c_net_statements` and `emission.c_firing` print for each
+statement.
 """
 
 from __future__ import annotations
