@@ -16,7 +16,7 @@ from pn2code.robot import scene
 from pn2code.robot.commands import MoveJoint, MoveLinear, Pose
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.motion import MotionFault
-from pn2code.robot.scene import RobotCell
+from pn2code.robot.robot_cell import RobotCell
 
 
 class Arms:

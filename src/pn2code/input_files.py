@@ -25,7 +25,7 @@ from pn2code.base.os_reason import os_reason
 from pn2code.base.readable import readable
 from pn2code.cell.codes import CELL_FILE, CELL_VALUE, INPUT, INPUT_MISSING
 from pn2code.cell.config import CellConfig, InputConfig
-from pn2code.cell.divide import PlaceFinder
+from pn2code.cell.place_finder import PlaceFinder
 from pn2code.cell.scalars import Scalar, ScalarKind, lines_of, scalars_of
 from pn2code.channels import inputs
 from pn2code.channels.scalars import ScalarValue, format_scalars, scalars_of_json

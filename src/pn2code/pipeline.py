@@ -133,8 +133,7 @@ def generate(
     version = pn2code.__version__
     deployed = with_rooms(ir, proofs.rooms)
     net_files = emit_c.emit(deployed, version)
-    arriving = [c.place for c in partition.channels] + [i.place for i in partition.inputs]
-    arena = arena_size.of(deployed, arriving, proofs.arena)
+    arena = arena_size.of(deployed, proofs.arena)
     files = [
         *net_files,
         *emit_supervisor.emit(

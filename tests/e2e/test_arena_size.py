@@ -1,4 +1,4 @@
-"""How much memory a deployed program gets for lists, strings and moves (emission/arena_size.py); that it is enough."""
+"""How much memory a deployed program gets for lists, strings and moves; that it is enough."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import shutil
 import subprocess
 from collections import defaultdict
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -18,6 +19,8 @@ from pn2code.diagnostics import Diagnostics, render
 from pn2code.emission import arena_size, c_flags
 from pn2code.emission.write import write
 from pn2code.ir.allocating import ALLOCATING, MOVES
+from pn2code.lowering.passes import arena
+from pn2code.lowering.passes.analysis import bounded
 from pn2code.pipeline import Generated
 from pn2code.toolchain import build
 
@@ -130,21 +133,19 @@ def _size(out: str = "n", taken: str = "n", arriving: tuple[str, ...] = ()) -> a
     net = flat(NET.replace("{out}", out).replace("{taken}", taken))
     compiled, _ = lowered(net)
     assert compiled is not None
-    where = [p.index for p in compiled.places if p.name in arriving]
-    return arena_size.of(compiled, where, None)
+    places = tuple(replace(p, arrives=p.name in arriving) for p in compiled.places)
+    return arena_size.of(bounded(replace(compiled, places=places)), None)
 
 
 def test_moves_are_counted() -> None:
-    move = arena_size.MOVE + arena_size.ALIGNMENT
+    move = arena.MOVE + arena.ALIGNMENT
     # Three are put at the start; `Wait` takes two tokens and puts one.
     assert _size().is_proven and _size().bytes == 2 * (3 * move + 3 * move)
     # A timed place gives its tokens one by one.
-    assert _size(taken="4`n").bytes == 2 * (3 * move + 3 * move + 3 * arena_size.MOVE)
+    assert _size(taken="4`n").bytes == 2 * (3 * move + 3 * move + 3 * arena.MOVE)
     # 17 integers do not fit on the stack; A's do.
     assert _size(arriving=("P.A",)) == _size()
-    assert _size(arriving=("P.L",)).bytes == 2 * (
-        3 * move + max(3 * move, 17 * arena_size.SCALAR + 16)
-    )
+    assert _size(arriving=("P.L",)).bytes == 2 * (3 * move + max(3 * move, 17 * arena.SCALAR + 16))
 
 
 @pytest.mark.parametrize(

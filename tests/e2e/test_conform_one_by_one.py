@@ -137,7 +137,10 @@ def test_a_script_that_does_something_between_two_messages_is_found_out(cell: Pa
     read order into n
 """
     said = edited(cell, "device.tdl", old, new)
-    assert "has commanded ToolAction(action='crush', duration=2.0, handling=None), the net calls nothing" in said
+    assert (
+        "has commanded ToolAction(action='crush', duration=2.0, handling=None), the net calls nothing"
+        in said
+    )
     assert "size.txt is published" in said
 
 

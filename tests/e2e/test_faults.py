@@ -29,8 +29,8 @@ from pn2code.run.progress import Progress
 from pn2code.run.robot import RobotExit, RobotPlayer, script_specs
 from pn2code.run.supervisor import Exit, SupervisorProcess
 from pn2code.tdl.check import CheckedProgram, check
-from pn2code.tdl.interpret import Event
 from pn2code.tdl.parse import parse
+from pn2code.tdl.requests import Event
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build", "generated_once")]
 

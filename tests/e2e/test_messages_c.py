@@ -14,7 +14,8 @@ from pathlib import Path
 import pytest
 
 from helpers.netbuilder import cpn
-from pn2code.cell.divide import MOST_SCALARS, divide
+from pn2code.cell.divide import divide
+from pn2code.cell.limits import MOST_SCALARS
 from pn2code.cell.load import load
 from pn2code.cell.partition import Partition
 from pn2code.cell.scalars import Scalar, ScalarKind

@@ -137,7 +137,7 @@ class Workshop:
         for file in files:
             (folder / file.path).write_text(file.text)
         assert_calls_are_known(net, files[0].text)
-        size = arena_size.of(net, (), None)
+        size = arena_size.of(net, None)
         (folder / ARENA).write_text(str(size.bytes if size.is_proven else arena_size.DEFAULT))
         self.compile(folder / "net.c", folder / "net.o", folder, *flags)
         return self.link(folder / host, folder / "net.o", *sorted(self.runtime.glob(f"{host}*.o")))

@@ -12,7 +12,8 @@ from pn2code.diagnostics import NOWHERE, Diagnostics, Origin
 from pn2code.robot.commands import Command, MoveHome, MoveJoint, MoveLinear, Pose
 from pn2code.robot.kinematics import Kinematics
 from pn2code.robot.model import find_arm, find_tool
-from pn2code.robot.scene import RobotCell, load
+from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.scene import load
 
 EXAMPLE = Path(__file__).resolve().parents[2] / "examples" / "riveting"
 

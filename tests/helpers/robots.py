@@ -20,18 +20,10 @@ from pn2code.robot.commands import Measure
 from pn2code.robot_scripts.ir import RobotIR, program
 from pn2code.robot_scripts.translate import lower_robots
 from pn2code.tdl.check import CheckedProgram, check
-from pn2code.tdl.interpret import (
-    AwaitFile,
-    Event,
-    Execute,
-    Interpreter,
-    Marked,
-    MessageWritten,
-    Request,
-    Scalar,
-)
+from pn2code.tdl.interpret import Interpreter
 from pn2code.tdl.parse import parse
 from pn2code.tdl.pretty import statements
+from pn2code.tdl.requests import AwaitFile, Event, Execute, Marked, MessageWritten, Request, Scalar
 from pn2code.trace.replay import ReplayResult, replay_lines
 
 DECLARATIONS = """

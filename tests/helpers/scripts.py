@@ -10,18 +10,18 @@ from pn2code.diagnostics.render import report
 from pn2code.robot.commands import Command, Measure, Pose
 from pn2code.tdl import tree as t
 from pn2code.tdl.check import CheckedProgram, check
-from pn2code.tdl.interpret import (
+from pn2code.tdl.interpret import Interpreter
+from pn2code.tdl.parse import parse
+from pn2code.tdl.requests import (
     AwaitFile,
     Event,
     Execute,
     Fault,
     FileError,
     Finished,
-    Interpreter,
     Marked,
     Scalar,
 )
-from pn2code.tdl.parse import parse
 
 
 def source(text: str) -> SourceText:

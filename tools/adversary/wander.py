@@ -21,6 +21,7 @@ from pn2code.robot.choose_backend import open_backend
 from pn2code.robot.commands import Command, Wait
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion import Still
+from pn2code.robot.robot_cell import RobotCell
 from pn2code.run.cell import _scripts, shared_directory
 from pn2code.run.device import DeviceExecutor
 from pn2code.run.engine import CellStoppedError, Engine, RobotRunner
@@ -45,7 +46,7 @@ class Built:
     generated: pipeline.Generated
     scripts: dict[str, Any]
     program: Path
-    cell: scene.RobotCell
+    cell: RobotCell
     folder: Path
     most_events: int = MOST_EVENTS
 

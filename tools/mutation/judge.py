@@ -23,7 +23,7 @@ from pn2code.conform.probe import HOST, ProbeError
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission import c_flags
 from pn2code.pipeline import Generated, generate
-from pn2code.tdl.interpret import Request
+from pn2code.tdl.requests import Request
 
 SECONDS = 10.0
 """A mutant that takes longer for one answer does not come to rest."""

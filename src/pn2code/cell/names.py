@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from pn2code.cell import codes
 from pn2code.cell.config import CellConfig
-from pn2code.cell.divide import PlaceFinder
+from pn2code.cell.place_finder import PlaceFinder
 from pn2code.diagnostics import Diagnostics
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.ml.core.colsets import Colset, Kind

@@ -23,9 +23,8 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 from enum import Enum
 from pathlib import Path
-from types import TracebackType
-from typing import Self
 
+from pn2code.base.closing import Closing
 from pn2code.base.frozen import frozen
 from pn2code.channels.message import (
     EMPTY,
@@ -117,7 +116,7 @@ class _StatusFile:
     reason: str
 
 
-class SharedDirectory:
+class SharedDirectory(Closing):
     """One party's side of all its channels. Not for use by several threads at once."""
 
     def __init__(
@@ -242,17 +241,6 @@ class SharedDirectory:
         if self._lock is not None:
             os.close(self._lock)
             self._lock = None
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        value: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     # --- channels (I1..I6) ---
 

@@ -151,7 +151,7 @@ def _text(
 ) -> str | None:
     """The file's contents; None after errors."""
     from pn2code.convert import cpn, pnml_plain, pnml_symmetric, promela
-    from pn2code.drawing.scene import positions
+    from pn2code.drawing.positions import positions
     from pn2code.ml.core.colsets import Kind
     from pn2code.unfold.unfold import unfold
 

@@ -355,7 +355,7 @@ class _Drawing:
 
     def note_arranged(self, d: Diagnostics) -> None:
         """A note for each page whose positions are ours."""
-        from pn2code.drawing.scene import needs_arranging
+        from pn2code.drawing.positions import needs_arranging
 
         for page in self.pages:
             if needs_arranging(page):

@@ -15,8 +15,8 @@ from pathlib import Path, PurePath
 from typing import Any
 
 from pn2code.cell.config import CellConfig
-from pn2code.cell.divide import PlaceFinder
 from pn2code.cell.partition import Partition
+from pn2code.cell.place_finder import PlaceFinder
 from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
 from pn2code.channels.scalars import format_scalars, scalars_of_json
 from pn2code.diagnostics import Diagnostics

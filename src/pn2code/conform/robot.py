@@ -37,16 +37,15 @@ from pn2code.semantics.values.colour_json import to_json
 from pn2code.semantics.values.data import Timed, is_negative_zero
 from pn2code.tdl.check import CheckedProgram
 from pn2code.tdl.evaluate import ScriptPose
-from pn2code.tdl.interpret import (
+from pn2code.tdl.interpret import Interpreter, Saved
+from pn2code.tdl.requests import (
     AwaitFile,
     Event,
     Execute,
     Fault,
     Finished,
-    Interpreter,
     Marked,
     Request,
-    Saved,
     Scalar,
     Sense,
 )

@@ -34,7 +34,7 @@ from pn2code.ml.core.terms import (
     Symbol,
     Var,
 )
-from pn2code.ml.library.builtins import FALSE, TRUE
+from pn2code.ml.library.datatypes import FALSE, TRUE
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatTransition, Form
 from pn2code.pnml.declarations import minus_text
 from pn2code.semantics.evaluation.evaluate import variables

@@ -13,7 +13,8 @@ from pn2code.base import resources
 from pn2code.base.frozen import frozen
 from pn2code.drawing import text
 from pn2code.drawing.geometry import Box
-from pn2code.drawing.scene import Scene, build
+from pn2code.drawing.scene import build
+from pn2code.drawing.shapes import Scene
 from pn2code.drawing.svg import MARGIN, Links, Overlay, Problem, figure, svg_attributes
 from pn2code.drawing.text import escape
 from pn2code.reading.document import (

@@ -9,12 +9,20 @@ an arc whose bend lies beside a node meets it at a right angle; texts in their d
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
-from pn2code.base.frozen import frozen
 from pn2code.drawing import text
-from pn2code.drawing.arrange import Arrangement, arrange
+from pn2code.drawing.arrange import Arrangement
 from pn2code.drawing.geometry import Box, Point, along, around, enter, of_points, union
+from pn2code.drawing.positions import (
+    PLACE_SIZE,
+    TRANSITION_SIZE,
+    arrangement,
+    needs_arranging,
+    node_size,
+)
+from pn2code.drawing.shapes import Corner, Label, Line, Scene, Shape, Tag, text_box
+from pn2code.drawing.titles import HIDDEN, PORTS, arc_title, place_title, transition_title
 from pn2code.drawing.units import in_points
 from pn2code.reading.document import (
     Document,
@@ -27,138 +35,12 @@ from pn2code.reading.document import (
     RawTransition,
 )
 
-PLACE_SIZE, TRANSITION_SIZE = (60.0, 40.0), (60.0, 40.0)
-"""CPN Tools' own, for nodes without a size."""
 SIBLING_DISTANCE = 10.0
 """Between arcs that run side by side."""
-_HIDDEN = frozenset(
-    {
-        "[]",
-        "@+",
-        "@++",
-        "P_NORMAL",
-        "PLACETYPE",
-        "INITMARK",
-        "expr",
-        "input();output();action();",
-        "input();output();action",
-        "",
-    }
-)
-_PORTS = {"in": "In", "out": "Out", "i/o": "I/O", "io": "I/O", "inout": "I/O", "in/out": "I/O"}
 DEFAULT_TOKEN = -10.0
 """CPN Tools' usual distance of the number of tokens from its place beside the place."""
 _FAR = 10.0
 _STEP = 14.0
-_ARRANGED_SHARE = 0.3
-
-
-@frozen
-class Shape:
-    """A place, a transition, or a shape of an auxiliary.
-
-    Args:
-        kind: "place", "transition", "substitution" or "aux".
-        round: an ellipse, else a box.
-        caption: lines of the name.
-        title: what a tool tip says.
-        link: id of the page that a substitution transition stands for.
-    """
-
-    id: str
-    kind: str
-    box: Box
-    round: bool
-    layout: Layout
-    caption: tuple[str, ...]
-    title: str
-    link: str = ""
-
-    @property
-    def centre(self) -> Point:
-        """The centre."""
-        return (self.box.left + self.box.right) / 2, (self.box.top + self.box.bottom) / 2
-
-
-@frozen
-class Line:
-    """An arc; points from the transition's edge to the place's edge.
-
-    Args:
-        kind: the orientation: "ptot", "ttop", "bothdir", "inhibitor", "reset" or "nodir".
-    """
-
-    id: str
-    kind: str
-    points: tuple[Point, ...]
-    layout: Layout
-    title: str
-
-
-@frozen
-class Label:
-    """A text in its box.
-
-    Args:
-        owner, kind: what of which element (id), e.g. "guard".
-        part: the part of the inscription's origin, as in diagnostics.
-    """
-
-    owner: str
-    kind: str
-    lines: tuple[str, ...]
-    box: Box
-    layout: Layout
-    title: str
-    part: str = ""
-
-
-@frozen
-class Tag:
-    """The framed word at a port ("In"), a fusion place (its set) or a substitution transition (its page)."""
-
-    owner: str
-    kind: str
-    word: str
-    box: Box
-    title: str
-    link: str = ""
-
-
-@frozen
-class Scene:
-    """All of a page.
-
-    Args:
-        arranged: the positions are not the author's.
-        tokens, markings: by place id; see `_Builder.token`.
-        hidden: ids of places whose marking CPN Tools does not show, only the number.
-    """
-
-    page: str
-    name: str
-    shapes: tuple[Shape, ...]
-    lines: tuple[Line, ...]
-    labels: tuple[Label, ...]
-    tags: tuple[Tag, ...]
-    arranged: bool
-    tokens: dict[str, Point] = field(default_factory=dict)
-    markings: dict[str, Point] = field(default_factory=dict)
-    hidden: frozenset[str] = frozenset()
-
-    def bounds(self) -> Box:
-        """The box around everything."""
-        boxes = [s.box for s in self.shapes]
-        boxes += [text_box(s) for s in self.shapes if s.caption]
-        boxes += [of_points(line.points) for line in self.lines]
-        boxes += [label.box for label in self.labels]
-        boxes += [tag.box for tag in self.tags]
-        return union(boxes)
-
-
-def text_box(shape: Shape) -> Box:
-    """The box of a node's name."""
-    return around(*shape.centre, *text.extent(shape.caption, shape.layout.bold))
 
 
 def build(document: Document, page: RawPage) -> Scene:
@@ -180,7 +62,7 @@ class _Builder:
         """Everything, in the order of the file."""
         page = self.page
         if needs_arranging(page):
-            self.arranged = _arrangement(page)
+            self.arranged = arrangement(page)
         self.nowhere = self.labels_lack_positions()
         for place in page.places:
             self.nodes[place.id] = self.node(place, "place", PLACE_SIZE, place_title(place))
@@ -248,7 +130,7 @@ class _Builder:
         self.label(owner, "colset", place.type, Corner(box.right - 6, box.bottom + 1, 1, 1))
         self.label(owner, "initial", place.initial, Corner(box.right - 6, box.top - 1, 1, -1))
         if place.port:
-            word = _PORTS.get(place.port.lower(), place.port)
+            word = PORTS.get(place.port.lower(), place.port)
             corner = Corner(box.left + 8, box.bottom - 2, -1, 1)
             self.tag(owner, "port", word, place.port_layout, corner, f"port: {word}")
         if place.fusion:
@@ -275,7 +157,7 @@ class _Builder:
 
     def label(self, owner: str, kind: str, i: Inscription | None, corner: Corner) -> None:
         """An inscription, at its own position, or else at the corner."""
-        if i is None or "".join(i.text.text.split()) in _HIDDEN:
+        if i is None or "".join(i.text.text.split()) in HIDDEN:
             return
         block = text.lines(i.text.text)
         w, h = text.extent(block, i.layout.bold)
@@ -364,7 +246,7 @@ class _Builder:
         middle = along(points, min(max(0.5 + 0.15 * side, 0.1), 0.9))
         self.label(arc.id, "inscription", arc.inscription, Corner(middle[0] + 4, middle[1], 1, -1))
         written = f": {arc.inscription.text.text}" if arc.inscription else ""
-        return Line(arc.id, arc.orientation, points, arc.layout, f"{_arrow(arc, t, p)}{written}")
+        return Line(arc.id, arc.orientation, points, arc.layout, f"{arc_title(arc, t, p)}{written}")
 
     def auxiliary(self, aux: RawAux) -> Shape | None:
         """A free text becomes a label; a shape is given back."""
@@ -408,119 +290,12 @@ class _Builder:
         return at, (5 + place.marking.x, -place.marking.y)
 
 
-@frozen
-class Corner:
-    """Where a text goes that has no position: it touches (x, y) and lies right (`dx` 1), left (-1) or around it (0)."""
-
-    x: float
-    y: float
-    dx: int
-    dy: int
-
-    def box(self, width: float, height: float) -> Box:
-        """The box of a text of this size."""
-        return around(self.x + self.dx * width / 2, self.y + self.dy * height / 2, width, height)
-
-
-def node_size(layout: Layout, default: tuple[float, float]) -> tuple[float, float]:
-    """A node's size; the default where the file has none."""
-    return (
-        layout.width if layout.width > 0 else default[0],
-        layout.height if layout.height > 0 else default[1],
-    )
-
-
-def place_title(place: RawPlace) -> str:
-    """The tool tip of a place."""
-    rows = [f"place {place.name}" + (f" : {place.type.text.text}" if place.type else "")]
-    if place.initial:
-        rows.append(f"initial marking: {text.shorten(place.initial.text.text, 20, 200)}")
-    if place.port:
-        rows.append(f"port: {_PORTS.get(place.port.lower(), place.port)}")
-    if place.fusion:
-        rows.append(f"fusion set: {place.fusion}")
-    return "\n".join(rows)
-
-
-def transition_title(t: RawTransition, subpage: str) -> str:
-    """The tool tip of a transition."""
-    if t.substitution:
-        return f"substitution transition {t.name}\nstands for page {subpage}"
-    rows = [f"transition {t.name}"]
-    for i in (t.guard, t.delay, t.priority, t.channel, t.code):
-        if i is not None and "".join(i.text.text.split()) not in _HIDDEN:
-            rows.append(f"{i.text.origin.part}: {text.shorten(i.text.text, 20, 200)}")
-    return "\n".join(rows)
-
-
-def _arrow(arc: RawArc, transition: Shape, place: Shape) -> str:
-    t = " ".join(transition.caption) or transition.id
-    p = " ".join(place.caption) or place.id
-    match arc.orientation:
-        case "ttop":
-            return f"arc {t} → {p}"
-        case "bothdir":
-            return f"arc {p} ↔ {t}"
-        case "inhibitor":
-            return f"inhibitor arc {p} ⊸ {t}"
-        case "reset":
-            return f"reset arc {p} ↠ {t}"
-        case "nodir":
-            return f"{p} — {t}"
-        case _:
-            return f"arc {p} → {t}"
-
-
 def _inscriptions(page: RawPage) -> Iterable[Inscription]:
     for place in page.places:
         yield from (i for i in (place.type, place.initial) if i)
     for t in page.transitions:
         yield from (i for i in (t.guard, t.delay, t.code, t.priority) if i)
     yield from (a.inscription for a in page.arcs if a.inscription)
-
-
-def needs_arranging(page: RawPage) -> bool:
-    """Whether the positions are missing or useless: many nodes stand on one another."""
-    layouts = [n.layout for n in page.nodes]
-    if len(layouts) < 2:
-        return False
-    if not any(at.known for at in layouts):
-        return True
-    points = {(round(at.x), round(at.y)) for at in layouts}
-    return len(layouts) - len(points) > _ARRANGED_SHARE * len(layouts)
-
-
-def positions(document: Document) -> dict[str, Point]:
-    """Where the nodes stand, by id, in the units of the file (y upwards); arranged where the file does not say."""
-    found: dict[str, Point] = {}
-    for page in document.pages:
-        if needs_arranging(page):
-            centres = _arrangement(page).centres
-            found.update({identity: (x, -y) for identity, (x, y) in centres.items()})
-        else:
-            found.update({n.id: (n.layout.x, n.layout.y) for n in page.nodes})
-    return found
-
-
-def _arrangement(page: RawPage) -> Arrangement:
-    nodes = {p.id: node_size(p.layout, PLACE_SIZE) for p in page.places}
-    nodes |= {t.id: node_size(t.layout, TRANSITION_SIZE) for t in page.transitions}
-    for n in page.nodes:
-        w = text.extent(text.lines(n.caption))[0] if n.caption else 0.0
-        nodes[n.id] = (max(nodes[n.id][0], w), nodes[n.id][1])
-    edges = {}
-    for arc in page.arcs:
-        if arc.transition in nodes and arc.place in nodes:
-            outwards = arc.orientation == "ttop"
-            ends = (arc.transition, arc.place) if outwards else (arc.place, arc.transition)
-            edges[arc.id] = ends
-    found = arrange(nodes, edges)
-    # Bends run with the edge; ours from the transition to the place.
-    bends = {
-        e: b if edges[e][0] in {t.id for t in page.transitions} else b[::-1]
-        for e, b in found.bends.items()
-    }
-    return replace(found, bends=bends)
 
 
 def _off(tag: Box, node: Shape) -> Box:

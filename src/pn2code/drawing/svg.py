@@ -18,7 +18,8 @@ from dataclasses import field
 from pn2code.base.frozen import frozen
 from pn2code.drawing import text
 from pn2code.drawing.geometry import Box, Point, around, towards, union
-from pn2code.drawing.scene import Label, Line, Scene, Shape, Tag, build, text_box
+from pn2code.drawing.scene import build
+from pn2code.drawing.shapes import Label, Line, Scene, Shape, Tag, text_box
 from pn2code.drawing.style import (
     ENABLED,
     PROBLEM,

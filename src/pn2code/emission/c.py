@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from pn2code.emission import c_rows, c_tables, c_values
-from pn2code.emission.c_expressions import c_big_initialiser
+from pn2code.emission import c_rows, c_tables
 from pn2code.emission.c_lines import wrap
+from pn2code.emission.c_literals import c_big_initialiser
 from pn2code.emission.c_proofs import proofs
 from pn2code.emission.c_texts import comment_lines, initial, where
 from pn2code.emission.c_transitions import Transitions
@@ -107,7 +107,7 @@ class _Emitter(Transitions):
         s.body(g.setup)
         name = self._names.value(g.name, g.hint)
         constant = ""
-        value = c_values.constant(g)
+        value = g.constant
         if value is not None and value.type.rep in (Rep.INT, Rep.REAL, Rep.BOOL):
             constant = x.text(value)
         elif value is not None and isinstance(value.value, int) and value.type == ir.BIG:
@@ -200,12 +200,12 @@ class _Emitter(Transitions):
         wrappers = _wrappers(functions)
         tables = c_tables.Tables(self._types, self._descriptors, wrappers)
         recursive = tables.to_declare(keys)
-        transitions = [self._transition(g) for g in self._shared]  # what they call is known then
+        transitions = [self._transition(g) for g in net.shared]  # what they call is known then
         rows = sorted(
             (
-                (t.index, self._row(t, g, code), code)
-                for g, code in zip(self._shared, transitions, strict=True)
-                for t in g.instances
+                (i, self._row(net.transitions[i], g, code), code)
+                for g, code in zip(net.shared, transitions, strict=True)
+                for i in g.instances
             ),
             key=lambda row: row[0],
         )
@@ -237,7 +237,7 @@ class _Emitter(Transitions):
             "packed_words": (packed_bits(net.places) + 63) // 64,
             "packed_size": (packed_bits(net.places) + 31) // 32 * 4,
             "transitions": transitions,
-            "place_tables": [self._place_table(x) for x in self._place_tables],
+            "place_tables": [self._place_table(x) for x in net.place_tables],
             "rows": [row for _, row, _ in rows],
             "each": c_rows.each(
                 (i, str(code["stem"]), bool(code["is_plain"])) for i, _, code in rows

@@ -4,127 +4,17 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from pn2code.emission.c_literals import c_big, c_bytes, c_integer
+from pn2code.emission.c_types import Types
 from pn2code.emission.environment import c_float
-from pn2code.emission.names import Names, Scope, label
+from pn2code.emission.names import Scope, label
 from pn2code.ir import nodes as ir
 from pn2code.ir import operations
 from pn2code.ir.nodes import Ir, IrType, Rep
 from pn2code.ir.operations import OPS, Call, Compared, Infix, Literal, Prefix
+from pn2code.ir.printed import is_nil
 
 _PRIMARY, _POSTFIX, _UNARY, _CONDITIONAL = 17, 16, 14, 3
-
-_SCALARS = {
-    Rep.UNIT: "pn_unit_t",
-    Rep.BOOL: "bool",
-    Rep.INT: "int64_t",
-    Rep.BIG: "pn_big_t",
-    Rep.REAL: "double",
-    Rep.STRING: "pn_string_t",
-    Rep.CHAR: "uint8_t",
-    Rep.TIME: "pn_time_t",
-}
-
-
-def c_bytes(text: str) -> str:
-    """A string of CPN ML, whose characters are bytes, as a C string literal."""
-    out = []
-    for byte in text.encode("latin-1"):
-        if chr(byte) in '"\\?':
-            out.append(f"\\{chr(byte)}")
-        elif chr(byte) == "\n":
-            out.append("\\n")
-        elif 32 <= byte < 127:
-            out.append(chr(byte))
-        else:
-            out.append(f"\\{byte:03o}")
-    return '"' + "".join(out) + '"'
-
-
-def c_integer(value: int) -> str:
-    """An int64_t constant, plain where it is small."""
-    if -(2**31) < value < 2**31:
-        return str(value)
-    if value == -(2**63):
-        return "INT64_MIN"
-    return f"INT64_C({value})" if value >= 0 else f"-INT64_C({-value})"
-
-
-def big_bytes(value: int) -> bytes:
-    """An integer beyond 64 bits as pn_big.h keeps it."""
-    count = (abs(value).bit_length() + 31) // 32
-    header = 2 * count + (value < 0)
-    return header.to_bytes(4, "little") + abs(value).to_bytes(4 * count, "little")
-
-
-def c_big(value: int) -> str:
-    """A pn_big_t."""
-    if -(2**63) <= value < 2**63:
-        return f"PN_BIG({c_integer(value)})"
-    return f"PN_BIG_BYTES({c_bytes(big_bytes(value).decode('latin-1'))})"
-
-
-def c_big_initialiser(value: int) -> str:
-    """A pn_big_t that a static variable starts with."""
-    return c_big(value).replace("PN_BIG", "PN_BIG_INIT", 1)
-
-
-def _is_nil(value: Ir) -> bool:
-    """Whether a list is known to be empty where the code is made; what would be behind it is, too."""
-    match value:
-        case ir.Op(name="list.nil" | "zero"):
-            return True
-        case ir.Head(list=inner) | ir.Tail(list=inner):
-            return _is_nil(inner)
-    return False
-
-
-@dataclass(frozen=True, slots=True)
-class Types:
-    """C types by name: declarations live in net.h."""
-
-    names: Names
-    definitions: dict[str, ir.Definition]
-
-    def name(self, t: IrType) -> str:
-        """The C type."""
-        return _SCALARS.get(t.rep) or self.names.type(t.name)
-
-    def zero(self, t: IrType) -> str:
-        """The harmless value."""
-        match t.rep:
-            case Rep.UNIT:
-                return "PN_UNIT"
-            case Rep.BOOL:
-                return "false"
-            case Rep.INT:
-                return "0"
-            case Rep.BIG:
-                return "PN_BIG(0)"
-            case Rep.REAL:
-                return "0.0"
-            case Rep.STRING:
-                return 'PN_STRING("")'
-            case Rep.CHAR:
-                return "0U"
-            case Rep.LIST | Rep.REF:
-                return "NULL"
-            case Rep.TIME:
-                return "PN_NO_TIME"
-            case Rep.ENUM:
-                definition = self.definitions[t.name]
-                assert isinstance(definition, ir.EnumDef)
-                return self.names.constructor(t.name, definition.constructors[0])
-            case Rep.STRUCT | Rep.UNION:
-                return f"({self.name(t)}){{ {self._zeros(t)} }}"
-
-    def _zeros(self, t: IrType) -> str:
-        """What stands between the braces; all fields where the first has fields of its own, as compilers warn else."""
-        definition = self.definitions[t.name]
-        if isinstance(definition, ir.StructDef):
-            first = definition.fields[0][1].rep
-            if first in (Rep.STRUCT, Rep.UNION, Rep.STRING, Rep.TIME, Rep.BIG):
-                return ", ".join(f".{label(x)} = {self.zero(f)}" for x, f in definition.fields)
-        return "0"
 
 
 @dataclass(frozen=True, slots=True)
@@ -209,7 +99,7 @@ class Expressions:
                     return False
                 return self._is_boxed(e) or self._is_object(inner)
             case ir.Head(list=inner):
-                return not _is_nil(inner)
+                return not is_nil(inner)
         return False
 
     def _is_boxed(self, e: ir.Argument) -> bool:
@@ -286,15 +176,15 @@ class Expressions:
                 then, otherwise = (self.inside(x, _CONDITIONAL) for x in (e.then, e.otherwise))
                 return f"{self.condition(e.condition)} ? {then} : {otherwise}", _CONDITIONAL
             case ir.Head(list=inner):
-                if _is_nil(inner):  # nobody comes here
+                if is_nil(inner):  # nobody comes here
                     return self._types.zero(e.type), _POSTFIX
                 return f"{self.inside(inner, _UNARY)}->head", _POSTFIX
             case ir.Tail(list=inner):
-                if _is_nil(inner):
+                if is_nil(inner):
                     return "NULL", _PRIMARY
                 return f"{self.inside(inner, _UNARY)}->tail", _POSTFIX
             case ir.IsNil(list=inner):
-                if _is_nil(inner):
+                if is_nil(inner):
                     return "true", _PRIMARY
                 return f"{self.inside(inner, operations.EQUALITY)} == NULL", operations.EQUALITY
             case ir.Ok():
@@ -482,7 +372,7 @@ class Expressions:
     def _negation(self, e: Ir) -> tuple[str, int]:
         """Not, put into the comparison where that is exact."""
         match e:
-            case ir.IsNil(list=inner) if not _is_nil(inner):
+            case ir.IsNil(list=inner) if not is_nil(inner):
                 return f"{self.inside(inner, operations.EQUALITY)} != NULL", operations.EQUALITY
             case ir.Op(name="=" | "same"):
                 return self._equality(e, "!=")

@@ -7,16 +7,14 @@ back. The slots change last. What the search has found in a slot is not looked a
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
-from pn2code.emission.c_expressions import Expressions, Types
-from pn2code.emission.c_statements import Statements
-from pn2code.emission.c_values import is_structural
+from pn2code.emission.c_expressions import Expressions
+from pn2code.emission.c_net_statements import NetStatements
+from pn2code.emission.c_types import Types
 from pn2code.emission.names import Scope
 from pn2code.ir import nodes as ir
-from pn2code.ir.nodes import Descriptor, Rep, Stmt
-from pn2code.ir.types import is_restricted
+from pn2code.ir.nodes import Rep, Stmt
 from pn2code.lowering.passes.moves import is_count
 
 
@@ -66,13 +64,10 @@ class _SlotMove:
     is_one: bool = True
 
 
-class DirectFiring(Statements):
+class DirectFiring(NetStatements):
     """Prints the `fire` of a transition that `is_direct`.
 
     Args:
-        descriptors: of all colour sets and types.
-        tables: for each variable of the binding the key of its descriptor, "" where its value is not known to be of it.
-        place_tables: for each place the key.
         puts_back: whether the marking is as before where a place is full; without, the caller throws it away.
     """
 
@@ -83,23 +78,14 @@ class DirectFiring(Statements):
         scope: Scope,
         real_time: bool,
         *,
-        descriptors: Mapping[str, Descriptor],
-        tables: tuple[str, ...],
-        place_tables: tuple[str, ...],
         puts_back: bool,
     ) -> None:
         super().__init__(types, expressions, scope, real_time)
         self._puts_back = puts_back
-        self._descriptors = descriptors
-        self._tables = tables
-        self._place_tables = place_tables
         self._moves_made: list[_Move] = []
         self._slot_moves: list[_SlotMove] = []
-        self.references: frozenset[str] = frozenset()
-        self.constants: Mapping[str, ir.Const] = {}
         self._declared: list[str] = []
         self._staying: set[int] = set()
-        self._takes: list[ir.Take] = []
         self._sums_used: dict[str, str] = {}
         self.otherwise = ""
         self.has_checks = False
@@ -109,7 +95,6 @@ class DirectFiring(Statements):
     ) -> None:
         """The whole body after the preamble; `staying`: as of a transition."""
         self._staying = {id(statements[i]) for pair in staying for i in pair}
-        self._takes = [s for s in statements if isinstance(s, ir.Take)]
         self.body(statements)
         self.lines[:0] = [*self._sum_lines(), *self._declared]
         if may_fail or self.has_checks:
@@ -289,7 +274,7 @@ class DirectFiring(Statements):
             return
         key = ("add", id(s))
         is_nested = self._depth > 1
-        must_check = not self._is_known(s)
+        must_check = not s.is_legal
         value = ""
         if is_nested or must_check or not isinstance(s.value, ir.Const | ir.Bound | ir.Use):
             value = self._worked_out(s, is_nested, must_check)
@@ -320,12 +305,8 @@ class DirectFiring(Statements):
         return fresh
 
     def _is_missing(self, s: ir.Take) -> str:
-        """Whether the token is not there, as C.
-
-        What the search has bound or compared is there; what is worked out anew may be something else (random numbers,
-        files, references).
-        """
-        if is_structural(s.value, self.references) or s.value.type.rep is Rep.UNIT:
+        """Whether the token is not there, as C; "": the search has found it."""
+        if s.is_found:
             return ""
         fresh = self._worked_out(s, is_nested=False, must_check=False)
         return self._differs(s.place, fresh, f"&{fresh}")
@@ -341,7 +322,7 @@ class DirectFiring(Statements):
         key = (verb, id(s))
         is_nested = self._depth > 1
         is_plain = isinstance(s.value, ir.Bound | ir.Use)
-        must_check = isinstance(s, ir.Put) and not self._is_known(s)
+        must_check = isinstance(s, ir.Put) and not s.is_legal
         if is_plain and not is_nested and not must_check:
             value = self._x.address(s.value)
         else:
@@ -383,34 +364,3 @@ class DirectFiring(Statements):
         else:
             self.line(f"const uint32_t {number} = {text};")
         return number
-
-    def _is_known(self, s: ir.Put) -> bool:
-        """Whether the value is of the place's colour set, or the very one that is taken from a place of it."""
-        table = self._place_tables[s.place]
-        return self._is_within(s.value, table) or any(
-            self._place_tables[t.place] == table and t.value == s.value for t in self._takes
-        )
-
-    def _number(self, value: ir.Ir) -> int | None:
-        """The integer that a value always is; None: not known, or it is none."""
-        known = self.constants.get(value.name) if isinstance(value, ir.GlobalUse) else value
-        if not isinstance(known, ir.Const) or known.type != ir.INT:
-            return None
-        return known.value if isinstance(known.value, int) else None
-
-    def _is_within(self, value: ir.Ir, table: str) -> bool:
-        """Whether a value is of a colour set: all values of its type are, or it is put together from variables."""
-        if not is_restricted(self._descriptors, table):
-            return True
-        if isinstance(value, ir.Bound):
-            return self._tables[value.index] == table
-        own = self._descriptors[table]
-        number = self._number(value)
-        if number is not None and own.low is not None and own.high is not None:
-            return not own.member and own.low <= number <= own.high
-        if not isinstance(value, ir.MakeStruct) or own.member:
-            return False
-        parts = dict(own.fields)
-        return all(
-            label in parts and self._is_within(part, parts[label]) for label, part in value.fields
-        )

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from pn2code.diagnostics import Origin
 from pn2code.emission import c_orders, c_packed
-from pn2code.emission.c_expressions import Expressions, Types
+from pn2code.emission.c_expressions import Expressions
+from pn2code.emission.c_net_statements import NetStatements
 from pn2code.emission.c_own import OwnPlaces
-from pn2code.emission.c_shared import share, tables
-from pn2code.emission.c_statements import Statements
-from pn2code.emission.c_values import constant
+from pn2code.emission.c_types import Types
 from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import NetIR
@@ -28,7 +27,6 @@ class Frame:
         self._definitions = {d.name: d for d in net.definitions}
         self._types = Types(self._names, self._definitions)
         self._descriptors = {d.name: d for d in net.descriptors}
-        self._constants = {g.name: value for g in net.globals if (value := constant(g)) is not None}
         self._functions = {f.key: f for f in net.functions}
         self._blocks: dict[str, tuple[str, str, Origin]] = {}
         self._place_names = tuple(self._names.place(p.index, p.name) for p in net.places)
@@ -57,15 +55,6 @@ class Frame:
         self._referring = tuple(p.index for p in net.places if p.refers)
         self._kept = tuple(map(self._kept_in, net.places))
         self._room = self._rooms_of_arrays()
-        # Explorers have a function for each instance, so that the compiler can put it where it is called.
-        self._shared = share(
-            net.transitions, lambda a, b: not net.has_successors and self._agree(a, b)
-        )
-        self._place_tables = tables(self._shared)
-
-    def _agree(self, a: int, b: int) -> bool:
-        """Whether two places are kept in the same way, and hold the same colours."""
-        return a == b or (self._kept[a] != "" and self._kept[a] == self._kept[b])
 
     def _kept_in(self, p: ir.Place) -> str:
         """The stem of the C type that holds the tokens of a place, and of its functions; "": it is packed."""
@@ -90,7 +79,7 @@ class Frame:
 
     def _printer(
         self, statements: tuple[ir.Stmt, ...], binding: str = "", own: OwnPlaces | None = None
-    ) -> tuple[Statements, Expressions, Scope]:
+    ) -> tuple[NetStatements, Expressions, Scope]:
         scope = Scope()
         x = Expressions(self._types, self._net.real_time, scope, binding)
         x.functions = self._functions
@@ -102,7 +91,7 @@ class Frame:
         x.packed = self._packed
         x.slots = self._slots
         x.global_hints = {g.name: g.hint for g in self._net.globals}
-        s = Statements(self._types, x, scope, self._net.real_time)
+        s = NetStatements(self._types, x, scope, self._net.real_time)
         s.bags = self._bags
         s.timed = self._timed
         s.slots = self._slots

@@ -2,18 +2,8 @@
 
 from __future__ import annotations
 
-import re
-
 WIDTH = 100
 """Columns of a line of generated C."""
-
-_APART = re.compile(r'"(?:[^"\\]|\\.)*"|/\*.*?\*/', re.S)
-"""Strings and comments of C."""
-
-
-def mentions(variable: str, code: str) -> bool:
-    """Whether C code uses a variable: not a member of that name, nor a word in a string or comment."""
-    return re.search(rf"(?<![.>\w]){variable}\b", _APART.sub("", code)) is not None
 
 
 def wrap(line: str, width: int = WIDTH) -> list[str]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from pn2code.emission.c_expressions import Types
+from pn2code.emission.c_types import Types
 from pn2code.emission.names import Names, label
 from pn2code.ir.nodes import Descriptor, Rep
 

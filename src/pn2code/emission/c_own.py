@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
-from pn2code.emission.c_lines import mentions
 from pn2code.emission.names import Scope
+from pn2code.ir.nodes import Access
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,11 +53,10 @@ class OwnPlaces:
             texts[place] = pattern.format(member)
         return tuple(texts)
 
-    def reach(self, lines: Sequence[str], is_const: bool) -> list[str]:
-        """What has to stand before these lines."""
-        text = "\n".join(lines)
-        reached = [p for p, member in self.members.items() if mentions(f"at_{member}", text)]
-        if not reached and not mentions("own", text):
+    def reach(self, access: Access, is_const: bool) -> list[str]:
+        """What has to stand before the lines of a program that names these places; `is_const`: it changes nothing."""
+        reached = [p for p in self.members if p in access.holders]
+        if not reached and not any(p in access.tables for p in self.members):
             return []
         constant, call = ("const ", "pn_bag_look") if is_const else ("", "pn_bag_reach")
         return [

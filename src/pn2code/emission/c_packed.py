@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from pn2code.emission.c_expressions import PackedPlace, Types, c_integer
+from pn2code.emission.c_expressions import PackedPlace
+from pn2code.emission.c_literals import c_integer
+from pn2code.emission.c_types import Types
 from pn2code.emission.names import Names, label
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Descriptor, Rep

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from pn2code.emission.c_expressions import c_integer
 from pn2code.emission.c_lines import WIDTH, wrap
+from pn2code.emission.c_literals import c_integer
 from pn2code.emission.environment import c_bool, c_float, c_string
 from pn2code.ir import nodes as ir
 

@@ -1,27 +1,18 @@
-"""IR statements -> lines of C."""
+"""IR statements of functions -> lines of C; those of transitions are printed by `c_net_statements`."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-
-from pn2code.emission.c_expressions import (
-    Expressions,
-    PackedPlace,
-    Types,
-    c_bytes,
-)
+from pn2code.emission.c_expressions import Expressions
 from pn2code.emission.c_lines import WIDTH, wrap
-from pn2code.emission.c_sums import SumFunction
-from pn2code.emission.c_values import SCALARS
+from pn2code.emission.c_literals import c_bytes
+from pn2code.emission.c_types import Types
 from pn2code.emission.environment import c_comment
 from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
-from pn2code.ir.calls import ir_nodes
 from pn2code.ir.nodes import Ir, Rep, Stmt
 from pn2code.lowering.expressions.values import is_atomic
-from pn2code.lowering.passes.moves import is_pair
 
-_INDENT = "    "
+INDENT = "    "
 
 
 class Statements:
@@ -42,24 +33,11 @@ class Statements:
         self.result: str | None = None
         self.is_looping = False
         self.is_void = False
-        self.tables_of_places: tuple[str, ...] = ()
-        self.bags: tuple[str, ...] = ()
-        self.timed: tuple[bool, ...] = ()
-        self.slots: frozenset[int] = frozenset()
-        self.token_types: tuple[ir.IrType, ...] = ()
-        self.sums: Mapping[tuple[int, Ir], SumFunction] = {}
-        self.number_of: Callable[[str], str] = lambda key: ""  # "": not by number
-        self.moves = "moves"
-        self.variable_types: tuple[ir.IrType, ...] = ()
-        self.keeps = False
-        self.is_flat = False
-        self.may_fail = False
-        self.releases = True
         self._loops = 0
 
     def line(self, text: str) -> None:
         """One line at the present depth, broken if it is long."""
-        self.lines.extend(wrap(_INDENT * self._depth + text))
+        self.lines.extend(wrap(INDENT * self._depth + text))
 
     def note(self, text: str) -> None:
         """A comment line, shortened if it is very long."""
@@ -72,7 +50,7 @@ class Statements:
         """One line with its comment behind it, or before it where that is too long."""
         clean = c_comment(note)
         whole = f"{text} /* {clean} */" if clean else text
-        if len(_INDENT * self._depth + whole) <= WIDTH:
+        if len(INDENT * self._depth + whole) <= WIDTH:
             self.line(whole)
         else:
             self.note(note)
@@ -90,35 +68,8 @@ class Statements:
         for s in statements:
             self.statement(s)
 
-    def _next(self) -> None:
-        """Goes on with the next candidate."""
-        if self._loops:
-            self.line(_INDENT + "continue;")
-        else:
-            self._depth += 1
-            self.finish_search()
-            self._depth -= 1
-        self.line("}")
-
-    def finish_search(self) -> None:
-        """The end of an enumeration that was not stopped."""
-        if self.keeps and self.releases and self.is_flat:
-            self.line("pn_arena_release(cx->arena, mark);")
-        elif self.keeps and self.releases:
-            self.line("if (!is_kept) {")
-            self.line(_INDENT + "pn_arena_release(cx->arena, mark);")
-            self.line("}")
-        self.line("return;" if self.is_void else "return true;")
-
-    def end_search(self) -> None:
-        """What stands last in the function; without loops that is the only call of the sink."""
-        if not self.is_flat:
-            self.finish_search()
-
     def _declaration(self, local: ir.Local) -> str:
         return f"{self._types.name(local.type)} {self._x.local(local)}"
-
-    # --- statements ----------------------------------------------------------------------------
 
     def statement(self, s: Stmt) -> None:
         """Print one statement."""
@@ -143,9 +94,9 @@ class Statements:
             case ir.While():
                 self.line("while (pn_goes_on(cx)) {")
                 self.block(s.setup)
-                self.line(f"{_INDENT}if (!({self._x.text(s.condition)})) {{")
-                self.line(f"{_INDENT * 2}break;")
-                self.line(f"{_INDENT}}}")
+                self.line(f"{INDENT}if (!({self._x.text(s.condition)})) {{")
+                self.line(f"{INDENT * 2}break;")
+                self.line(f"{INDENT}}}")
                 self.block(s.body)
                 self.line("}")
             case ir.ForList():
@@ -173,7 +124,7 @@ class Statements:
             case ir.Note(text=text):
                 self.note(text)
             case _:
-                self._net_statement(s)
+                self._other(s)
 
     def _discard(self, value: Ir) -> None:
         """Evaluate for what it does."""
@@ -191,7 +142,7 @@ class Statements:
         fresh = self._scope.name(("new value", id(s)), "new_value")
         self.line(f"const {t} {fresh} = {value};")
         self.line("if (pn_ok(cx)) {")
-        self.line(f"{_INDENT}{name} = {fresh};")
+        self.line(f"{INDENT}{name} = {fresh};")
         self.line("}")
 
     def _set_contents(self, s: ir.SetContents) -> None:
@@ -203,7 +154,7 @@ class Statements:
             self.line(f"const {self._types.name(s.value.type)} {fresh} = {text};")
             text = fresh
         self.line("if (pn_ok(cx)) {")
-        self.line(f"{_INDENT}{target} = {text};")
+        self.line(f"{INDENT}{target} = {text};")
         self.line("}")
 
     def _if(self, s: ir.If, prefix: str = "") -> None:
@@ -273,263 +224,9 @@ class Statements:
         for p, name in fresh:
             self.line(f"{self._x.local(p)} = {name};")
 
-    # --- statements of transitions -------------------------------------------------------------
-
-    def _net_statement(self, s: Stmt) -> None:
-        match s:
-            case ir.ForTokens():
-                self._for_tokens(s)
-            case ir.ForValues():
-                self._for_values(s)
-            case ir.Bind(variable=variable, value=value):
-                target = self._x.text(ir.Bound(variable, self.variable_types[variable]))
-                self.line(f"{target} = {self._x.text(value)};")
-            case ir.Unless(condition=condition, note=note):
-                test = self._x.text(ir.Op("Bool.not", (condition,), ir.BOOL))
-                self.line_with_note(f"if ({test}) {{", note)
-                self._next()
-            case ir.UnlessLegal(variable=variable, table=table):
-                pointer = self._x.address(ir.Bound(variable, self.variable_types[variable]))
-                number_of = self.number_of(table)
-                if number_of:
-                    self.line(f"if ({number_of}({pointer}) == PN_NO_COLOUR) {{")
-                else:
-                    self.line(f"if (!pn_is_legal(cx, &{self._names.table(table)}, {pointer})) {{")
-                self._next()
-            case ir.UnlessAvailable():
-                self._unless_available(s)
-            case ir.UnlessBind():
-                self.line('if (pn_is_raised(cx, "Bind")) {')
-                self.line(f"{_INDENT}pn_clear_error(cx);")
-                self._next()
-            case ir.UnlessHeld():
-                if s.place in self.slots:
-                    text, pointer = self._x.inside(s.value, 10), self._x.address(s.value)
-                    differs = self._differs(s.place, text, pointer)
-                    self.line_with_note(f"if ({differs}) {{", s.note)
-                    self._next()
-                    return
-                if s.note:
-                    self.note(s.note)
-                pointer = self._x.address(s.value)
-                if self.timed[s.place]:
-                    bag = self.bags[s.place]
-                    held = f"pn_bag_count({bag}, m, {pointer}, {self._x.time(s.limit)})"
-                else:
-                    held = self._x.call(s.place, "held", pointer)
-                self.line(f"if ({held} < {s.count}U) {{")
-                self._next()
-            case ir.UnlessEmpty(place=place, note=note):
-                self.note(note)
-                if self.timed[place]:
-                    self.line(f"if (pn_bag_available({self.bags[place]}, m, cx->now) > 0U) {{")
-                elif self._packed(place):
-                    self.line(f"if (!{self._x.place_names[place]}_is_empty(m)) {{")
-                elif place in self.slots:
-                    self.line(f"if ({self._x.tokens[place]}full) {{")
-                else:
-                    self.line(f"if ({self._x.tokens[place]}used > 0U) {{")
-                self._next()
-            case ir.Wanted(takes=takes):
-                self._wanted(takes)
-            case ir.Yield():
-                self._yield()
-            case ir.Take() | ir.Put():
-                self._move(s)
-            case ir.TakeAll() | ir.PutAll():
-                self._moves(s)
-            case ir.Threshold(place=place, delay=delay, note=note):
-                self.note(note)
-                bag, time = self.bags[place], self._x.time(delay)
-                self.line(f"pn_bag_threshold({bag}, m, cx->now, {time}, found, next);")
-            case ir.Reset(place=place, note=note):
-                self.note(note)
-                self.line(f"pn_moves_reset(&{self.moves}, {self.bags[place]}, cx->now);")
-
-    def _packed(self, place: int) -> PackedPlace | None:
-        return self._x.packed[place] if self._x.packed else None
-
-    def _for_colours(self, s: ir.ForTokens, packed: PackedPlace) -> None:
-        """The loop over the tokens of a packed place: over the numbers of the colours of which there are some."""
-        i = self._x.local(s.index)
-        place = self._x.place_names[s.place]
-        start, step = f"{i} = {place}_next(m, 0U)", f"{i} = {place}_next(m, {i} + 1U)"
-        self.note(s.note)
-        self.line(f"for (uint32_t {start}; {i} < {packed.colours}U; {step}) {{")
-        self._loops += 1
-        if any(isinstance(n, ir.TokenValue) and n.index == s.index for n in ir_nodes(s.body)):
-            t = self._types.name(self.token_types[s.place])
-            token = self._x.token(s.place, s.index)
-            self.line(f"{_INDENT}const {t} {token} = {packed.colour_of}({i});")
-        self.block(s.body)
-        self._loops -= 1
-        self.line("}")
-
-    def _for_tokens(self, s: ir.ForTokens) -> None:
-        packed = self._packed(s.place)
-        if packed:
-            self._for_colours(s, packed)
-            return
-        if s.place in self.slots:
-            self.line_with_note(f"if (!{self._x.tokens[s.place]}full) {{", s.note)
-            self._next()
-            self.body(s.body)
-            return
-        i = self._x.local(s.index)
-        tokens = self._x.tokens[s.place]
-        self.note(s.note)
-        self.line(f"for (uint32_t {i} = 0U; {i} < {tokens}used; {i}++) {{")
-        self._loops += 1
-        if self.timed[s.place]:
-            self._depth += 1
-            self.note(
-                "tokens of one value lie together, the earliest first: look at each value once"
-            )
-            table = self.tables_of_places[s.place]
-            token = f"{tokens}token"
-            self.line(
-                f"if (({i} > 0U) && pn_same(&{table}, &{token}[{i}].value, &{token}[{i} - 1U].value)) {{"
-            )
-            self._next()
-            self._depth -= 1
-        self.block(s.body)
-        self._loops -= 1
-        self.line("}")
-
-    def _for_values(self, s: ir.ForValues) -> None:
-        table = self._names.table(s.table)
-        i = self._scope.name(("values", s.variable), "number")
-        value = self._x.address(ir.Bound(s.variable, self.variable_types[s.variable]))
-        self.note(s.note)
-        self.line(f"for (uint64_t {i} = 0U; {i} < pn_type_size(&{table}); {i}++) {{")
-        self._loops += 1
-        self.line(f"{_INDENT}pn_type_value(&{table}, {i}, {value});")
-        self.block(s.body)
-        self._loops -= 1
-        self.line("}")
-
-    def _differs(self, place: int, value: str, pointer: str) -> str:
-        """Whether a slot does not hold a value, as a C condition: the value is given as C, and by its address."""
-        slot = self._x.tokens[place]
-        rep = self.token_types[place].rep
-        if rep is Rep.UNIT:
-            return f"!{slot}full"
-        if rep in SCALARS:
-            return f"!{slot}full || ({slot}value != {value})"
-        table = self.tables_of_places[place]
-        return f"!{slot}full || !pn_same(&{table}, &{slot}value, {pointer})"
-
-    def _unless_available(self, s: ir.UnlessAvailable) -> None:
-        if s.place in self.slots:
-            return  # there is one
-        if self._packed(s.place):
-            count = f"{self._x.place_names[s.place]}_count_of(m, {self._x.local(s.index)})"
-            self.line(f"if ({count} < {s.count}U) {{")
-            self._next()
-            return
-        token = f"{self._x.tokens[s.place]}token[{self._x.local(s.index)}]"
-        if s.limit is None:
-            self.line(f"if ({token}.count < {s.count}U) {{")
-        else:
-            member = "real" if self._real_time else "integer"
-            self.line(f"if ({token}.stamp.{member} > {self._x.inside(s.limit, 10)}) {{")
-        self._next()
-
-    def _wanted(self, takes: tuple[Stmt, ...]) -> None:
-        if is_pair(takes, self.timed) and not any(
-            isinstance(s, ir.Take) and s.place in self.slots for s in takes
-        ):
-            self._wanted_pair(takes)
-            return
-        holds = self._scope.name(("holds", id(takes)), "holds")
-        first = takes[0]
-        known = (
-            self.sums.get((first.place, first.multiset))
-            if len(takes) == 1 and isinstance(first, ir.TakeAll)
-            else None
-        )
-        if known is None:
-            self._work_out_wanted(takes, f"const bool {holds}")
-        else:
-            place = self._x.place_names[known.of.place]
-            total = self._scope.name(("sum", id(takes)), "sum")
-            self.note(known.of.note)
-            self.line(f"const uint64_t *const {total} = {known.name}(cx, &b);")
-            self.line(f"bool {holds} = false;")
-            self.line(f"if ({total} != NULL) {{")
-            self.line(f"{_INDENT}{holds} = {place}_has_sum(m, {total});")
-            self.line("} else {")
-            self._depth += 1
-            self._work_out_wanted(takes, holds)
-            self._depth -= 1
-            self.line("}")
-        self.line(f"if (!{holds}) {{")
-        self._next()
-
-    def _work_out_wanted(self, takes: tuple[Stmt, ...], holds: str) -> None:
-        """Assigns to `holds` whether there are all tokens."""
-        name = self._scope.name(("wanted", id(takes)), "wanted")
-        before, self.moves = self.moves, name
-        mark = self._scope.name(("mark", id(takes)), "start")
-        if self.releases:
-            self.line(f"const size_t {mark} = pn_arena_mark(cx->arena);")
-        self.line(f"pn_moves_t {name};")
-        self.line(f"pn_moves_init(&{name}, cx);")
-        self.body(takes)
-        self.line(f"{holds} = pn_moves_are_possible(&{name}, m);")
-        if self.releases:
-            self.line(f"pn_arena_release(cx->arena, {mark});")
-        self.moves = before
-
-    def _wanted_pair(self, takes: tuple[Stmt, ...]) -> None:
-        values = []
-        for note in dict.fromkeys(s.note for s in takes if isinstance(s, ir.Take) and s.note):
-            self.note(note)
-        for s in takes:
-            if isinstance(s, ir.Take):
-                values.append(self._x.address(s.value))
-                place = s.place
-            else:
-                self.statement(s)
-        self.line(f"if (!{self._x.call(place, 'holds', *values)}) {{")
-        self._next()
-
-    def _yield(self) -> None:
-        if self.may_fail:
-            self.line("if (!pn_ok(cx)) {")
-            self.line(f"{_INDENT}return true;")
-            self.line("}")
-        if self.is_flat:
-            self.line("return sink(user, self, &b);")
-            return
-        if self.keeps and self.releases:
-            self.line("is_kept = true;")
-        self.line("if (!sink(user, self, &b)) {")
-        self.line(f"{_INDENT}return false;")
-        self.line("}")
-
-    def _move(self, s: ir.Take | ir.Put) -> None:
-        if s.note:
-            self.note(s.note)
-        verb, time = ("take", s.limit) if isinstance(s, ir.Take) else ("put", s.stamp)
-        parts = [
-            f"&{self.moves}", f"{self.bags[s.place]}", self._x.address(s.value), self._x.text(s.count),
-            self._x.time(time),
-        ]  # fmt: skip
-        self.line(f"pn_moves_{verb}({', '.join(parts)});")
-
-    def _moves(self, s: ir.TakeAll | ir.PutAll) -> None:
-        if s.note:
-            self.note(s.note)
-        if isinstance(s, ir.TakeAll):
-            verb, time = "take_list", s.limit
-        else:
-            verb, time = ("put_timed" if s.timed else "put_list"), s.stamp
-        parts = [
-            f"&{self.moves}", f"{self.bags[s.place]}", f"&{self._names.table(s.table)}",
-            self._x.text(s.multiset), self._x.time(time),
-        ]  # fmt: skip
-        self.line(f"pn_moves_{verb}({', '.join(parts)});")
+    def _other(self, s: Stmt) -> None:
+        """A statement that functions do not have."""
+        raise AssertionError(f"not a statement of a function: {type(s).__name__}")
 
 
 _ERRORS = {

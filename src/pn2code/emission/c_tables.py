@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from pn2code.emission.c_expressions import Types, c_big_initialiser, c_integer
 from pn2code.emission.c_lines import wrap
+from pn2code.emission.c_literals import c_big_initialiser, c_integer
+from pn2code.emission.c_types import Types
 from pn2code.emission.environment import c_comment, c_float, c_string
 from pn2code.emission.names import label
 from pn2code.ir import nodes as ir

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pn2code.diagnostics import Origin
-from pn2code.emission.c_expressions import c_big_initialiser
+from pn2code.emission.c_literals import c_big_initialiser
 from pn2code.emission.environment import c_comment
 from pn2code.ir.nodes import Rep
 

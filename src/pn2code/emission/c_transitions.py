@@ -5,10 +5,8 @@ from __future__ import annotations
 from pn2code.emission import c_rows, c_sums
 from pn2code.emission.c_firing import DirectFiring
 from pn2code.emission.c_frame import Frame
-from pn2code.emission.c_lines import mentions
+from pn2code.emission.c_net_statements import NetStatements
 from pn2code.emission.c_own import OwnPlaces
-from pn2code.emission.c_shared import PlaceTable, Shared, path_of
-from pn2code.emission.c_statements import Statements
 from pn2code.emission.c_sums import SumFunction
 from pn2code.emission.c_texts import where
 from pn2code.emission.environment import c_comment
@@ -16,26 +14,27 @@ from pn2code.emission.names import Members
 from pn2code.emission.needs import SIDE
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
+from pn2code.ir.nodes import PlaceTable, Shared
 
 
 class Transitions(Frame):
     """Those of one net."""
 
+    def _model(self, shared: Shared) -> ir.Transition:
+        """The instance from which the code is made."""
+        return self._net.transitions[shared.instances[0]]
+
     def _own_places(self, shared: Shared) -> OwnPlaces | None:
         """How the code of a transition of several instances reaches the places that each has for its own."""
-        for table in self._place_tables:
-            if shared.varying and (table.page, table.paths) == (shared.page, shared.paths):
-                kept = {p: self._kept[p] for p in shared.varying}
-                return OwnPlaces(
-                    self._names.page_places(table.page, table.paths),
-                    {p: self._member_of(table, shared, p) for p in shared.varying},
-                    kept,
-                )
-        return None
-
-    def _member_of(self, table: PlaceTable, shared: Shared, place: int) -> str:
-        own = tuple(row[shared.varying.index(place)] for row in shared.at)
-        return self._member_names(table)[list(zip(*table.rows, strict=True)).index(own)]
+        if shared.table is None:
+            return None
+        table = self._net.place_tables[shared.table]
+        members = self._member_names(table)
+        return OwnPlaces(
+            self._names.page_places(table.page, table.paths),
+            {p: members[c] for p, c in zip(shared.varying, shared.columns, strict=True)},
+            {p: self._kept[p] for p in shared.varying},
+        )
 
     def _member_names(self, table: PlaceTable) -> tuple[str, ...]:
         members = Members()
@@ -61,10 +60,10 @@ class Transitions(Frame):
 
     def _stem(self, shared: Shared) -> str:
         """The stem of the names of what is printed for a transition."""
-        t = shared.model
+        t = self._model(shared)
         if len(shared.instances) == 1:
             return self._names.transition(t.index, t.name)
-        return self._names.page_transition(t.index, shared.page, t.name.rsplit(".", 1)[-1])
+        return self._names.page_transition(t.index, t.origin.page, t.short)
 
     def _row(self, t: ir.Transition, shared: Shared, code: dict[str, object]) -> dict[str, object]:
         """What the tables of hosts say of one instance."""
@@ -75,7 +74,7 @@ class Transitions(Frame):
             counting = c_rows.counting(
                 f"s_counts_of_{stem}", t, self._key if self._has_words else None
             )
-        further = [f".places = &{self._names.instance(path_of(t), own.struct)}"] if own else []
+        further = [f".places = &{self._names.instance(t.path, own.struct)}"] if own else []
         if not counting:
             further += [f".successors = {stem}_successors"] if self._net.has_successors else []
             further += [f".words = {stem}_words"] if self._has_words else []
@@ -98,22 +97,22 @@ class Transitions(Frame):
 
     def _binding_name(self, shared: Shared) -> str:
         """The name of the instance, or of the page's transition where there are several."""
-        t = shared.model
-        is_one = len(shared.instances) == 1
-        return t.name if is_one else f"{shared.page}.{t.name.rsplit('.', 1)[-1]}"
+        t = self._model(shared)
+        return t.name if len(shared.instances) == 1 else f"{t.origin.page}.{t.short}"
 
     def _title(self, shared: Shared) -> list[str]:
         """The element of the net, and all of its instances that the code is of."""
-        t = shared.model
+        t = self._model(shared)
         element = f"{t.origin.describe()}, {where(t.origin)}"
         if len(shared.instances) == 1:
             return [c_comment(f"transition {t.name}: {element}")]
-        instances = [f"    {c_comment(x.name)}" for x in shared.instances]
+        names = [self._net.transitions[i].name for i in shared.instances]
+        instances = [f"    {c_comment(name)}" for name in names]
         return [c_comment(f"transition: {element}, at all of these:"), *instances]
 
     def _counting(self, shared: Shared) -> dict[str, object]:
         """What is printed of a transition that only counts: it looks at nothing and assigns nothing."""
-        t, name = shared.model, self._stem(shared)
+        t, name = self._model(shared), self._stem(shared)
         return {
             "marks": [self._block(t.name, "transition", t.origin)],
             "index": t.index,
@@ -128,9 +127,9 @@ class Transitions(Frame):
         }
 
     def _transition(self, shared: Shared) -> dict[str, object]:
-        if shared.model.counts is not None:
+        t = self._model(shared)
+        if t.counts is not None:
             return self._counting(shared)
-        t = shared.model
         name, own = self._stem(shared), self._own_places(shared)
         members = Members()
         variables = tuple(members.name(i, v.name) for i, v in enumerate(t.variables))
@@ -148,12 +147,14 @@ class Transitions(Frame):
         search.body(t.enumerate)
         search.end_search()
         fire = self._firing(t, t.is_direct, variables, own, name)
-        has_lists = t.is_direct and any(isinstance(s, ir.TakeAll | ir.PutAll) for s in t.fire)
-        lists = self._firing(t, False, variables, own, name) if has_lists else None
+        lists = self._firing(t, False, variables, own, name) if t.lists_access else None
         thresholds = self._thresholds(t, variables, own)
-        text = "\n".join(fire.lines)
+        called = {*t.search_access.sums, *t.fire_access.sums}
         return {
-            "marks": [self._block(x.name, "transition", x.origin) for x in shared.instances],
+            "marks": [
+                self._block(x.name, "transition", x.origin)
+                for x in (self._net.transitions[i] for i in shared.instances)
+            ],
             "index": t.index,
             "search_draws": t.effects.search_draws,
             "fire_draws": t.effects.fire_draws,
@@ -175,23 +176,25 @@ class Transitions(Frame):
             "keeps": search.keeps and search.releases,
             "is_flat": search.is_flat,
             "search": search.lines,
-            "search_reach": own.reach(search.lines, is_const=True) if own else [],
+            "search_reach": own.reach(t.search_access, is_const=True) if own else [],
             "thresholds": thresholds,
-            "thresholds_reach": own.reach(thresholds, is_const=True) if own else [],
+            "thresholds_reach": own.reach(t.thresholds_access, is_const=True) if own else [],
             "thresholds_draw": t.effects.thresholds_draw,
             "fire": fire.lines,
-            "fire_reach": own.reach(fire.lines, is_const=False) if own else [],
+            "fire_reach": own.reach(t.fire_access, is_const=False) if own else [],
             "is_counting": False,
             "is_direct": t.is_direct,
             "sums": [
                 self._sum_function(s, t, name, variables)
-                for s in sums.values()
-                if any(f"{s.name}(" in line for line in search.lines + fire.lines)
+                for number, s in enumerate(sums.values())
+                if number in called
             ],
             "lists": lists.lines if lists else [],
-            "lists_reach": own.reach(lists.lines, is_const=False) if own and lists else [],
-            "lists_use_binding": lists is not None and mentions("b", "\n".join(lists.lines)),
-            "uses_binding": mentions("b", text),
+            "lists_reach": own.reach(t.lists_access, is_const=False)
+            if own and t.lists_access
+            else [],
+            "lists_use_binding": t.lists_access is not None and t.lists_access.binding,
+            "uses_binding": t.fire_access.binding,
             "touched_bags": [
                 self._place_names[i] for i in t.effects.touched if not self._net.places[i].packed
             ],
@@ -239,7 +242,7 @@ class Transitions(Frame):
         variables: tuple[str, ...],
         own: OwnPlaces | None,
         name: str,
-    ) -> Statements:
+    ) -> NetStatements:
         printer, x, scope = self._printer(t.fire, "b->", own)
         x.variables = variables
         if is_direct:
@@ -249,17 +252,12 @@ class Transitions(Frame):
                 x,
                 scope,
                 self._net.real_time,
-                descriptors=self._descriptors,
-                tables=tuple("" if v.is_output else v.table for v in t.variables),
-                place_tables=tuple(p.table for p in self._net.places),
                 puts_back=not self._net.has_successors,
             )
             direct.bags, direct.timed = printer.bags, printer.timed
             direct.tables_of_places = printer.tables_of_places
             direct.token_types = printer.token_types
             direct.slots = self._slots
-            direct.references = frozenset(g.name for g in self._net.globals if g.is_reference)
-            direct.constants = self._constants
             direct.sums = self._sums(t)
             direct.otherwise = f"{name}_fire_lists(cx, m, self, b)"
             direct.variable_types = tuple(v.type for v in t.variables)

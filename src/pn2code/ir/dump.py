@@ -48,6 +48,21 @@ class _Dump:
         for t in net.transitions:
             if only in t.name:
                 yield from self._transition(t)
+        yield from self._shared(only)
+
+    def _shared(self, only: str) -> Iterator[str]:
+        """Which transitions have one C function, and which places stand in it for others."""
+        for shared in self._net.shared:
+            names = [self._net.transitions[i].name for i in shared.instances]
+            if len(names) == 1 or not any(only in name for name in names):
+                continue
+            yield f"shared by {', '.join(names)}"
+            if shared.table is None:
+                continue
+            table = self._net.place_tables[shared.table]
+            for column in shared.columns:
+                places = (self._place_name(row[column]) for row in table.rows)
+                yield f"  {table.names[column]} is {', '.join(places)}"
 
     @staticmethod
     def _definition(d: ir.Definition) -> str:
@@ -66,7 +81,7 @@ class _Dump:
 
     def _globals(self) -> Iterator[str]:
         for g in self._net.globals:
-            flags = _flags(held=g.is_held)
+            flags = _flags(held=g.is_held, constant=g.constant is not None)
             yield f"{'ref' if g.is_reference else 'val'} {g.name}: {g.type}{flags}"
             yield from self._block(g.setup, 1)
         if self._net.roots:
@@ -83,6 +98,11 @@ class _Dump:
             yield f"allocates in {', '.join(used.makers)}"
         if self._net.has_moves:
             yield "has lists of moves"
+        arena = self._net.arena
+        if arena.bytes is None:
+            yield f"arena not proven: {arena.why}"
+        else:
+            yield f"arena {arena.bytes:,} bytes"
 
     def _use(self, f: ir.Function) -> str:
         used = self._net.used
@@ -101,7 +121,7 @@ class _Dump:
     def _place(self, p: ir.Place) -> Iterator[str]:
         timed = " timed" if p.timed else ""
         added = f" + {p.added}" if p.added else ""
-        flags = _flags(slot=p.is_slot, refers=p.refers)
+        flags = _flags(slot=p.is_slot, refers=p.refers, arrives=p.arrives)
         yield f"place {p.index} {p.name} : {p.colset}{timed} capacity {p.capacity}{added} owner {p.owner}{flags}"
         yield from self._block(p.initial, 1)
 
@@ -114,6 +134,14 @@ class _Dump:
         if t.staying:
             yield f"  stays {', '.join(self._staying(t))}"
         yield from self._effects(t.effects)
+        for what, access in (
+            ("search", t.search_access),
+            ("fire", t.fire_access),
+            ("fire by lists", t.lists_access),
+            ("thresholds", t.thresholds_access),
+        ):
+            if access is not None and (said := self._access(access)):
+                yield f"  {what} names {said}"
         for found in t.sums:
             place, x = self._place_name(found.place), self._expression
             yield f"  once for each of {found.count} {place} {x(found.multiset)}{_note(found.note)}"
@@ -135,6 +163,13 @@ class _Dump:
             take = t.fire[position]
             assert isinstance(take, ir.Take)
             yield self._move(take.place, take.count, take.value, None)
+
+    def _access(self, a: ir.Access) -> str:
+        """What a program names in C; "": nothing."""
+        parts = [self._place_name(p) for p in a.holders]
+        parts += [f"table of {self._place_name(p)}" for p in a.tables]
+        parts += [f"sum {number + 1}" for number in a.sums]
+        return ", ".join([*parts, "binding"] if a.binding else parts)
 
     def _effects(self, e: Effects) -> Iterator[str]:
         for verb, places in (("reads", e.read), ("touches", e.touched)):
@@ -234,9 +269,13 @@ class _Dump:
             case ir.Yield():
                 return "yield"
             case ir.Take():
-                return f"take {self._move(s.place, s.count, s.value, s.limit)}{_note(s.note)}"
+                flags = _flags(found=s.is_found)
+                return (
+                    f"take {self._move(s.place, s.count, s.value, s.limit)}{flags}{_note(s.note)}"
+                )
             case ir.Put():
-                return f"put {self._move(s.place, s.count, s.value, s.stamp)}{_note(s.note)}"
+                flags = _flags(legal=s.is_legal)
+                return f"put {self._move(s.place, s.count, s.value, s.stamp)}{flags}{_note(s.note)}"
             case ir.TakeAll():
                 return f"take all {self._place_name(s.place)} {x(s.multiset)}{_note(s.note)}"
             case ir.PutAll():

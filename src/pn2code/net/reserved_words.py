@@ -101,7 +101,7 @@ def _opening(dec: s.Dec) -> Span | None:
             return node.span
         if isinstance(node, tuple):
             todo.extend(node)
-        elif type(node).__module__ == s.__name__:
+        elif s.is_node(node):
             slots = getattr(type(node), "__slots__", ())
             todo.extend(getattr(node, name) for name in slots if name != "span")
     return None

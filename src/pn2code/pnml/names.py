@@ -10,14 +10,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from pn2code.ml.library.builtins import (
-    BUILTINS,
-    DATATYPES,
-    EXCEPTIONS,
-    INFIX,
-    STRUCTURES,
-    TYPE_ARITY,
-)
+from pn2code.ml.library.builtins import BUILTINS, INFIX, STRUCTURES
+from pn2code.ml.library.datatypes import DATATYPES, TYPE_ARITY
+from pn2code.ml.library.exceptions import EXCEPTIONS
 
 _LEGAL = re.compile(r"[A-Za-z][A-Za-z0-9_']*")
 _OTHER = re.compile(r"[^A-Za-z0-9_']+")

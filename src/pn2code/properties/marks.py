@@ -102,7 +102,7 @@ def _rewritten(node: Any, change: Callable[[Any], Any]) -> Any:
     if isinstance(node, tuple):
         made = tuple(_rewritten(x, change) for x in node)
         return node if all(a is b for a, b in zip(made, node, strict=True)) else made
-    if not is_dataclass(node) or type(node).__module__ != s.__name__:
+    if not is_dataclass(node) or not s.is_node(node):
         return node
     changed = change(node)
     if changed is not None:

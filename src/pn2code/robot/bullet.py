@@ -36,7 +36,7 @@ from pn2code.robot.commands import Pose
 from pn2code.robot.geometry import Body, Solid, bodies, body_of
 from pn2code.robot.looks import Look
 from pn2code.robot.parts import Part
-from pn2code.robot.scene import CellRobot, RobotCell
+from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, pose_of
 
 _SKY = (148.0, 166.0, 186.0)

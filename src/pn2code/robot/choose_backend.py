@@ -7,7 +7,7 @@ import os
 import sys
 
 from pn2code.robot.backend import Backend, BackendName, BackendUnavailableError
-from pn2code.robot.scene import RobotCell
+from pn2code.robot.robot_cell import RobotCell
 
 _COMPILED = (
     ""

@@ -27,7 +27,7 @@ from pn2code.robot.commands import (
     Wait,
 )
 from pn2code.robot.motion import MotionFault, Still, Trajectory, plan_lin, plan_ptp
-from pn2code.robot.scene import CellRobot, MotionConfig
+from pn2code.robot.robot_cell import CellRobot, MotionConfig
 from pn2code.robot.transforms import Array, describe, difference, inverse, matrix_of, pose_of
 
 CHECK_LENGTH = 0.005  # m: on a line, samples are no further apart than this on average,

@@ -20,7 +20,7 @@ from pn2code.robot import looks
 from pn2code.robot.commands import Pose
 from pn2code.robot.looks import Look
 from pn2code.robot.panel import FLANGE, cut, frame, stand_parts, stand_places, stringers
-from pn2code.robot.scene import PanelConfig, RobotCell
+from pn2code.robot.robot_cell import PanelConfig, RobotCell
 from pn2code.robot.scene_objects import SceneObject
 from pn2code.robot.transforms import Array, matrix_of, pose_of
 

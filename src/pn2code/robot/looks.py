@@ -23,7 +23,7 @@ from pn2code.robot.panel import (
     stand_places,
     stringers,
 )
-from pn2code.robot.scene import PanelConfig
+from pn2code.robot.robot_cell import PanelConfig
 from pn2code.robot.scene_objects import Colour, SceneObject
 from pn2code.robot.transforms import Array, matrix_of
 

@@ -24,7 +24,7 @@ from pn2code.robot.commands import Pose
 from pn2code.robot.executor import MotionKind
 from pn2code.robot.kinematics import Conditioning
 from pn2code.robot.motion import FaultKind
-from pn2code.robot.scene import CellRobot, RobotCell
+from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, describe, pose_of
 
 MeasureName = Literal[

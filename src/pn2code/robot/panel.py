@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from pn2code.robot.scene import PanelConfig
+from pn2code.robot.robot_cell import PanelConfig
 from pn2code.robot.transforms import Array
 
 SEGMENT = math.radians(2.5)

@@ -21,7 +21,7 @@ import numpy as np
 from pn2code.base.frozen import frozen
 from pn2code.robot.commands import Handling, Pose
 from pn2code.robot.parts_table import PartKind
-from pn2code.robot.scene import RobotCell
+from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array, describe, difference, inverse, matrix_of, pose_of
 
 

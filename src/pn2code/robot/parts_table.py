@@ -17,7 +17,8 @@ from pn2code.base.frozen import frozen
 from pn2code.robot import codes
 from pn2code.robot.commands import Pose
 from pn2code.robot.scene_objects import SceneObject, read_shape
-from pn2code.robot.scene_table import NO_POSE, SceneTable, read_own_pose
+from pn2code.robot.table import Table
+from pn2code.robot.table_poses import NO_POSE, read_own_pose
 
 
 @frozen
@@ -39,7 +40,7 @@ class PartKind:
     angle: float = math.radians(5.0)
 
 
-def read_kinds(t: SceneTable, folder: Path) -> dict[str, PartKind]:
+def read_kinds(t: Table, folder: Path) -> dict[str, PartKind]:
     """The kinds of parts, by name; what is wrong is reported."""
     out = {}
     for name in t.data:
@@ -56,7 +57,7 @@ def read_kinds(t: SceneTable, folder: Path) -> dict[str, PartKind]:
     return out
 
 
-def read_places(t: SceneTable) -> dict[str, Pose]:
+def read_places(t: Table) -> dict[str, Pose]:
     """The poses that have a name, in the world."""
     out = {}
     for name in t.data:
@@ -65,7 +66,7 @@ def read_places(t: SceneTable) -> dict[str, Pose]:
     return out
 
 
-def _check_name(t: SceneTable, name: str) -> None:
+def _check_name(t: Table, name: str) -> None:
     if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name):
         t.d.error(
             codes.ROBOT_VALUE,

@@ -11,14 +11,14 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from types import TracebackType
 from typing import Any
 
 import imageio.v2 as imageio
 import numpy as np
 
+from pn2code.base.closing import Closing
 from pn2code.robot.backend import Backend, Camera, Picture
-from pn2code.robot.scene import RobotCell
+from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array
 
 WIDTH, HEIGHT = 1280, 720
@@ -108,7 +108,7 @@ def save(image: Picture | None, path: Path) -> bool:
     return True
 
 
-class Film:
+class Film(Closing):
     """An mp4 (or gif, by the file's suffix) made frame by frame."""
 
     def __init__(
@@ -132,14 +132,3 @@ class Film:
     def close(self) -> None:
         """Finishes the file."""
         self._writer.close()
-
-    def __enter__(self) -> Film:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        error: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()

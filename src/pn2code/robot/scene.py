@@ -1,4 +1,4 @@
-"""The cell as the robots see it: arms, tools, bases, motion limits, scene objects.
+"""Reads the cell as the robots see it from cell.toml: arms, tools, bases, motion limits, scene objects.
 
     cell = load({"robots": ..., "motion": ..., "scene": ...}, folder, at, d)
 
@@ -12,169 +12,27 @@ from __future__ import annotations
 import fnmatch
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes
-from pn2code.robot.commands import Pose
-from pn2code.robot.kinematics import BRANCH_NAMES, Branch, Kinematics
-from pn2code.robot.model import AXES, Arm, Tool, find_arm, find_tool
-from pn2code.robot.motion import MotionLimits
+from pn2code.robot.kinematics import BRANCH_NAMES, Kinematics
+from pn2code.robot.model import AXES, find_arm, find_tool
 from pn2code.robot.parts_table import PartKind, read_kinds, read_places
+from pn2code.robot.robot_cell import (
+    PART_CONTACT,
+    CellRobot,
+    ContactRule,
+    MotionConfig,
+    PanelConfig,
+    RobotCell,
+    SceneConfig,
+)
 from pn2code.robot.scene_objects import SceneObject, read_object
-from pn2code.robot.scene_table import Locate, SceneTable, is_number, read_pose
-from pn2code.robot.transforms import Array, matrix_of
-
-PART_CONTACT = 1e-3
-"""m: parts are taken from what they rest on, and tools touch them: so deep they may overlap."""
-
-
-@frozen
-class MotionConfig:
-    """`[motion]` in SI units.
-
-    Args:
-        joint_speed: fraction (0..1] of the axis speeds.
-        joint_acceleration: rad/s2; joint_jerk rad/s3.
-        linear_speed: m/s; linear_acceleration m/s2; linear_jerk m/s3.
-        angular_speed: of the tool's turning on linear moves, rad/s.
-        measure_duration: how long a measurement takes, s.
-        sample: spacing of the samples that are checked, s.
-    """
-
-    joint_speed: float = 0.5
-    joint_acceleration: float = math.radians(200.0)
-    joint_jerk: float = math.radians(1000.0)
-    linear_speed: float = 0.05
-    linear_acceleration: float = 0.5
-    linear_jerk: float = 5.0
-    angular_speed: float = math.radians(30.0)
-    measure_duration: float = 1.0
-    sample: float = 0.02
-
-
-@frozen
-class PanelConfig:
-    """A piece of a cylindrical shell along x, with ribs and stringers inside; m and rad.
-
-    Args:
-        radius: of the middle of the skin, about the line (y, z) = (axis_y, axis_z).
-        facing: direction of arc angle 0, from +y towards +z.
-        arc_from: the skin's edges, arc angles about +x; arc_to likewise.
-        ribs: x of the ribs; rib_height: how far they stand inwards.
-        stringer_pitch: arc angle between stringers (0: none); none lies at arc angle 0.
-        stands: whether it rests on stands.
-        joint: whether two skins meet at arc angle 0 (drawn as a line).
-    """
-
-    radius: float
-    axis_y: float
-    axis_z: float
-    x_from: float
-    x_to: float
-    arc_from: float
-    arc_to: float
-    facing: float = 0.0
-    skin: float = 0.003
-    ribs: tuple[float, ...] = ()
-    rib_height: float = 0.07
-    rib_thickness: float = 0.006
-    stringer_pitch: float = 0.0
-    stringer_height: float = 0.025
-    stands: bool = True
-    joint: bool = False
-
-
-@frozen
-class ContactRule:
-    """Parts that may come together: names `body/link` with `*`, and how deep they may overlap (m)."""
-
-    a: str
-    b: str
-    depth: float
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class CellRobot:
-    """One robot of the cell.
-
-    Args:
-        base: of its base frame in the world.
-        home: joint position, rad.
-        branch: the only one joint moves may end in; None: the fastest to reach.
-    """
-
-    name: str
-    arm: Arm
-    tool: Tool | None
-    kinematics: Kinematics
-    base: Pose
-    home: tuple[float, ...]
-    branch: Branch | None
-
-    @property
-    def T_world_base(self) -> Array:  # noqa: N802
-        """The base frame."""
-        return matrix_of(self.base)
-
-    def limits(self, motion: MotionConfig) -> MotionLimits:
-        """What this arm may do under a motion configuration."""
-        ones = np.ones(AXES)
-        return MotionLimits(
-            velocity=self.arm.velocity * motion.joint_speed,
-            acceleration=ones * motion.joint_acceleration,
-            jerk=ones * motion.joint_jerk,
-            axis_velocity=self.arm.velocity,
-            linear_velocity=motion.linear_speed,
-            linear_acceleration=motion.linear_acceleration,
-            linear_jerk=motion.linear_jerk,
-            angular_velocity=motion.angular_speed,
-        )
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class SceneConfig:
-    """Everything around the robots.
-
-    Args:
-        contacts: parts that may come together; all others must keep apart.
-        warning_clearance: closer than this (m) is reported, though not a collision.
-    """
-
-    panel: PanelConfig | None = None
-    objects: tuple[SceneObject, ...] = ()
-    floor: bool = True
-    contacts: tuple[ContactRule, ...] = ()
-    warning_clearance: float = 0.02
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class RobotCell:
-    """Robots, motion limits, scene and parts: what backends, monitor and executors are built from.
-
-    Args:
-        parts: the kinds of parts that are carried, by name.
-        places: poses in the world that have a name.
-    """
-
-    robots: tuple[CellRobot, ...]
-    motion: MotionConfig
-    scene: SceneConfig
-    parts: Mapping[str, PartKind] = field(default_factory=dict)
-    places: Mapping[str, Pose] = field(default_factory=dict)
-
-    def robot(self, name: str) -> CellRobot:
-        """The robot of that name; KeyError if there is none."""
-        for robot in self.robots:
-            if robot.name == name:
-                return robot
-        raise KeyError(name)
+from pn2code.robot.table import Locate, Table, is_number
+from pn2code.robot.table_poses import read_pose
 
 
 def load(
@@ -193,19 +51,19 @@ def load(
         partial: robots of which nothing is said are left out; without, it is an error.
     """
     before = len(d.errors)
-    motion = _motion(SceneTable(geometry.get("motion", {}), ("motion",), at, d, geometry))
+    motion = _motion(Table(geometry.get("motion", {}), ("motion",), at, d, geometry))
     robots = tuple(
         robot
         for name, table in geometry.get("robots", {}).items()
         if (table or not partial)
-        and (robot := _robot(SceneTable(table, ("robots", name), at, d, geometry), name, folder))
+        and (robot := _robot(Table(table, ("robots", name), at, d, geometry), name, folder))
         is not None
     )
     names = tuple(geometry.get("robots", {}))
-    kinds = read_kinds(SceneTable(geometry.get("parts", {}), ("parts",), at, d, geometry), folder)
-    places = read_places(SceneTable(geometry.get("places", {}), ("places",), at, d, geometry))
+    kinds = read_kinds(Table(geometry.get("parts", {}), ("parts",), at, d, geometry), folder)
+    places = read_places(Table(geometry.get("places", {}), ("places",), at, d, geometry))
     scene = _scene(
-        SceneTable(geometry.get("scene", {}), ("scene",), at, d, geometry),
+        Table(geometry.get("scene", {}), ("scene",), at, d, geometry),
         robots,
         names,
         kinds,
@@ -214,7 +72,7 @@ def load(
     return RobotCell(robots, motion, scene, kinds, places) if len(d.errors) == before else None
 
 
-def _motion(t: SceneTable) -> MotionConfig:
+def _motion(t: Table) -> MotionConfig:
     out = MotionConfig(
         joint_speed=t.positive("joint_speed", 0.5, high=1.0),
         joint_acceleration=math.radians(t.positive("joint_acceleration_deg_s2", 200.0)),
@@ -230,7 +88,7 @@ def _motion(t: SceneTable) -> MotionConfig:
     return out
 
 
-def _robot(t: SceneTable, name: str, folder: Path) -> CellRobot | None:
+def _robot(t: Table, name: str, folder: Path) -> CellRobot | None:
     t.has("instance", False, "")  # the pages of the net are not our business
     model = t.text("model", None, "the name of a robot model, or a .urdf file")
     arm = find_arm(model, folder, t.at("model"), t.d) if model else None
@@ -261,7 +119,7 @@ def _robot(t: SceneTable, name: str, folder: Path) -> CellRobot | None:
 
 
 def _scene(
-    t: SceneTable,
+    t: Table,
     robots: tuple[CellRobot, ...],
     names: tuple[str, ...],
     kinds: Mapping[str, PartKind],
@@ -287,7 +145,7 @@ def _scene(
     return out
 
 
-def _contact(t: SceneTable, things: list[str]) -> ContactRule:
+def _contact(t: Table, things: list[str]) -> ContactRule:
     """A rule for parts of things that are there."""
     rule = ContactRule(t.text("a"), t.text("b"), t.number("depth", 0.0, low=0.0))
     t.done()
@@ -335,7 +193,7 @@ def _gripping(
     ]
 
 
-def _panel(t: SceneTable) -> PanelConfig:
+def _panel(t: Table) -> PanelConfig:
     out = PanelConfig(
         radius=t.positive("radius"),
         axis_y=t.number("axis_y"),
@@ -362,9 +220,7 @@ def _panel(t: SceneTable) -> PanelConfig:
     return out
 
 
-def _named_once(
-    t: SceneTable, objects: tuple[SceneObject, ...], kinds: Mapping[str, PartKind]
-) -> None:
+def _named_once(t: Table, objects: tuple[SceneObject, ...], kinds: Mapping[str, PartKind]) -> None:
     """Reports names that two objects have: messages and contact rules name them."""
     seen: set[str] = set()
     for o in objects:

@@ -7,7 +7,8 @@ from typing import Literal
 
 from pn2code.base.frozen import frozen
 from pn2code.robot.commands import Pose
-from pn2code.robot.scene_table import SceneTable, read_pose
+from pn2code.robot.table import Table
+from pn2code.robot.table_poses import read_pose
 
 Colour = tuple[float, float, float, float]
 
@@ -34,7 +35,7 @@ class SceneObject:
     scale: float = 1.0
 
 
-def read_colour(t: SceneTable) -> Colour:
+def read_colour(t: Table) -> Colour:
     """Red, green, blue, and how opaque."""
     grey = (0.6, 0.6, 0.62)
     found = t.numbers("colour", None, grey)
@@ -45,7 +46,7 @@ def read_colour(t: SceneTable) -> Colour:
     return (r, g, b, found[3] if len(found) == 4 else 1.0)
 
 
-def read_object(t: SceneTable, folder: Path) -> SceneObject | None:
+def read_object(t: Table, folder: Path) -> SceneObject | None:
     """An entry of `[scene] objects`; None if its kind is unknown, which is reported."""
     name = t.text("name")
     out = read_shape(t, name, read_pose(t, "pose"), folder)
@@ -54,7 +55,7 @@ def read_object(t: SceneTable, folder: Path) -> SceneObject | None:
     return out
 
 
-def read_shape(t: SceneTable, name: str, pose: Pose, folder: Path) -> SceneObject | None:
+def read_shape(t: Table, name: str, pose: Pose, folder: Path) -> SceneObject | None:
     """What a table says of shape and colour; None if its kind is unknown, which is reported."""
     kind = t.text("kind", "box", "`box`, `cylinder` or `mesh`")
     colour = read_colour(t)

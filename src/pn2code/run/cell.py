@@ -41,6 +41,7 @@ from pn2code.robot.choose_backend import open_backend
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.kinematics import condition_text
 from pn2code.robot.monitor import Monitor
+from pn2code.robot.robot_cell import RobotCell
 from pn2code.run.device import DeviceExecutor
 from pn2code.run.engine import Engine, Observer
 from pn2code.run.files import RobotFiles
@@ -108,7 +109,7 @@ class Prepared:
 
     generated: pipeline.Generated
     config: CellConfig
-    robot_cell: scene.RobotCell
+    robot_cell: RobotCell
     scripts: dict[str, tuple[OutputFile, CheckedProgram]]
     program: Path
 

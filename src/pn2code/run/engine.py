@@ -41,7 +41,7 @@ from pn2code.robot.executor import Motion, RobotExecutor
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion import MotionFault
 from pn2code.robot.parts import PartFault
-from pn2code.robot.scene import RobotCell
+from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array, matrix_of, pose_of
 from pn2code.run.accuracy import distance, distance_to_line
 from pn2code.run.device import DeviceExecutor
@@ -57,15 +57,14 @@ from pn2code.run.record import (
 from pn2code.run.sensors import Sensors
 from pn2code.run.supervisor import SupervisorProcess
 from pn2code.tdl.check import CheckedProgram
-from pn2code.tdl.interpret import (
-    MOST_AT_ONCE,
+from pn2code.tdl.interpret import MOST_AT_ONCE, Interpreter
+from pn2code.tdl.requests import (
     AwaitFile,
     Event,
     Execute,
     Fault,
     FileError,
     Finished,
-    Interpreter,
     Marked,
     MessageConsumed,
     MessageWritten,

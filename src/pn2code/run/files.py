@@ -18,7 +18,7 @@ from pn2code.channels import (
     SharedDirectory,
     Status,
 )
-from pn2code.tdl.interpret import FileError
+from pn2code.tdl.requests import FileError
 
 T = TypeVar("T")
 
@@ -28,7 +28,7 @@ class DirectoryError(FileError):
 
 
 class RobotFiles:
-    """Implements `pn2code.tdl.interpret.Files` for one robot.
+    """Implements `pn2code.tdl.requests.Files` for one robot.
 
     Args:
         grace_s: wall time for which content that is not taken may wait to be replaced by something valid (I6). 0: it is

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 from pn2code.robot.backend import Backend
 from pn2code.robot.commands import Handling
 from pn2code.robot.parts import PartChange, PartFault, Parts
-from pn2code.robot.scene import PART_CONTACT, RobotCell
+from pn2code.robot.robot_cell import PART_CONTACT, RobotCell
 from pn2code.robot.transforms import Array, describe
 
 REST_GAP = 0.005

@@ -23,17 +23,9 @@ from pn2code.robot.commands import Command, Measure, Pose
 from pn2code.run.files import DirectoryError, RobotFiles, directory_error
 from pn2code.tdl import tree as t
 from pn2code.tdl.check import CheckedProgram
-from pn2code.tdl.interpret import (
-    AwaitFile,
-    Event,
-    Execute,
-    Fault,
-    FileError,
-    Finished,
-    Interpreter,
-    Sense,
-)
-from pn2code.tdl.interpret import Scalar as SensedValue
+from pn2code.tdl.interpret import Interpreter
+from pn2code.tdl.requests import AwaitFile, Event, Execute, Fault, FileError, Finished, Sense
+from pn2code.tdl.requests import Scalar as SensedValue
 from pn2code.tdl.types import POSE_FIELDS, Type
 
 PAUSE_S = 0.001

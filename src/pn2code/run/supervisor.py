@@ -20,8 +20,9 @@ from collections import deque
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
-from types import TracebackType
-from typing import IO, Final, Self
+from typing import IO, Final
+
+from pn2code.base.closing import Closing
 
 EXIT_MEANING: Final[dict[int, str]] = {
     0: "finished",
@@ -86,7 +87,7 @@ class Exit:
         return self.meaning
 
 
-class SupervisorProcess:
+class SupervisorProcess(Closing):
     """A running supervisor. `OSError` when it cannot be started; everything after that is a result."""
 
     def __init__(
@@ -273,17 +274,6 @@ class SupervisorProcess:
                 with suppress(BrokenPipeError):  # a command that nobody read
                     stream.close()
         return Exit(code, self.stderr)
-
-    def __enter__(self) -> Self:
-        return self
-
-    def __exit__(
-        self,
-        kind: type[BaseException] | None,
-        value: BaseException | None,
-        trace: TracebackType | None,
-    ) -> None:
-        self.close()
 
     # --- pipes ---
 

@@ -15,9 +15,10 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from pn2code.base.frozen import frozen
 from pn2code.structure import flows
 from pn2code.structure.coloured import ColouredInvariant
+from pn2code.structure.core_terms import is_multiset
 from pn2code.structure.simplex import MarkingProgram, TooMuchWorkError
 from pn2code.structure.skeleton import Mode, Skeleton
-from pn2code.structure.symbolic import Image, image_type, is_multiset
+from pn2code.structure.sums import Image, image_type
 
 MOST_PROGRAMS = 150
 MOST_WORK = 1_000_000

@@ -23,18 +23,10 @@ from pn2code.semantics.evaluation.evaluate import Evaluator
 from pn2code.semantics.values.data import MlException, MlLimit, MlUnavailable, Value
 from pn2code.semantics.values.multiset import MultiSet, TimedMultiSet
 from pn2code.structure import flows
+from pn2code.structure.core_terms import is_multiset
 from pn2code.structure.skeleton import Skeleton
-from pn2code.structure.symbolic import (
-    Component,
-    Image,
-    Part,
-    Step,
-    Symbolic,
-    add,
-    image_type,
-    is_multiset,
-    scaled,
-)
+from pn2code.structure.sums import Component, Image, Part, Step, add, image_type, scaled
+from pn2code.structure.symbolic import Symbolic
 
 Vector = dict["Projection", int]
 

@@ -33,7 +33,8 @@ from pn2code.structure import flows
 from pn2code.structure.analysis import start_of, without_resets
 from pn2code.structure.bounds import constant_of, place_bounds
 from pn2code.structure.skeleton import TOKEN, Counter, Flow, Mode, Skeleton, counted, skeleton
-from pn2code.structure.symbolic import Part, Sum, Symbolic, add, scaled
+from pn2code.structure.sums import Part, Sum, add, scaled
+from pn2code.structure.symbolic import Symbolic
 
 MOST_RELATIONS = 2_000
 

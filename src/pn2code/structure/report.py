@@ -16,7 +16,7 @@ from pn2code.semantics.values.multiset import MultiSet
 from pn2code.structure.analysis import Analysis, PInvariant, TInvariant
 from pn2code.structure.bounds import PlaceBound, Proof
 from pn2code.structure.coloured import ColouredInvariant, Projection
-from pn2code.structure.symbolic import Component
+from pn2code.structure.sums import Component
 
 CLASSES = {
     "ordinary": "every arc moves one token",

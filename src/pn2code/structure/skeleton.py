@@ -26,7 +26,8 @@ from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatTransition
 from pn2code.net.uses import NetVariables, pattern_variables, walk
 from pn2code.semantics.evaluation.evaluate import Evaluator, Limits
 from pn2code.semantics.values.data import MlException, MlLimit, MlUnavailable
-from pn2code.structure.symbolic import Atom, Facts, Part, Sum, Symbolic, add, scaled
+from pn2code.structure.sums import Atom, Part, Sum, add, scaled
+from pn2code.structure.symbolic import Facts, Symbolic
 
 MOST_CONDITIONS = 4
 """A transition with more conditions has one mode, with intervals."""

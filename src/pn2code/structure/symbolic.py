@@ -15,16 +15,40 @@ and colour sets may be infinite. An expression with effects (random numbers, ref
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 
-from pn2code.base.frozen import frozen
 from pn2code.ml.core import terms as core
-from pn2code.ml.core.types import INT, STRING, TCon, TRecord, Type
+from pn2code.ml.core.types import INT, STRING, TRecord
 from pn2code.net.flat import ArcInscription, FlatNet, FlatTransition, Form
 from pn2code.net.uses import pattern_variables, walk
 from pn2code.semantics.evaluation.effects import effects_of
 from pn2code.semantics.evaluation.evaluate import Evaluator
+from pn2code.structure.core_terms import (
+    always_matches,
+    arguments_of,
+    bind_pattern,
+    builtin_of,
+    is_bool,
+    is_multiset,
+    negation_of,
+    pair_of,
+    substituted,
+    variables_of,
+    whole_record,
+)
+from pn2code.structure.sums import (
+    NOTHING,
+    Atom,
+    Component,
+    Part,
+    Step,
+    Sum,
+    add,
+    image_type,
+    scaled,
+    summed,
+)
 
 UNFOLDED_DEPTH = 8
 """So many functions are unfolded inside one another."""
@@ -35,60 +59,6 @@ _BINDERS = (core.Let, core.Case, core.Lambda, core.Handle, core.While, core.Sequ
 _STAMPED = frozenset({"Time.@+", "Time.@++"})
 CLOCKS = frozenset({"Time.time", "Time.step"})
 _STAMPED_TOKEN = frozenset({"Time.token@+", "Time.token@++", "Time.@"})
-
-
-@frozen
-class Atom:
-    """An expression; with effects, `serial` makes it differ from all others."""
-
-    value: core.Exp
-    serial: int = 0
-
-
-@dataclass(frozen=True, slots=True)
-class Part:
-    """A summand; it remembers its hash, since it is looked up again and again.
-
-    Args:
-        conditions: it counts only where all of these are true.
-        atom: its value: a token, or a multi-set if `whole`.
-        steps: projections still to be applied to each token of a whole multi-set.
-    """
-
-    conditions: frozenset[Atom]
-    atom: Atom
-    whole: bool
-    steps: tuple[Step, ...] = ()
-    _hash: int = field(init=False, repr=False, compare=False)
-
-    def __post_init__(self) -> None:
-        """Computes the hash."""
-        own = hash((self.conditions, self.atom, self.whole, self.steps))
-        object.__setattr__(self, "_hash", own)
-
-    def __hash__(self) -> int:
-        """That of its fields."""
-        return self._hash
-
-
-@frozen
-class Component:
-    """A projection: the component of a tuple or record."""
-
-    label: str
-
-
-@frozen
-class Image:
-    """A projection: the value of a function of the net; of a function that gives a multi-set, that multi-set."""
-
-    function: core.Symbol
-
-
-Step = Component | Image
-Sum = Mapping[Part, int]
-
-NOTHING: frozenset[Atom] = frozenset()
 
 
 @dataclass(slots=True)
@@ -152,8 +122,8 @@ class Symbolic:
 
     def token(self, e: core.Exp, facts: Facts, depth: int = 0) -> dict[Part, int]:
         """One token as a sum: of several parts only for an `if`."""
-        while _builtin_of(e) in _STAMPED_TOKEN:
-            e = _arguments(e)[0]
+        while builtin_of(e) in _STAMPED_TOKEN:
+            e = arguments_of(e)[0]
         if isinstance(e, core.If):
             return self._branches(e, facts, depth, whole=False)
         return {self._part(e, facts, whole=False): 1}
@@ -190,7 +160,7 @@ class Symbolic:
             return self.multiset(argument, facts, depth)
         if not isinstance(argument, core.RecordExp) or len(argument.fields) != 2:
             return None
-        left, right = _pair(argument)
+        left, right = pair_of(argument)
         match name:
             case "Ms.++" | "Time.+++" | "List.@":
                 return add(self.multiset(left, facts, depth), self.multiset(right, facts, depth))
@@ -225,15 +195,15 @@ class Symbolic:
 
     def _under(self, condition: core.Exp, parts: Sum, facts: Facts) -> dict[Part, int]:
         """The parts under a further condition."""
-        if condition_is_not := _negated(condition):
+        if condition_is_not := negation_of(condition):
             return add(parts, scaled(self._under(condition_is_not, parts, facts), -1))
         c = self.normal(condition, facts)
         if isinstance(c, core.Con) and c.constructor.data_type == "bool":
             return dict(parts) if c.constructor.name == "true" else {}
-        if isinstance(c, core.If) and _is_bool(c.otherwise, "false"):  # andalso
+        if isinstance(c, core.If) and is_bool(c.otherwise, "false"):  # andalso
             return self._under(c.condition, self._under(c.then, parts, facts), facts)
         atom = self._atom(c)
-        return _sum(
+        return summed(
             (Part(p.conditions | {atom}, p.atom, p.whole, p.steps), n) for p, n in parts.items()
         )
 
@@ -269,7 +239,7 @@ class Symbolic:
             application = core.Apply(function, value, result, value.span)
             of_kind = self.multiset if is_multiset(result) else self.token
             projected = of_kind(application, facts)
-        return _sum(
+        return summed(
             (Part(p.conditions | part.conditions, p.atom, p.whole, p.steps), n)
             for p, n in projected.items()
         )
@@ -323,7 +293,7 @@ class Symbolic:
                 return self._judged(self._constant(e), facts)
             case core.RecordExp(fields):
                 made = [(k, self.normal(x, facts, depth)) for k, x in fields]
-                return _whole_record(tuple(sorted(made, key=lambda f: f[0])), e)
+                return whole_record(tuple(sorted(made, key=lambda f: f[0])), e)
             case core.Select(label, record):
                 inner = self.normal(record, facts, depth)
                 if isinstance(inner, core.RecordExp):
@@ -334,9 +304,9 @@ class Symbolic:
                 return core.ListExp(made_items, e.type, e.span)
             case core.If(condition, then, otherwise):
                 c = self.normal(condition, facts, depth)
-                if _is_bool(c, "true"):
+                if is_bool(c, "true"):
                     return self.normal(then, facts, depth)
-                if _is_bool(c, "false"):
+                if is_bool(c, "false"):
                     return self.normal(otherwise, facts, depth)
                 one, two = self.normal(then, facts, depth), self.normal(otherwise, facts, depth)
                 return self._judged(core.If(c, one, two, e.type, e.span), facts)
@@ -380,9 +350,9 @@ class Symbolic:
             return None
         rule = function.rules[0]
         values: dict[core.Symbol, core.Exp] = {}
-        if not _bind(rule.pattern, e.argument, values):
+        if not bind_pattern(rule.pattern, e.argument, values):
             return None
-        return _substituted(rule.body, values)
+        return substituted(rule.body, values)
 
     def _is_plain(self, uid: int, function: core.Lambda) -> bool:
         """One rule that always matches, and a body without choices, effects and variables of its own."""
@@ -392,22 +362,22 @@ class Symbolic:
                 len(rules) == 1
                 and not self.effects.of(rules[0].body)
                 and not any(isinstance(x, _BINDERS) for x in walk(rules[0].body))
-                and _always_matches(rules[0].pattern)
+                and always_matches(rules[0].pattern)
             )
         return self._plain[uid]
 
     # --- guards ----------------------------------------------------------------------------------
 
     def _learn(self, guard: core.Exp, facts: Facts, own: frozenset[core.Symbol]) -> None:
-        if isinstance(guard, core.If) and _is_bool(guard.otherwise, "false"):
+        if isinstance(guard, core.If) and is_bool(guard.otherwise, "false"):
             self._learn(guard.condition, facts, own)
             self._learn(guard.then, facts, own)
             return
-        if _builtin_of(guard) == "=" and len(_arguments(guard)) == 2:
-            left, right = (self.normal(x, facts) for x in _arguments(guard))
+        if builtin_of(guard) == "=" and len(arguments_of(guard)) == 2:
+            left, right = (self.normal(x, facts) for x in arguments_of(guard))
             if self._equate(left, right, facts, own):
                 return
-        negated = _negated(guard)
+        negated = negation_of(guard)
         facts.known[self.normal(negated or guard, facts)] = negated is None
 
     def _equate(
@@ -415,13 +385,13 @@ class Symbolic:
     ) -> bool:
         """Take an equation into account; whether nothing of it is lost."""
         for a, b in ((left, right), (right, left)):
-            if isinstance(a, core.Var) and a.symbol in own and a.symbol not in _variables(b):
+            if isinstance(a, core.Var) and a.symbol in own and a.symbol not in variables_of(b):
                 substitution = {a.symbol: b}
                 facts.values = {
-                    s: self.normal(_substituted(x, substitution), facts)
+                    s: self.normal(substituted(x, substitution), facts)
                     for s, x in facts.values.items()
                 }
-                facts.known = {_substituted(x, substitution): k for x, k in facts.known.items()}
+                facts.known = {substituted(x, substitution): k for x, k in facts.known.items()}
                 facts.values[a.symbol] = b
                 return True
         if isinstance(left, core.RecordExp) and isinstance(right, core.RecordExp):
@@ -433,147 +403,3 @@ class Symbolic:
                     done.append(self._equate(one, two, facts, own))
                 return all(done)
         return left == right
-
-
-# --- sums ----------------------------------------------------------------------------------------
-
-
-def add(*sums: Sum) -> dict[Part, int]:
-    """Their sum, without what cancels out."""
-    return _sum(item for s in sums for item in s.items())
-
-
-def scaled(parts: Sum, factor: int) -> dict[Part, int]:
-    """A multiple."""
-    return {p: n * factor for p, n in parts.items()} if factor else {}
-
-
-def _sum(items: Iterable[tuple[Part, int]]) -> dict[Part, int]:
-    found: dict[Part, int] = {}
-    for part, n in items:
-        found[part] = found.get(part, 0) + n
-    return {p: n for p, n in found.items() if n}
-
-
-def is_multiset(t: Type) -> bool:
-    """Whether a type is that of multi-sets."""
-    return isinstance(t, TCon) and t.name == "list"
-
-
-def image_type(step: Image) -> Type:
-    """What the function gives."""
-    return step.function.type.result  # type: ignore[union-attr]
-
-
-# --- expressions ---------------------------------------------------------------------------------
-
-
-def _builtin_of(e: core.Exp) -> str:
-    """The name of the built-in function that is applied; "" if none is."""
-    if isinstance(e, core.Apply) and isinstance(e.function, core.Builtin):
-        return e.function.name
-    return ""
-
-
-def _arguments(e: core.Exp) -> tuple[core.Exp, ...]:
-    assert isinstance(e, core.Apply)
-    if isinstance(e.argument, core.RecordExp) and len(e.argument.fields) == 2:
-        return _pair(e.argument)
-    return (e.argument,)
-
-
-def _pair(e: core.RecordExp) -> tuple[core.Exp, core.Exp]:
-    fields = dict(e.fields)
-    return (fields["1"], fields["2"]) if "1" in fields else tuple(fields.values())  # type: ignore[return-value]
-
-
-def _negated(e: core.Exp) -> core.Exp | None:
-    """The condition of which this is the negation: `not c`, `a <> b`."""
-    name = _builtin_of(e)
-    if name == "<>":
-        assert isinstance(e, core.Apply)
-        assert isinstance(e.function, core.Builtin)
-        equal = core.Builtin("=", e.function.type, e.function.span, e.function.inst)
-        return core.Apply(equal, e.argument, e.type, e.span)
-    if name in ("Bool.not", "not"):
-        return _arguments(e)[0]
-    if isinstance(e, core.If) and _is_bool(e.then, "false") and _is_bool(e.otherwise, "true"):
-        return e.condition
-    return None
-
-
-def _is_bool(e: core.Exp, name: str) -> bool:
-    return (
-        isinstance(e, core.Con) and e.constructor.data_type == "bool" and e.constructor.name == name
-    )
-
-
-def _whole_record(fields: tuple[tuple[str, core.Exp], ...], e: core.RecordExp) -> core.Exp:
-    """`(#1 x, #2 x)` is x."""
-    if len(fields) > 0 and all(isinstance(x, core.Select) and x.label == k for k, x in fields):
-        records = {x.record for _, x in fields if isinstance(x, core.Select)}
-        if len(records) == 1:
-            (record,) = records
-            if record.type == e.type:
-                return record
-    return core.RecordExp(fields, e.type, e.span)
-
-
-def _variables(e: core.Exp) -> set[core.Symbol]:
-    return {x.symbol for x in walk(e) if isinstance(x, core.Var)}
-
-
-def _always_matches(p: core.Pat) -> bool:
-    match p:
-        case core.PVar() | core.PWild():
-            return True
-        case core.PRecord(fields):
-            return all(_always_matches(x) for _, x in fields)
-        case _:
-            return False
-
-
-def _bind(p: core.Pat, value: core.Exp, values: dict[core.Symbol, core.Exp]) -> bool:
-    """Values of the pattern's variables; False if that is not known without evaluation."""
-    match p:
-        case core.PVar(symbol):
-            values[symbol] = value
-            return True
-        case core.PWild():
-            return True
-        case core.PRecord(fields):
-            parts = dict(value.fields) if isinstance(value, core.RecordExp) else None
-            for label, inner in fields:
-                part = (
-                    parts[label]
-                    if parts is not None
-                    else core.Select(label, value, inner.type, value.span)
-                )
-                if not _bind(inner, part, values):
-                    return False
-            return True
-        case _:
-            return False
-
-
-def _substituted(e: core.Exp, values: Mapping[core.Symbol, core.Exp]) -> core.Exp:
-    """With values for variables; only in expressions that bind none (others are left alone)."""
-    match e:
-        case core.Var(symbol):
-            return values.get(symbol, e)
-        case core.Apply(function, argument):
-            return core.Apply(
-                _substituted(function, values), _substituted(argument, values), e.type, e.span
-            )
-        case core.RecordExp(fields):
-            made = tuple((k, _substituted(x, values)) for k, x in fields)
-            return core.RecordExp(made, e.type, e.span)
-        case core.Select(label, record):
-            return core.Select(label, _substituted(record, values), e.type, e.span)
-        case core.ListExp(items):
-            return core.ListExp(tuple(_substituted(x, values) for x in items), e.type, e.span)
-        case core.If(condition, then, otherwise):
-            c, one, two = (_substituted(x, values) for x in (condition, then, otherwise))
-            return core.If(c, one, two, e.type, e.span)
-        case _:
-            return e

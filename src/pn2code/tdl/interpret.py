@@ -16,7 +16,7 @@ import math
 from collections.abc import Callable
 from dataclasses import astuple
 from pathlib import PurePath
-from typing import Any, Final, Protocol, assert_never, cast
+from typing import Any, Final, assert_never, cast
 
 import pn2code.robot.commands as commands
 from pn2code.base.frozen import frozen
@@ -30,124 +30,31 @@ from pn2code.tdl.evaluate import (
     ScriptValue,
     evaluate,
     show,
-    single,
 )
-from pn2code.tdl.types import POSE_FIELDS, Type
+from pn2code.tdl.messages import from_si, scalar_of, scalars_of, stored_value, to_si, typed_values
+from pn2code.tdl.requests import (
+    AwaitFile,
+    Event,
+    Execute,
+    Fault,
+    FileError,
+    Files,
+    Finished,
+    Marked,
+    MessageConsumed,
+    MessageRead,
+    MessageWritten,
+    Request,
+    Scalar,
+    Sense,
+)
+from pn2code.tdl.types import POSE_FIELDS
 
 DEFAULT_STEP_LIMIT: Final = 100_000
 MOST_OCCURRENCES: Final = 100_000
 """Transitions in a row for which a script neither waits, nor acts, nor takes a message."""
 MOST_AT_ONCE: Final = 10_000
 """Commands of a cell in lock-step without time passing, or messages; more are taken for an endless repetition."""
-
-Scalar = int | float | bool | str
-
-
-class FileError(Exception):
-    """A shared file cannot be read, emptied or written; the message says which and why."""
-
-
-class Files(Protocol):
-    """The shared files as the interpreter sees them, by channel name: "flag1_interno" for `flag1_interno.robcad`.
-
-    A signal (the one value of a unit colour set) is the scalar 1. Each method may raise `FileError`,
-    which stops the script.
-    """
-
-    def read(self, name: str) -> tuple[Scalar, ...] | None:
-        """The scalars of the message, which stays; None when the file is empty."""
-
-    def clear(self, name: str) -> None:
-        """Consume the message."""
-
-    def write(self, name: str, values: tuple[Scalar, ...]) -> None:
-        """Publish a message."""
-
-
-# --- what the interpreter asks of its driver ---------------------------------------------------
-
-
-@frozen
-class Execute:
-    """Run a command; resume when it is done."""
-
-    command: commands.Command
-    line: int
-
-
-@frozen
-class AwaitFile:
-    """Nothing to do until one of these files, all empty now, holds a message."""
-
-    names: tuple[str, ...]
-    line: int
-
-
-@frozen
-class Sense:
-    """Resume with what this sensor says: a scalar of `type`. It takes no time."""
-
-    sensor: str
-    type: Type
-    line: int
-
-
-@frozen
-class Finished:
-    """The script has ended."""
-
-
-@frozen
-class Fault:
-    """The script cannot go on (or said `stop`)."""
-
-    message: str
-    line: int
-
-
-Request = Execute | Sense | AwaitFile | Finished | Fault
-
-
-# --- what it tells -----------------------------------------------------------------------------
-
-
-@frozen
-class Marked:
-    """A net transition has occurred; `binding` is in the form of docs/trace.md."""
-
-    transition: str
-    binding: dict[str, Any]
-    line: int
-
-
-@frozen
-class MessageRead:
-    """A message was copied."""
-
-    file: str
-    values: tuple[Scalar, ...]
-    line: int
-
-
-@frozen
-class MessageConsumed:
-    """A message was taken: its file is empty now."""
-
-    file: str
-    values: tuple[Scalar, ...]
-    line: int
-
-
-@frozen
-class MessageWritten:
-    """A message was published."""
-
-    file: str
-    values: tuple[Scalar, ...]
-    line: int
-
-
-Event = Marked | MessageRead | MessageConsumed | MessageWritten
 
 
 def _ignore(event: Event) -> None:
@@ -341,7 +248,7 @@ class Interpreter:
                 scalars = tuple(
                     x
                     for kind, v in zip(kinds, values, strict=False)
-                    for x in _scalars(_stored(evaluate(v, self), kind))
+                    for x in scalars_of(stored_value(evaluate(v, self), kind))
                 ) or (1,)  # a signal
                 channel = self._channel[file.name]
                 self._files.write(channel, scalars)
@@ -391,13 +298,13 @@ class Interpreter:
         if message is None:
             raise ScriptError(f"file `{name}` is empty, there is nothing to read")
         kinds = self._program.files[name].types
-        values = _typed(name, message, kinds)
+        values = typed_values(name, message, kinds)
         for target, kind, value in zip(s.targets, kinds, values, strict=True):
-            self._assign(target.name, _stored(value, kind))
+            self._assign(target.name, stored_value(value, kind))
         self._tell(MessageRead(channel, message, self._line))
 
     def _assign(self, name: str, value: ScriptValue) -> None:
-        self._values[name] = _stored(value, self._program.variables[name].type)
+        self._values[name] = stored_value(value, self._program.variables[name].type)
 
     def _datum(self, x: t.Datum) -> Any:
         match x:
@@ -475,7 +382,7 @@ class Interpreter:
             raise ScriptError(f"sensor `{statement.sensor}` gave no value")
         kind = self._program.variables[statement.target.name].type.type
         try:
-            self._assign(statement.target.name, _scalar(result, kind))
+            self._assign(statement.target.name, scalar_of(result, kind))
         except ValueError:
             raise ScriptError(
                 f"sensor `{statement.sensor}` says `{result}`, but the script expects `{kind}`"
@@ -487,84 +394,4 @@ class Interpreter:
         self._measuring = None
         if not isinstance(result, commands.Pose):
             raise ScriptError("the measurement gave no pose")
-        self._assign(statement.target.name, _from_si(result, asked, nominal))
-
-
-def to_si(pose: ScriptPose) -> commands.Pose:
-    """Millimetres and degrees to metres and radians."""
-    return commands.Pose(
-        pose.x / 1000.0,
-        pose.y / 1000.0,
-        pose.z / 1000.0,
-        math.radians(pose.rx),
-        math.radians(pose.ry),
-        math.radians(pose.rz),
-    )
-
-
-def _from_si(pose: commands.Pose, asked: commands.Pose, nominal: ScriptPose) -> ScriptPose:
-    """Metres and radians to millimetres and degrees.
-
-    A component that came back as it went out keeps its value in mm or degrees, to the last bit: a
-    conversion there and back would not.
-    """
-    return ScriptPose(
-        *(
-            was if si == sent else (si * 1000.0 if i < 3 else math.degrees(si))
-            for i, (si, sent, was) in enumerate(
-                zip(astuple(pose), astuple(asked), astuple(nominal), strict=True)
-            )
-        )
-    )
-
-
-def _stored(value: ScriptValue, kind: t.TypeName) -> ScriptValue:
-    """The value as a variable or file of this type holds it."""
-    if kind.type is not Type.INT and isinstance(value, int) and not isinstance(value, bool):
-        value = float(value)
-    return single(value) if kind.single else value
-
-
-def _scalars(value: ScriptValue) -> tuple[Scalar, ...]:
-    return astuple(value) if isinstance(value, ScriptPose) else (value,)
-
-
-def _typed(
-    name: str, message: tuple[Scalar, ...], kinds: tuple[t.TypeName, ...]
-) -> list[ScriptValue]:
-    """The values of a message; ScriptError if it is not what the script declares."""
-    values: list[ScriptValue] = []
-    rest = list(message)
-    try:
-        for kind in kinds:
-            if kind.type is Type.SIGNAL:
-                rest.pop(0)
-                continue
-            if kind.type is Type.POSE:
-                values.append(ScriptPose(*(_scalar(rest.pop(0), Type.REAL) for _ in range(6))))
-            else:
-                values.append(_scalar(rest.pop(0), kind.type))
-        if rest:
-            raise ValueError
-    except (IndexError, ValueError):
-        words = " ".join(map(str, message))
-        wanted = ", ".join(str(k.type) for k in kinds)
-        raise ScriptError(
-            f"file `{name}` holds `{words}`, but the script expects {wanted}"
-        ) from None
-    return values
-
-
-def _scalar(x: Scalar, kind: Type) -> Any:
-    """One scalar as its type wants it; ValueError if it cannot be."""
-    if kind in (Type.STRING, Type.WORD):
-        if isinstance(x, str):
-            return x
-    elif kind is Type.BOOL:
-        if isinstance(x, bool) or (isinstance(x, int) and x in (0, 1)):
-            return bool(x)
-    elif isinstance(x, int) and not isinstance(x, bool):
-        return x if kind is Type.INT else float(x)
-    elif isinstance(x, float) and kind is not Type.INT and math.isfinite(x):
-        return x
-    raise ValueError
+        self._assign(statement.target.name, from_si(result, asked, nominal))

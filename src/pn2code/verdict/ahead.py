@@ -21,13 +21,13 @@ from pn2code.robot.commands import MoveJoint, MoveLinear
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.parts import PartFault
-from pn2code.robot.scene import RobotCell
+from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot_scripts.ir import Chain, Line, Node, Region, Repeat, RobotIR
 from pn2code.run.handling import PartKeeper
 from pn2code.run.sensors import load as load_sensors
 from pn2code.tdl import tree as t
 from pn2code.tdl.evaluate import ScriptError, ScriptPose, ScriptValue, evaluate
-from pn2code.tdl.interpret import to_si
+from pn2code.tdl.messages import to_si
 
 
 def look_ahead(

@@ -20,8 +20,8 @@ from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission import environment
 from pn2code.emission.c import emit
-from pn2code.emission.c_expressions import c_bytes, c_integer
 from pn2code.emission.c_lines import wrap
+from pn2code.emission.c_literals import c_bytes, c_integer
 from pn2code.emission.output import OutputFile
 from pn2code.ir import calls
 from pn2code.lowering.nets.net import lower

@@ -53,14 +53,16 @@ def test_a_transition() -> None:
           reads Top.Buffer
           touches Top.Buffer, Top.Out
           affects Top.Pick
+          search names Top.Buffer, binding
+          fire names Top.Buffer, Top.Out, table of Top.Buffer, table of Top.Out, binding
           enumerate
             for i_1 in Top.Buffer   -- Buffer: n (ID21)
               bind n = Top.Buffer[i_1]
               unless (n Int.> 0): next   -- guard [n > 0]
               yield
           fire direct
-            take Top.Buffer 1 ` n   -- Buffer: n (ID21)
-            put Top.Out 2 ` n   -- Out: 2`n (ID23)
+            take Top.Buffer 1 ` n found   -- Buffer: n (ID21)
+            put Top.Out 2 ` n legal   -- Out: 2`n (ID23)
         """
     )
 

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from helpers.robots import Cell, replayed
 from helpers.scripts import run
-from pn2code.tdl.interpret import AwaitFile, Fault, Finished
+from pn2code.tdl.requests import AwaitFile, Fault, Finished
 
 COMMANDS = """
     place Waiting = 1

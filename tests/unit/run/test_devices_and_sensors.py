@@ -15,7 +15,8 @@ from pn2code.robot.motion import MotionFault
 from pn2code.run.device import DeviceExecutor
 from pn2code.run.sensors import Sensors
 from pn2code.run.sensors import load as load_sensors
-from pn2code.tdl.interpret import Execute, Fault, Interpreter, Sense
+from pn2code.tdl.interpret import Interpreter
+from pn2code.tdl.requests import Execute, Fault, Sense
 from pn2code.tdl.types import Type
 
 EXTRA = """

@@ -8,12 +8,12 @@ import pytest
 
 from helpers.scripts import MemoryFiles, checked, run
 from pn2code.robot.commands import Measure, MoveHome, MoveJoint, MoveLinear, Pose, ToolAction, Wait
-from pn2code.tdl.interpret import (
+from pn2code.tdl.interpret import Interpreter
+from pn2code.tdl.requests import (
     AwaitFile,
     Execute,
     Fault,
     Finished,
-    Interpreter,
     Marked,
     MessageConsumed,
     MessageRead,

@@ -11,7 +11,7 @@ from helpers.netbuilder import write
 from helpers.pnml_nets import flat, graph, load, philosophers, size, unfolded_size
 from pn2code.convert import cpn, pnml_plain, pnml_symmetric, promela
 from pn2code.diagnostics import Diagnostics
-from pn2code.drawing.scene import positions
+from pn2code.drawing.positions import positions
 from pn2code.net.flat import FlatNet
 from pn2code.net.source import read
 from pn2code.semantics.game.graph import StateSpace

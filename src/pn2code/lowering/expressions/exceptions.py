@@ -18,7 +18,7 @@ from pn2code.lowering.expressions.shapes import nodes
 from pn2code.lowering.expressions.values import Val
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import EXN, Type
-from pn2code.ml.library.builtins import EXCEPTIONS
+from pn2code.ml.library.exceptions import EXCEPTIONS
 
 if TYPE_CHECKING:
     from pn2code.lowering.expressions.body import Body

@@ -6,7 +6,7 @@ the end.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING
 
 from pn2code.diagnostics import Span
@@ -56,6 +56,26 @@ def collect(body: Body, t: IrType, fill: Callable[[Callable[[Ir], None]], None])
     out = _accumulator(body, t)
     fill(lambda value: _push(body, out, value))
     return _reversed(body, out)
+
+
+def combinations(body: Body, lists: Mapping[str, Ir], t: IrType) -> Ir:
+    """All combinations of the elements of lists, the last list fastest: a list (type `t`) of structs.
+
+    `lists`: atomic, for each label of the struct one.
+    """
+    element = body.element(t)
+    definition = body.program.types.definition(element)
+    assert isinstance(definition, ir.StructDef)
+
+    def combine(labels: list[str], chosen: dict[str, Ir], keep: Callable[[Ir], None]) -> None:
+        if not labels:
+            fields = tuple((label, chosen[label]) for label, _ in definition.fields)
+            keep(ir.MakeStruct(element, fields))
+            return
+        label, *rest = labels
+        for_each(body, lists[label], lambda x: combine(rest, {**chosen, label: x}, keep))
+
+    return collect(body, t, lambda keep: combine(list(lists), {}, keep))
 
 
 def map_list(body: Body, values: Ir, result: IrType, f: Callable[[Ir], Val]) -> Ir:

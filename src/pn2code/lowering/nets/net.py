@@ -86,6 +86,8 @@ class _Lowering:
         builtins = Builtins(self._net.real_time)
         self._program = Program(self._net.program, self._types, builtins, self._net.real_time, Body)
         self._program.lists_are_functions = packing is not None
+        channels, inputs = partition.channels, partition.inputs
+        self._arriving = {c.place for c in channels} | {i.place for i in inputs}
         self._failed = False
 
     def run(self) -> ir.NetIR | None:
@@ -194,6 +196,7 @@ class _Lowering:
             initial=tuple(body.statements),
             initial_text=text,
             early=self._early(place),
+            arrives=place.index in self._arriving,
         )
 
     def _room(self, places: list[ir.Place]) -> int:

@@ -12,12 +12,12 @@ from dataclasses import dataclass
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Ir, Stmt
 from pn2code.lowering.codes import UNSUPPORTED_COLSET, UnsupportedError
-from pn2code.lowering.expressions import colset_functions
+from pn2code.lowering.expressions import colset_values
 from pn2code.lowering.expressions.body import Body
-from pn2code.lowering.expressions.builtins import same
 from pn2code.lowering.expressions.clock import accepted, clock, in_clock, plus
 from pn2code.lowering.expressions.functions import Program
 from pn2code.lowering.expressions.matching import conjunction
+from pn2code.lowering.expressions.special import same
 from pn2code.lowering.expressions.types import Types
 from pn2code.lowering.expressions.values import Binding, Env, free_variables
 from pn2code.lowering.nets import arc_lists
@@ -223,7 +223,7 @@ class _Enumeration:
         if types.is_small(table):
             self._body.emit(ir.ForValues(index, table, tuple(statements), note))
             return
-        if symbol.colset is None or not colset_functions.is_countable(symbol.colset):
+        if symbol.colset is None or not colset_values.is_countable(symbol.colset):
             raise UnsupportedError(
                 UNSUPPORTED_COLSET,
                 f"the values of `{symbol.name}` cannot be counted",
@@ -231,7 +231,7 @@ class _Enumeration:
             )
         self._body.emit(ir.Note(note))
         values_type = types.lower(list_of(symbol.type))
-        values = colset_functions.all_values(self._body, symbol.colset, self._t.origin)
+        values = colset_values.all_values(self._body, symbol.colset, self._t.origin)
         cell = self._body.local("cell", values_type)
         head = ir.Bind(index, ir.Head(ir.Use(cell), types.lower(symbol.type)))
         self._body.emit(ir.ForList(cell, values, (head, *statements)))

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.types import BOOL, TFun, Type, list_of, tuple_of
-from pn2code.ml.library.builtins import COLSET_MEMBERS, scheme
+from pn2code.ml.library.builtins import COLSET_MEMBERS
+from pn2code.ml.library.schemes import scheme
 
 _MADE = ("mult", "set", "of")
 

@@ -26,7 +26,7 @@ from pn2code.ml.core.types import (
     record,
     tuple_of,
 )
-from pn2code.ml.library.builtins import FALSE, TRUE
+from pn2code.ml.library.datatypes import FALSE, TRUE
 from pn2code.ml.parsing import advice
 from pn2code.ml.typing.context import Context, suggestion
 from pn2code.ml.typing.declarations import Declarations

@@ -13,7 +13,9 @@ from pn2code.ml import codes
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset
 from pn2code.ml.core.types import INT, Type
-from pn2code.ml.library.builtins import DATATYPES, FIRST_EXCEPTION_TAG, LITERAL_TYPES, scheme
+from pn2code.ml.library.datatypes import DATATYPES, LITERAL_TYPES
+from pn2code.ml.library.exceptions import FIRST_EXCEPTION_TAG
+from pn2code.ml.library.schemes import scheme
 from pn2code.ml.parsing.advice import BY_CODE, CLOSE
 from pn2code.ml.typing import type_advice
 from pn2code.ml.typing.environment import Binding, ConEntry, Scope, library_scope

@@ -13,22 +13,18 @@ from pn2code.ml.core.types import EXN, TCon, TFun, TVar, Type
 from pn2code.ml.library.builtins import (
     ABSENT_VALUES,
     BUILTINS,
-    DATATYPES,
-    EXCEPTIONS,
     HIDDEN,
     OVERLOADED,
     QUALIFIED,
-    QUALIFIED_EXCEPTIONS,
     STRUCTURE_ALIASES,
     STRUCTURES,
     TOP_LEVEL,
-    TOP_LEVEL_EXCEPTIONS,
-    TYPE_ABBREVIATIONS,
-    TYPE_ARITY,
     UNSUPPORTED_NAMES,
     UTILITIES,
     internal_function,
 )
+from pn2code.ml.library.datatypes import DATATYPES, TYPE_ABBREVIATIONS, TYPE_ARITY
+from pn2code.ml.library.exceptions import EXCEPTIONS, QUALIFIED_EXCEPTIONS, TOP_LEVEL_EXCEPTIONS
 from pn2code.ml.parsing.syntax import FunctorBinding, Sig
 from pn2code.ml.typing.engine_names import ENGINE_MEMBERS, ENGINE_STRUCTURES, ENGINE_VALUES
 from pn2code.ml.typing.inference import Quant, Ty

@@ -14,7 +14,7 @@ from pn2code.diagnostics import Span
 from pn2code.ml import codes
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import BOOL, EXN, UNIT, TFun, Type
-from pn2code.ml.library.builtins import FALSE, LITERAL_TYPES, TRUE
+from pn2code.ml.library.datatypes import FALSE, LITERAL_TYPES, TRUE
 from pn2code.ml.parsing import syntax as s
 from pn2code.ml.typing import matches, type_advice
 from pn2code.ml.typing.annotations import Annotations

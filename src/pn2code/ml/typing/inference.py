@@ -16,7 +16,7 @@ from functools import lru_cache
 
 from pn2code.base.frozen import frozen
 from pn2code.ml.core.types import UNIT, TCon, TFun, TRecord, TVar, Type, label_key
-from pn2code.ml.library.builtins import NO_EQUALITY
+from pn2code.ml.library.datatypes import NO_EQUALITY
 
 
 @frozen

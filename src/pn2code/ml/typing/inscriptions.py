@@ -14,7 +14,8 @@ from pn2code.ml.core.colsets import definition
 from pn2code.ml.core.computing import Computed
 from pn2code.ml.core.terms import Symbol
 from pn2code.ml.core.types import BOOL, INTINF, REAL, TCon, TFun, Type, list_of, timed_of, tuple_of
-from pn2code.ml.library.builtins import BUILTINS, FALSE, TRUE
+from pn2code.ml.library.builtins import BUILTINS
+from pn2code.ml.library.datatypes import FALSE, TRUE
 from pn2code.ml.parsing import syntax as s
 from pn2code.ml.parsing.fixity import Fixities, resolve_expression, resolve_pattern
 from pn2code.ml.parsing.lexer import tokenize

@@ -16,7 +16,7 @@ from pn2code.diagnostics import Span
 from pn2code.ml import codes
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import EXN, UNIT, TCon, TFun, Type
-from pn2code.ml.library.builtins import EXCEPTIONS
+from pn2code.ml.library.exceptions import EXCEPTIONS
 from pn2code.ml.typing.context import Context
 from pn2code.ml.typing.inference import to_type
 from pn2code.ml.typing.patterns import Deref

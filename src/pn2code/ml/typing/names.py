@@ -6,7 +6,8 @@ from pn2code.diagnostics import Span
 from pn2code.ml import codes
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import UNIT, Type
-from pn2code.ml.library.builtins import BUILTINS, NIL, OVERLOADED
+from pn2code.ml.library.builtins import BUILTINS, OVERLOADED
+from pn2code.ml.library.datatypes import NIL
 from pn2code.ml.parsing import advice
 from pn2code.ml.parsing.parser import declared_names
 from pn2code.ml.typing.colset_members import member_type, members_of, timed_member

@@ -9,7 +9,8 @@ from pn2code.diagnostics import Span
 from pn2code.ml import codes
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import UNIT, TRecord
-from pn2code.ml.library.builtins import BUILTINS, CONS, LITERAL_TYPES, NIL
+from pn2code.ml.library.builtins import BUILTINS
+from pn2code.ml.library.datatypes import CONS, LITERAL_TYPES, NIL
 from pn2code.ml.parsing import syntax as s
 from pn2code.ml.typing.annotations import Annotations
 from pn2code.ml.typing.context import Context, PatternBuild, suggestion

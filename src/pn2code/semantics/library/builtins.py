@@ -29,7 +29,6 @@ from pn2code.semantics.library import (
     builtins_vectors,
 )
 from pn2code.semantics.library.builtins_files import write
-from pn2code.semantics.library.builtins_numbers import checked
 from pn2code.semantics.library.builtins_scan import from_string, scanner
 from pn2code.semantics.library.colour_files import (
     output_ms_text,
@@ -38,6 +37,7 @@ from pn2code.semantics.library.colour_files import (
     read_token,
     read_value,
 )
+from pn2code.semantics.library.functions import checked
 from pn2code.semantics.values.colours import ALIKE
 from pn2code.semantics.values.data import (
     UNIT,

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from pn2code.semantics.library.builtins_numbers import checked, fail, read_integer
+from pn2code.semantics.library.builtins_integers import read_integer
+from pn2code.semantics.library.functions import checked, fail
 from pn2code.semantics.values.data import Value, int_text
 
 if TYPE_CHECKING:

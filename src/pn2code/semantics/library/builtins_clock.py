@@ -6,7 +6,8 @@ import math
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from pn2code.semantics.library.builtins_numbers import read_integer, read_real
+from pn2code.semantics.library.builtins_integers import read_integer
+from pn2code.semantics.library.builtins_real_texts import read_real
 from pn2code.semantics.values.data import (
     NONE,
     UNIT,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
-from pn2code.semantics.library.builtins_numbers import checked
+from pn2code.semantics.library.functions import checked
 from pn2code.semantics.values.data import (
     NONE,
     ORDER,

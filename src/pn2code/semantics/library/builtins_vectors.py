@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from pn2code.semantics.library import builtins_lists
-from pn2code.semantics.library.builtins_numbers import checked
+from pn2code.semantics.library.functions import checked
 from pn2code.semantics.values.data import UNIT, Array, MlException, Value, exception
 
 if TYPE_CHECKING:

@@ -13,7 +13,8 @@ from typing import Any
 
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.semantics.evaluation.files import InStream
-from pn2code.semantics.library.builtins_numbers import read_integer, read_real
+from pn2code.semantics.library.builtins_integers import read_integer
+from pn2code.semantics.library.builtins_real_texts import read_real
 from pn2code.semantics.values.colours import Colours, assemble, component
 from pn2code.semantics.values.data import UNIT, Data, MlException, Timed, Value, exception
 

@@ -29,7 +29,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from pn2code.base.frozen import frozen
-from pn2code.ml.library.builtins import EXCEPTIONS
+from pn2code.ml.library.exceptions import EXCEPTIONS
 
 if TYPE_CHECKING:
     from pn2code.diagnostics import Span

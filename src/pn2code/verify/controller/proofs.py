@@ -15,8 +15,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from pn2code.cell.config import CellConfig
-from pn2code.cell.divide import PlaceFinder
 from pn2code.cell.partition import Partition
+from pn2code.cell.place_finder import PlaceFinder
 from pn2code.diagnostics import Diagnostics, Note
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.structure import bounds_and_sums

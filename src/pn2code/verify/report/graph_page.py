@@ -7,13 +7,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
 import pn2code
-from pn2code.base.resources import templates_folder
 from pn2code.drawing.svg import MARGIN, svg_attributes
 from pn2code.net.flat import FlatNet
+from pn2code.verify.report import html
 from pn2code.verify.report.graph import Node, StateGraph
 from pn2code.verify.report.graph_layout import lay_out
 from pn2code.verify.report.graph_svg import Links, facts, figure, legend, sample
@@ -46,20 +45,12 @@ def page(net: FlatNet, graph: StateGraph, remarks: Sequence[str] = ()) -> str:
     first: dict[int, list[tuple[int, int]]] = {n.number: [] for n in graph.nodes}
     for (source, target), arcs in graph.edges().items():
         first[source].append((target, arcs[0]))
-    # Names and values are strangers' texts: all of them are escaped, here or (the picture) where they are drawn.
-    env = Environment(
-        loader=FileSystemLoader(templates_folder() / "html"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    folder = templates_folder() / "html"
-    styles = [(folder / name).read_text(encoding="utf-8") for name in ("report.css", "graph.css")]
-    return env.get_template("graph.html.j2").render(
+    # Names and values are strangers' texts: all of them are escaped, there or (the picture) where they are drawn.
+    return html.page(
+        "graph.html.j2",
+        ("report.css", "graph.css"),
         title=net.name,
         facts=facts(graph),
-        css=Markup("".join(styles)),
         is_wide=box.width > _WINDOW,
         version=pn2code.__version__,
         sha256=net.sha256,

@@ -9,14 +9,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup
 
-from pn2code.base import resources
 from pn2code.drawing.geometry import Box
-from pn2code.drawing.scene import Scene, build
+from pn2code.drawing.scene import build
+from pn2code.drawing.shapes import Scene
 from pn2code.drawing.svg import MARGIN, Links, Overlay, figure, svg_attributes
 from pn2code.reading.document import Document, RawPage
+from pn2code.verify.report import html
 from pn2code.verify.report.trace_frames import TraceFrame
 
 MOST_FIGURES = 240
@@ -64,18 +64,10 @@ def steps_page(
     ]
     # The chosen one comes last: it hides when another, before it, is visited.
     sections.sort(key=lambda section: section["number"] == chosen)
-    folder = resources.templates_folder() / "html"
-    env = Environment(
-        loader=FileSystemLoader(folder),
-        autoescape=True,  # names and values are strangers' texts
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    css = [(folder / name).read_text(encoding="utf-8") for name in ("report.css", "steps.css")]
-    return env.get_template("steps.html.j2").render(
+    return html.page(
+        "steps.html.j2",
+        ("report.css", "steps.css"),
         title=title,
-        css=Markup("".join(css)),
         sections=sections,
         chosen=chosen,
         last=last,

@@ -7,12 +7,8 @@ from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
-from jinja2 import Environment, FileSystemLoader, StrictUndefined
-from markupsafe import Markup
-
 import pn2code
 from pn2code.base.deadline import NEVER, Deadline, TimeIsOverError
-from pn2code.base.resources import templates_folder
 from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet, FlatPlace
 from pn2code.semantics.game.token_game import GameError
@@ -25,7 +21,7 @@ from pn2code.verify.answers.properties import Answer
 from pn2code.verify.answers.properties import kind as kind_of
 from pn2code.verify.controller.control_types import TITLES, Control
 from pn2code.verify.exploring.result import Exploration, Trace, cut, multiset_text
-from pn2code.verify.report import control_text, properties_text
+from pn2code.verify.report import control_text, html, properties_text
 from pn2code.verify.report.text import bounded_places, left_out
 
 MOST_STEPS = 200
@@ -97,19 +93,11 @@ def webpage(
     }
     counts = counts or Counts.of(map(kind_of, answers))
     fair = [f"`{a.about.name}`: {', '.join(a.about.fair)}" for a in answers if a.about.fair]
-    # Names and inscriptions are strangers' texts: all of them are escaped.
-    env = Environment(
-        loader=FileSystemLoader(templates_folder() / "html"),
-        autoescape=True,
-        undefined=StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    css = (templates_folder() / "html" / "report.css").read_text(encoding="utf-8")
-    return env.get_template("report.html.j2").render(
+    return html.page(
+        "report.html.j2",
+        ("report.css",),
         title=net.name,
         file=net.file,
-        css=Markup(css),
         version=pn2code.__version__,
         sha256=net.sha256,
         written=f"{written:%Y-%m-%d %H:%M}",

@@ -3,12 +3,15 @@
 The instances of a transition share its code where their programs are the same but for places, and where those places
 are kept in the same way: the same C type (both slots, or both timed arrays of one length) and the same colour set.
 Each instance then has a constant table of its places, by which the code reaches them.
+
+`with_shared` writes it into the net (`shared`, `place_tables`), and again whenever it has become known how places are
+kept.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Transition
@@ -17,8 +20,55 @@ Agree = Callable[[int, int], bool]
 """Whether two places are kept in the same way."""
 
 
+def with_shared(net: ir.NetIR) -> ir.NetIR:
+    """The net, with what this pass finds; `is_slot` and the capacities are known."""
+
+    def agree(a: int, b: int) -> bool:
+        # Explorers have a function for each instance, so that the compiler can put it where it is called.
+        return not net.has_successors and _agree(net.places[a], net.places[b])
+
+    groups = _share(net.transitions, agree)
+    by_instances: dict[tuple[str, tuple[str, ...]], list[_Group]] = {}
+    for g in groups:
+        if g.varying:
+            by_instances.setdefault((g.model.origin.page, g.paths), []).append(g)
+    columns = {key: _columns(members) for key, members in by_instances.items()}
+    numbers = {key: number for number, key in enumerate(columns)}
+    shared = []
+    for g in groups:
+        key = (g.model.origin.page, g.paths)
+        own = [*columns[key]] if g.varying else []
+        shared.append(
+            ir.Shared(
+                tuple(t.index for t in g.instances),
+                numbers[key] if g.varying else None,
+                g.varying,
+                tuple(own.index(tuple(row[i] for row in g.at)) for i in range(len(g.varying))),
+            )
+        )
+    tables = (
+        ir.PlaceTable(
+            page,
+            paths,
+            names=tuple(found.values()),
+            rows=tuple(tuple(column[i] for column in found) for i in range(len(paths))),
+        )
+        for (page, paths), found in columns.items()
+    )
+    return replace(net, shared=tuple(shared), place_tables=tuple(tables))
+
+
+def _agree(a: ir.Place, b: ir.Place) -> bool:
+    """Whether two places are kept in the same way, and hold the same colours; a packed one only as itself."""
+    if a.index == b.index:
+        return True
+    if a.packed or b.packed or (a.table, a.is_slot) != (b.table, b.is_slot):
+        return False
+    return a.is_slot or (a.timed, a.capacity) == (b.timed, b.capacity)
+
+
 @dataclass(frozen=True, slots=True)
-class Shared:
+class _Group:
     """A transition of a page, with the instances that share its code.
 
     Args:
@@ -37,41 +87,12 @@ class Shared:
         return self.instances[0]
 
     @property
-    def page(self) -> str:
-        """The name of the page."""
-        return self.model.origin.page
-
-    @property
     def paths(self) -> tuple[str, ...]:
-        """The page instances: "Cell.Supervisor.Approach.Move both"."""
-        return tuple(path_of(t) for t in self.instances)
+        """The page instances."""
+        return tuple(t.path for t in self.instances)
 
 
-@dataclass(frozen=True, slots=True)
-class PlaceTable:
-    """The places of a page that its instances have for their own.
-
-    Args:
-        page: its name.
-        paths: the page instances.
-        places: of the first instance.
-        names: of the places on the page.
-        rows: for each page instance its places.
-    """
-
-    page: str
-    paths: tuple[str, ...]
-    places: tuple[int, ...]
-    names: tuple[str, ...]
-    rows: tuple[tuple[int, ...], ...]
-
-
-def path_of(t: Transition) -> str:
-    """The page instance of a transition."""
-    return t.name.rsplit(".", 1)[0]
-
-
-def share(transitions: tuple[Transition, ...], agree: Agree) -> tuple[Shared, ...]:
+def _share(transitions: tuple[Transition, ...], agree: Agree) -> tuple[_Group, ...]:
     """The transitions, those together that share their code, in order of the first of each."""
     open_groups: dict[tuple[str, ...], list[list[Transition]]] = {}
     maps: dict[int, dict[int, int]] = {}
@@ -88,44 +109,30 @@ def share(transitions: tuple[Transition, ...], agree: Agree) -> tuple[Shared, ..
             maps[t.index] = {}
             candidates.append([t])
             groups.append(candidates[-1])
-    return tuple(_shared(group, maps) for group in groups)
+    return tuple(_group(group, maps) for group in groups)
 
 
-def tables(groups: tuple[Shared, ...]) -> tuple[PlaceTable, ...]:
-    """One table for each page and set of its instances, in order; none where there is nothing to tell."""
-    by_instances: dict[tuple[str, tuple[str, ...]], list[Shared]] = {}
-    for g in groups:
-        if g.varying:
-            by_instances.setdefault((g.page, g.paths), []).append(g)
-    return tuple(_table(members) for members in by_instances.values())
-
-
-def _shared(group: list[Transition], maps: dict[int, dict[int, int]]) -> Shared:
+def _group(group: list[Transition], maps: dict[int, dict[int, int]]) -> _Group:
     varying = tuple(
         p
         for p in sorted({p for t in group for p in maps[t.index]})
         if any(maps[t.index].get(p, p) != p for t in group)
     )
     at = tuple(tuple(maps[t.index].get(p, p) for p in varying) for t in group)
-    return Shared(tuple(group), varying, at)
+    return _Group(tuple(group), varying, at)
 
 
-def _table(members: list[Shared]) -> PlaceTable:
-    """What several transitions call a place of the page is one column: their places are the same in all instances."""
+def _columns(members: list[_Group]) -> dict[tuple[int, ...], str]:
+    """The columns of a table (for each instance a place), in order, with the name on the page.
+
+    What several transitions call a place of the page is one column: their places are the same in all instances.
+    """
     columns: dict[tuple[int, ...], str] = {}
     for g in members:
         names = dict(g.model.places)
         for i, p in enumerate(g.varying):
             columns.setdefault(tuple(row[i] for row in g.at), names[p])
-    ordered = sorted(columns)
-    first = members[0]
-    return PlaceTable(
-        page=first.page,
-        paths=first.paths,
-        places=tuple(column[0] for column in ordered),
-        names=tuple(columns[column] for column in ordered),
-        rows=tuple(tuple(column[i] for column in ordered) for i in range(len(first.paths))),
-    )
+    return dict(sorted(columns.items()))
 
 
 def _places_of(model: Transition, other: Transition, agree: Agree) -> dict[int, int] | None:

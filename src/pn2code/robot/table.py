@@ -1,4 +1,4 @@
-"""Typed access to the tables of cell.toml that concern the robots, which reports what is wrong in them."""
+"""Typed access to one table of cell.toml, which reports what is wrong with it."""
 
 from __future__ import annotations
 
@@ -10,14 +10,23 @@ from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.keys import in_words
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes
-from pn2code.robot.commands import Pose
 
 Locate = Callable[..., Origin]
 """Origin of a key, given its path: `Locator.origin` of `pn2code.cell.toml_file`."""
 
 
-class SceneTable:
-    """Typed access to one table, reporting what is wrong; unknown keys by `done`."""
+class Table:
+    """Typed access to one table, reporting what is wrong; unknown keys by `done`.
+
+    What is wrong is an error in `d`, and a default stands in for it, so that the rest can be read.
+
+    Args:
+        data: what is in the file there; anything but a table is an error.
+        path: of the table, in the file.
+        at: gives the origin of a key.
+        d: where errors go.
+        whole: the whole file, to say in words which table it is.
+    """
 
     def __init__(
         self, data: Any, path: tuple[str | int, ...], at: Locate, d: Diagnostics, whole: object
@@ -29,14 +38,14 @@ class SceneTable:
             d.error(codes.ROBOT_VALUE, f"{self._words()} must be a table", at(*path))
 
     def at(self, key: str = "") -> Origin:
-        """Where the table, or a key of it, is written."""
+        """Where a key is, or the table."""
         return self._at(*self.path, key) if key else self._at(*self.path)
 
     def _words(self, *key: str) -> str:
         return in_words((*self.path, *key), self._whole)
 
     def wrong(self, key: str, expected: str, hint: str = "") -> None:
-        """Reports a value that is not what is expected."""
+        """Report that the value of a key is not what is expected (in words)."""
         self.d.error(
             codes.ROBOT_VALUE,
             f"{self._words(key)} is `{self.data[key]}`, but {expected} is expected",
@@ -45,7 +54,7 @@ class SceneTable:
         )
 
     def has(self, key: str, required: bool, expected: str) -> bool:
-        """Whether a key is there; reports one that is required and missing."""
+        """Whether there is a key, which is known then; without a required one there is an error."""
         self._used.append(key)
         if key not in self.data and required:
             self.d.error(
@@ -65,7 +74,10 @@ class SceneTable:
         high: float = math.inf,
         open_low: bool = False,
     ) -> float:
-        """A finite number between bounds; required without a default."""
+        """A finite number from `low` (above it, if `open_low`) to `high`; required without a default.
+
+        Lengths are in m and angles in degrees, as in the file.
+        """
         bounds = f" {'above' if open_low else 'from'} {low:g}" if low > -math.inf else ""
         bounds += f" to {high:g}" if high < math.inf else ""
         expected = f"a number{bounds}"
@@ -79,11 +91,11 @@ class SceneTable:
         return float(value)
 
     def positive(self, key: str, default: float | None = None, *, high: float = math.inf) -> float:
-        """A finite number above zero; required without a default."""
+        """A number above 0."""
         return self.number(key, default, low=0.0, high=high, open_low=True)
 
     def numbers(self, key: str, count: int | None, default: tuple[float, ...]) -> tuple[float, ...]:
-        """A list of numbers, `count` of them."""
+        """A list of `count` finite numbers; None: of any length."""
         expected = "a list of numbers" if count is None else f"a list of {count} numbers"
         if not self.has(key, False, expected):
             return default
@@ -98,7 +110,7 @@ class SceneTable:
         return tuple(map(float, value))
 
     def text(self, key: str, default: str | None = None, expected: str = "a name") -> str:
-        """A text that is not empty; required without a default."""
+        """A text that is not empty; required without a default, and "" after an error."""
         if not self.has(key, default is None, expected):
             return default or ""
         value = self.data[key]
@@ -108,7 +120,7 @@ class SceneTable:
         return value
 
     def flag(self, key: str, default: bool) -> bool:
-        """True or false."""
+        """A truth value."""
         if not self.has(key, False, "true or false"):
             return default
         if not isinstance(self.data[key], bool):
@@ -116,25 +128,25 @@ class SceneTable:
             return default
         return bool(self.data[key])
 
-    def table(self, key: str) -> SceneTable:
-        """The table at a key."""
+    def table(self, key: str) -> Table:
+        """A table within this one; KeyError if it is not there."""
         self._used.append(key)
-        return SceneTable(self.data[key], (*self.path, key), self._at, self.d, self._whole)
+        return Table(self.data[key], (*self.path, key), self._at, self.d, self._whole)
 
-    def tables(self, key: str) -> list[SceneTable]:
-        """The tables of the list at a key; none if it is missing."""
+    def tables(self, key: str) -> list[Table]:
+        """The tables of a list; none if it is not there."""
         self._used.append(key)
         value = self.data.get(key, [])
         if not isinstance(value, list):
             self.wrong(key, "a list of tables")
             return []
         return [
-            SceneTable(v, (*self.path, key, i), self._at, self.d, self._whole)
+            Table(v, (*self.path, key, i), self._at, self.d, self._whole)
             for i, v in enumerate(value)
         ]
 
     def done(self) -> None:
-        """Reports the keys that nobody has asked for."""
+        """Report the keys that nobody has asked for."""
         for key in self.data:
             if key not in self._used:
                 self.d.error(
@@ -148,23 +160,5 @@ class SceneTable:
 
 
 def is_number(value: object) -> bool:
-    """Whether it is a finite number of TOML."""
+    """Whether it is a finite number; truth values are none."""
     return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
-
-
-NO_POSE = Pose(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-
-
-def read_pose(t: SceneTable, key: str, *, required: bool = False) -> Pose:
-    """A pose (m, rad) that is written in m and degrees; at the origin where there is none."""
-    if not t.has(key, required, "a table { x, y, z, roll, pitch, yaw }: m, degrees"):
-        return NO_POSE
-    return read_own_pose(t.table(key))
-
-
-def read_own_pose(p: SceneTable) -> Pose:
-    """The pose that a table is."""
-    x, y, z = (p.number(k, 0.0) for k in ("x", "y", "z"))
-    rx, ry, rz = (math.radians(p.number(k, 0.0)) for k in ("roll", "pitch", "yaw"))
-    p.done()
-    return Pose(x, y, z, rx, ry, rz)

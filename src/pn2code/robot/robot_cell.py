@@ -1,0 +1,163 @@
+"""The cell as the robots see it, in SI units: arms, tools, bases, motion limits, scene objects."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from pn2code.base.frozen import frozen
+from pn2code.robot.commands import Pose
+from pn2code.robot.kinematics import Branch, Kinematics
+from pn2code.robot.model import AXES, Arm, Tool
+from pn2code.robot.motion import MotionLimits
+from pn2code.robot.parts_table import PartKind
+from pn2code.robot.scene_objects import SceneObject
+from pn2code.robot.transforms import Array, matrix_of
+
+PART_CONTACT = 1e-3
+"""m: parts are taken from what they rest on, and tools touch them: so deep they may overlap."""
+
+
+@frozen
+class MotionConfig:
+    """`[motion]` in SI units.
+
+    Args:
+        joint_speed: fraction (0..1] of the axis speeds.
+        joint_acceleration: rad/s2; joint_jerk rad/s3.
+        linear_speed: m/s; linear_acceleration m/s2; linear_jerk m/s3.
+        angular_speed: of the tool's turning on linear moves, rad/s.
+        measure_duration: how long a measurement takes, s.
+        sample: spacing of the samples that are checked, s.
+    """
+
+    joint_speed: float = 0.5
+    joint_acceleration: float = math.radians(200.0)
+    joint_jerk: float = math.radians(1000.0)
+    linear_speed: float = 0.05
+    linear_acceleration: float = 0.5
+    linear_jerk: float = 5.0
+    angular_speed: float = math.radians(30.0)
+    measure_duration: float = 1.0
+    sample: float = 0.02
+
+
+@frozen
+class PanelConfig:
+    """A piece of a cylindrical shell along x, with ribs and stringers inside; m and rad.
+
+    Args:
+        radius: of the middle of the skin, about the line (y, z) = (axis_y, axis_z).
+        facing: direction of arc angle 0, from +y towards +z.
+        arc_from: the skin's edges, arc angles about +x; arc_to likewise.
+        ribs: x of the ribs; rib_height: how far they stand inwards.
+        stringer_pitch: arc angle between stringers (0: none); none lies at arc angle 0.
+        stands: whether it rests on stands.
+        joint: whether two skins meet at arc angle 0 (drawn as a line).
+    """
+
+    radius: float
+    axis_y: float
+    axis_z: float
+    x_from: float
+    x_to: float
+    arc_from: float
+    arc_to: float
+    facing: float = 0.0
+    skin: float = 0.003
+    ribs: tuple[float, ...] = ()
+    rib_height: float = 0.07
+    rib_thickness: float = 0.006
+    stringer_pitch: float = 0.0
+    stringer_height: float = 0.025
+    stands: bool = True
+    joint: bool = False
+
+
+@frozen
+class ContactRule:
+    """Parts that may come together: names `body/link` with `*`, and how deep they may overlap (m)."""
+
+    a: str
+    b: str
+    depth: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class CellRobot:
+    """One robot of the cell.
+
+    Args:
+        base: of its base frame in the world.
+        home: joint position, rad.
+        branch: the only one joint moves may end in; None: the fastest to reach.
+    """
+
+    name: str
+    arm: Arm
+    tool: Tool | None
+    kinematics: Kinematics
+    base: Pose
+    home: tuple[float, ...]
+    branch: Branch | None
+
+    @property
+    def T_world_base(self) -> Array:  # noqa: N802
+        """The base frame."""
+        return matrix_of(self.base)
+
+    def limits(self, motion: MotionConfig) -> MotionLimits:
+        """What this arm may do under a motion configuration."""
+        ones = np.ones(AXES)
+        return MotionLimits(
+            velocity=self.arm.velocity * motion.joint_speed,
+            acceleration=ones * motion.joint_acceleration,
+            jerk=ones * motion.joint_jerk,
+            axis_velocity=self.arm.velocity,
+            linear_velocity=motion.linear_speed,
+            linear_acceleration=motion.linear_acceleration,
+            linear_jerk=motion.linear_jerk,
+            angular_velocity=motion.angular_speed,
+        )
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SceneConfig:
+    """Everything around the robots.
+
+    Args:
+        contacts: parts that may come together; all others must keep apart.
+        warning_clearance: closer than this (m) is reported, though not a collision.
+    """
+
+    panel: PanelConfig | None = None
+    objects: tuple[SceneObject, ...] = ()
+    floor: bool = True
+    contacts: tuple[ContactRule, ...] = ()
+    warning_clearance: float = 0.02
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class RobotCell:
+    """Robots, motion limits, scene and parts: what backends, monitor and executors are built from.
+
+    Args:
+        parts: the kinds of parts that are carried, by name.
+        places: poses in the world that have a name.
+    """
+
+    robots: tuple[CellRobot, ...]
+    motion: MotionConfig
+    scene: SceneConfig
+    parts: Mapping[str, PartKind] = field(default_factory=dict)
+    places: Mapping[str, Pose] = field(default_factory=dict)
+
+    def robot(self, name: str) -> CellRobot:
+        """The robot of that name; KeyError if there is none."""
+        for robot in self.robots:
+            if robot.name == name:
+                return robot
+        raise KeyError(name)

@@ -1,0 +1,94 @@
+"""Values of a script in the units and types of what it talks to: commands in SI, messages as scalars."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import astuple
+from typing import Any
+
+import pn2code.robot.commands as commands
+from pn2code.tdl import tree as t
+from pn2code.tdl.evaluate import ScriptError, ScriptPose, ScriptValue, single
+from pn2code.tdl.requests import Scalar
+from pn2code.tdl.types import Type
+
+
+def to_si(pose: ScriptPose) -> commands.Pose:
+    """Millimetres and degrees to metres and radians."""
+    return commands.Pose(
+        pose.x / 1000.0,
+        pose.y / 1000.0,
+        pose.z / 1000.0,
+        math.radians(pose.rx),
+        math.radians(pose.ry),
+        math.radians(pose.rz),
+    )
+
+
+def from_si(pose: commands.Pose, asked: commands.Pose, nominal: ScriptPose) -> ScriptPose:
+    """Metres and radians to millimetres and degrees.
+
+    A component that came back as it went out keeps its value in mm or degrees, to the last bit: a
+    conversion there and back would not.
+    """
+    return ScriptPose(
+        *(
+            was if si == sent else (si * 1000.0 if i < 3 else math.degrees(si))
+            for i, (si, sent, was) in enumerate(
+                zip(astuple(pose), astuple(asked), astuple(nominal), strict=True)
+            )
+        )
+    )
+
+
+def stored_value(value: ScriptValue, kind: t.TypeName) -> ScriptValue:
+    """The value as a variable or file of this type holds it."""
+    if kind.type is not Type.INT and isinstance(value, int) and not isinstance(value, bool):
+        value = float(value)
+    return single(value) if kind.single else value
+
+
+def scalars_of(value: ScriptValue) -> tuple[Scalar, ...]:
+    """The scalars of a message: of a pose its six components, in mm and degrees."""
+    return astuple(value) if isinstance(value, ScriptPose) else (value,)
+
+
+def typed_values(
+    name: str, message: tuple[Scalar, ...], kinds: tuple[t.TypeName, ...]
+) -> list[ScriptValue]:
+    """The values of a message; ScriptError if it is not what the script declares."""
+    values: list[ScriptValue] = []
+    rest = list(message)
+    try:
+        for kind in kinds:
+            if kind.type is Type.SIGNAL:
+                rest.pop(0)
+                continue
+            if kind.type is Type.POSE:
+                values.append(ScriptPose(*(scalar_of(rest.pop(0), Type.REAL) for _ in range(6))))
+            else:
+                values.append(scalar_of(rest.pop(0), kind.type))
+        if rest:
+            raise ValueError
+    except (IndexError, ValueError):
+        words = " ".join(map(str, message))
+        wanted = ", ".join(str(k.type) for k in kinds)
+        raise ScriptError(
+            f"file `{name}` holds `{words}`, but the script expects {wanted}"
+        ) from None
+    return values
+
+
+def scalar_of(x: Scalar, kind: Type) -> Any:
+    """One scalar as its type wants it; ValueError if it cannot be."""
+    if kind in (Type.STRING, Type.WORD):
+        if isinstance(x, str):
+            return x
+    elif kind is Type.BOOL:
+        if isinstance(x, bool) or (isinstance(x, int) and x in (0, 1)):
+            return bool(x)
+    elif isinstance(x, int) and not isinstance(x, bool):
+        return x if kind is Type.INT else float(x)
+    elif isinstance(x, float) and kind is not Type.INT and math.isfinite(x):
+        return x
+    raise ValueError
