@@ -184,6 +184,14 @@ class CellConfig:
         """Where the net is."""
         return self.folder / self.net_file
 
+    @property
+    def parts_at_start(self) -> dict[str, int]:
+        """How many parts of each kind there are at the start; what is wrong in these tables, `robot.scene` reports."""
+        kinds = self.geometry["parts"]
+        tables = kinds.items() if isinstance(kinds, dict) else ()
+        found = {kind: t.get("at") for kind, t in tables if isinstance(t, dict)}
+        return {kind: len(at) if isinstance(at, list) else 0 for kind, at in found.items()}
+
     def logic_digest(self) -> str:
         """SHA-256 of what this file contributes to the generated programs (geometry does not)."""
         robots = {

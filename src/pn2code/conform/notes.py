@@ -42,8 +42,7 @@ class RunNotes:
         self._names = [o.name for o in partition.owners]
         self._actions: dict[str, list[_Action]] = {name: [] for name in self._names[1:]}
         self._handled: dict[str, list[tuple[str, str]]] = {name: [] for name in self._names[1:]}
-        kinds = config.geometry["parts"]
-        self._created = Counter({kind: len(table.get("at", ())) for kind, table in kinds.items()})
+        self._created = Counter(config.parts_at_start)
         self._holder = {
             f"{kind}.{i + 1}": "" for kind, count in self._created.items() for i in range(count)
         }
