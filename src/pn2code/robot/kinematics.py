@@ -6,8 +6,9 @@
     k.conditioning(q).condition          # of the TCP Jacobian, lengths in m
 
 The inverse is `py-opw-kinematics` (docs/adr/006): all eight branches of an arm with parallel axes 2
-and 3 and a spherical wrist. Its parameters are derived from the URDF's axes and compared with the
-URDF's forward kinematics, which is the truth here; answers are verified against it as well.
+and 3 and a spherical wrist; for arms with parallel axes 2, 3 and 4 it is `eaik` (`parallel`). Their
+parameters are derived from the URDF's axes and compared with the URDF's forward kinematics, which is
+the truth here; answers are verified against it as well.
 """
 
 from __future__ import annotations
@@ -15,14 +16,14 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.robot import codes
+from pn2code.robot import codes, parallel
 from pn2code.robot.chain import Chain, cross, derive
 from pn2code.robot.model import AXES, Arm, Tool
 from pn2code.robot.opw import Robot
@@ -104,35 +105,58 @@ def condition_text(condition: float, digits: int = 0) -> str:
     return f"{condition:.{digits}f}"
 
 
-class Kinematics:
-    """Kinematics of one arm with one tool; lengths in m, angles in rad; frames are base and tcp."""
+class ClosedForm(Protocol):
+    """All joint positions of poses, by branch."""
 
-    def __init__(
-        self, arm: Arm, T_flange_tcp: Array, chain: Chain, model: Any, correction: Array
-    ) -> None:
-        self.arm = arm
-        self.T_flange_tcp = T_flange_tcp
-        self._chain = chain
+    def branches(self, T_base_tcp: Array) -> Array:
+        """Of n poses (n, 4, 4): (n, 8, 6), NaN where a branch does not exist."""
+
+
+class SphericalWrist:
+    """The inverse of arms with parallel axes 2 and 3 and a spherical wrist."""
+
+    def __init__(self, model: Any, correction: Array, T_flange_tcp: Array) -> None:
         self._robot = Robot(model)
         # The library's flange may be turned against the URDF's by a constant rotation.
         self._T_tcp_library = inverse(correction @ T_flange_tcp)
+
+    def branches(self, T_base_tcp: Array) -> Array:
+        """Of n poses (n, 4, 4): (n, 8, 6)."""
+        return self._robot.branches(T_base_tcp @ self._T_tcp_library)
+
+
+class Kinematics:
+    """Kinematics of one arm with one tool; lengths in m, angles in rad; frames are base and tcp."""
+
+    def __init__(self, arm: Arm, T_flange_tcp: Array, chain: Chain, form: ClosedForm) -> None:
+        self.arm = arm
+        self.T_flange_tcp = T_flange_tcp
+        self._chain = chain
+        self._form = form
 
     @classmethod
     def of(cls, arm: Arm, tool: Tool | None, at: Origin, d: Diagnostics) -> Kinematics | None:
         """The kinematics of an arm; None (and a diagnostic) if there is no closed form for it."""
         chain = Chain(arm)
-        derived = derive(chain)
-        if isinstance(derived, str):
-            d.error(
-                codes.UNSUPPORTED_KINEMATICS,
-                f"robot model `{arm.name}` has no closed-form inverse kinematics: {derived}",
-                at,
-                hint="an arm needs axis 1 along the base's z, parallel axes 2 and 3, and a "
-                "spherical wrist",
-            )
-            return None
         frame = np.eye(4) if tool is None else tool.T_flange_tcp
-        return cls(arm, frame, chain, *derived)
+        derived = derive(chain)
+        if not isinstance(derived, str):
+            return cls(arm, frame, chain, SphericalWrist(*derived, frame))
+        form = parallel.derive(chain, frame)
+        if not isinstance(form, str):
+            return cls(arm, frame, chain, form)
+        d.error(
+            codes.UNSUPPORTED_KINEMATICS,
+            f"robot model `{arm.name}` has no closed-form inverse kinematics: "
+            + (form if form == parallel.MISSING else derived),
+            at,
+            notes=[] if form == parallel.MISSING else [f"nor as a collaborative robot: {form}"],
+            hint=""
+            if form == parallel.MISSING
+            else "an arm needs axis 1 along the base's z, parallel axes 2 and 3, and a spherical wrist; or parallel "
+            "axes 2, 3 and 4, and axes 5 and 6 at right angles to those before",
+        )
+        return None
 
     # Forward
 
@@ -211,7 +235,7 @@ class Kinematics:
         return found
 
     def _closed_form(self, T_base_tcp: Array) -> Array:
-        return self._robot.branches(T_base_tcp @ self._T_tcp_library)
+        return self._form.branches(T_base_tcp)
 
     def _refine(self, rows: Array, targets: Array) -> None:
         there = np.flatnonzero(~np.isnan(rows[:, 0]))

@@ -18,7 +18,7 @@ def test_files_are_up_to_date():
 
 
 def test_library_names():
-    assert known_arms() == ("kr120_r2500", "kr210_r2700")
+    assert known_arms() == ("kr120_r2500", "kr210_r2700", "ur10e", "ur5e")
     assert known_tools() == ("counterpoint", "drill_riveter", "vacuum_gripper")
 
 

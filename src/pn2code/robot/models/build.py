@@ -11,10 +11,10 @@ At zero the arm is stretched out along x; the upper arm ("link 2") runs beside t
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from pn2code.robot.models.cobots import cobots
 from pn2code.robot.models.shapes import (
     Mesh,
     block,
@@ -25,17 +25,17 @@ from pn2code.robot.models.shapes import (
     slab,
     square,
 )
-
-COLOURS = {
-    "orange": "0.93 0.38 0.07 1",
-    "dark": "0.13 0.14 0.16 1",
-    "grey": "0.45 0.47 0.50 1",
-    "steel": "0.76 0.78 0.80 1",
-    "blue": "0.10 0.30 0.55 1",
-    "glass": "0.05 0.12 0.20 1",
-    "brass": "0.80 0.62 0.28 1",
-    "yellow": "0.95 0.76 0.10 1",
-}
+from pn2code.robot.models.urdf_text import (
+    HEAD,
+    Parts,
+    Shapes,
+    box,
+    cylinder,
+    fixed,
+    link_text,
+    materials,
+    origin,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,30 +63,6 @@ ARMS = (
     ),
 )
 _AXIS = ("0 0 -1", "0 1 0", "0 1 0", "-1 0 0", "0 1 0", "-1 0 0")
-_UPRIGHT = {"x": f"0 {math.pi / 2} 0", "y": f"{math.pi / 2} 0 0", "z": "0 0 0"}
-
-Shapes = dict[str, Mesh]
-Parts = list[str]
-
-
-def _origin(at: Sequence[float], rpy: str) -> str:
-    return f'<origin xyz="{" ".join(f"{v:.6g}" for v in at)}" rpy="{rpy}"/>'
-
-
-def _box(low: Sequence[float], high: Sequence[float]) -> str:
-    size = [b - a for a, b in zip(low, high, strict=True)]
-    centre = [(a + b) / 2 for a, b in zip(low, high, strict=True)]
-    text = " ".join(f"{v:.6g}" for v in size)
-    return f'{_origin(centre, "0 0 0")}<geometry><box size="{text}"/></geometry>'
-
-
-def _cylinder(axis: str, start: float, end: float, radius: float, at: Sequence[float]) -> str:
-    centre = list(at)
-    centre["xyz".index(axis)] += (start + end) / 2
-    return (
-        f"{_origin(centre, _UPRIGHT[axis])}<geometry>"
-        f'<cylinder radius="{radius:.6g}" length="{end - start:.6g}"/></geometry>'
-    )
 
 
 def _base() -> tuple[Shapes, Parts]:
@@ -112,9 +88,9 @@ def _base() -> tuple[Shapes, Parts]:
         "steel": anchors,
     }
     parts = [
-        _box((-0.415, -0.415, 0.0), (0.415, 0.415, 0.06)),
-        _cylinder("z", 0.06, 0.36, 0.34, (0, 0, 0)),
-        _box((-0.50, -0.16, 0.10), (-0.28, 0.16, 0.24)),
+        box((-0.415, -0.415, 0.0), (0.415, 0.415, 0.06)),
+        cylinder("z", 0.06, 0.36, 0.34, (0, 0, 0)),
+        box((-0.50, -0.16, 0.10), (-0.28, 0.16, 0.24)),
     ]
     return shapes, parts
 
@@ -138,13 +114,13 @@ def _column() -> tuple[Shapes, Parts]:
         + bolts("y", 0.21, 0.155, 12, 0.012, (0.35, 0, 0)),
     }
     parts = [
-        _cylinder("z", -0.315, -0.215, 0.345, (0, 0, 0)),
-        _box((-0.30, -0.13, -0.28), (0.14, 0.21, -0.02)),
-        _box((0.14, -0.13, -0.26), (0.42, 0.21, 0.05)),
-        _cylinder("y", -0.15, 0.21, 0.21, (0.35, 0, 0)),
-        _cylinder("y", 0.21, 0.50, 0.115, (0.35, 0, 0)),
-        _cylinder("z", -0.08, 0.27, 0.085, (-0.17, 0.08, 0)),
-        _cylinder("x", -0.435, 0.14, 0.095, (0, -0.235, -0.035)),
+        cylinder("z", -0.315, -0.215, 0.345, (0, 0, 0)),
+        box((-0.30, -0.13, -0.28), (0.14, 0.21, -0.02)),
+        box((0.14, -0.13, -0.26), (0.42, 0.21, 0.05)),
+        cylinder("y", -0.15, 0.21, 0.21, (0.35, 0, 0)),
+        cylinder("y", 0.21, 0.50, 0.115, (0.35, 0, 0)),
+        cylinder("z", -0.08, 0.27, 0.085, (-0.17, 0.08, 0)),
+        cylinder("x", -0.435, 0.14, 0.095, (0, -0.235, -0.035)),
     ]
     return shapes, parts
 
@@ -167,9 +143,9 @@ def _lower_arm(length: float) -> tuple[Shapes, Parts]:
         + bolts("y", y0 - 0.025, 0.085, 8, -0.01, (length, 0, 0)),
     }
     parts = [
-        _box((0.0, y0 - 0.03, -0.165), (length, y1 + 0.042, 0.165)),
-        _cylinder("y", y0 - 0.035, y1, 0.20, (0, 0, 0)),
-        _cylinder("y", y0 - 0.035, y1, 0.15, (length, 0, 0)),
+        box((0.0, y0 - 0.03, -0.165), (length, y1 + 0.042, 0.165)),
+        cylinder("y", y0 - 0.035, y1, 0.20, (0, 0, 0)),
+        cylinder("y", y0 - 0.035, y1, 0.15, (length, 0, 0)),
     ]
     return shapes, parts
 
@@ -194,11 +170,11 @@ def _elbow(offset: float) -> tuple[Shapes, Parts]:
         "steel": bolts("x", 0.405, 0.135, 14, 0.009, (0, 0, z)),
     }
     parts = [
-        _box((-0.29, -0.14, -0.13), (0.12, 0.17, 0.165)),
-        _cylinder("x", 0.10, 0.44, 0.17, (0, 0, z)),
-        _box((-0.50, -0.13, -0.12), (-0.25, 0.165, 0.15)),
-        _cylinder("y", 0.17, 0.42, 0.095, (0, 0, 0)),
-        _cylinder("y", -0.155, 0.17, 0.165, (0, 0, 0)),
+        box((-0.29, -0.14, -0.13), (0.12, 0.17, 0.165)),
+        cylinder("x", 0.10, 0.44, 0.17, (0, 0, z)),
+        box((-0.50, -0.13, -0.12), (-0.25, 0.165, 0.15)),
+        cylinder("y", 0.17, 0.42, 0.095, (0, 0, 0)),
+        cylinder("y", -0.155, 0.17, 0.165, (0, 0, 0)),
     ]
     return shapes, parts
 
@@ -238,11 +214,11 @@ def _forearm(length: float) -> tuple[Shapes, Parts]:
         "steel": bolts("x", 0.50, 0.142, 12, -0.008),
     }
     parts = [
-        _cylinder("x", 0.45, end + 0.10, 0.15, (0, 0, 0)),
-        _box((end, -0.15, -0.105), (length, -0.085, 0.105)),
-        _box((end, 0.085, -0.105), (length, 0.15, 0.105)),
-        _cylinder("y", -0.15, -0.085, 0.09, (length, 0, 0)),
-        _cylinder("y", 0.085, 0.15, 0.09, (length, 0, 0)),
+        cylinder("x", 0.45, end + 0.10, 0.15, (0, 0, 0)),
+        box((end, -0.15, -0.105), (length, -0.085, 0.105)),
+        box((end, 0.085, -0.105), (length, 0.15, 0.105)),
+        cylinder("y", -0.15, -0.085, 0.09, (length, 0, 0)),
+        cylinder("y", 0.085, 0.15, 0.09, (length, 0, 0)),
     ]
     return shapes, parts
 
@@ -252,15 +228,15 @@ def _wrist() -> tuple[Shapes, Parts]:
     snout = lathe("x", [(0.0, 0.078), (0.08, 0.078), (0.13, 0.084), (0.165, 0.084), (0.175, 0.074)])
     shapes = {"orange": hub + snout, "dark": lathe("x", [(0.175, 0.068), (0.186, 0.068)])}
     parts = [
-        _cylinder("y", -0.08, 0.08, 0.083, (0, 0, 0)),
-        _cylinder("x", 0.0, 0.186, 0.085, (0, 0, 0)),
+        cylinder("y", -0.08, 0.08, 0.083, (0, 0, 0)),
+        cylinder("x", 0.0, 0.186, 0.085, (0, 0, 0)),
     ]
     return shapes, parts
 
 
 def _flange_disc() -> tuple[Shapes, Parts]:
     disc = lathe("x", [(0.186, 0.07), (0.190, 0.08), (0.211, 0.08), (0.215, 0.076)])
-    return {"steel": disc}, [_cylinder("x", 0.186, 0.215, 0.08, (0, 0, 0))]
+    return {"steel": disc}, [cylinder("x", 0.186, 0.215, 0.08, (0, 0, 0))]
 
 
 def _drill() -> dict[str, tuple[Shapes, Parts]]:
@@ -293,28 +269,28 @@ def _drill() -> dict[str, tuple[Shapes, Parts]]:
         "body": (
             body,
             [
-                _box((-0.15, -0.09, 0.0), (0.10, 0.09, 0.27)),
-                _cylinder("z", 0.05, 0.30, 0.05, (0.135, 0, 0)),
-                _box((-0.06, -0.185, 0.13), (0.06, -0.09, 0.305)),
-                _cylinder("x", -0.035, 0.035, 0.055, (0, 0.13, 0.11)),
-                _cylinder("z", 0.27, 0.315, 0.075, (0, 0, 0)),
+                box((-0.15, -0.09, 0.0), (0.10, 0.09, 0.27)),
+                cylinder("z", 0.05, 0.30, 0.05, (0.135, 0, 0)),
+                box((-0.06, -0.185, 0.13), (0.06, -0.09, 0.305)),
+                cylinder("x", -0.035, 0.035, 0.055, (0, 0.13, 0.11)),
+                cylinder("z", 0.27, 0.315, 0.075, (0, 0, 0)),
             ],
         ),
         "nose": (
             {"steel": nose, "brass": ring},
             [
-                _cylinder("z", 0.315, 0.385, 0.05, (0, 0, 0)),
-                _cylinder("z", 0.385, 0.45, 0.036, (0, 0, 0)),
+                cylinder("z", 0.315, 0.385, 0.05, (0, 0, 0)),
+                cylinder("z", 0.385, 0.45, 0.036, (0, 0, 0)),
             ],
         ),
-        "tip": ({"steel": tip}, [_cylinder("z", 0.45, 0.50, 0.026, (0, 0, 0))]),
+        "tip": ({"steel": tip}, [cylinder("z", 0.45, 0.50, 0.026, (0, 0, 0))]),
     }
 
 
 def _counterpoint() -> dict[str, tuple[Shapes, Parts]]:
     """Counterpoint: a pneumatic cylinder with guide rods that presses a slender anvil to the skin."""
     plate = rod("z", 0.0, 0.025, 0.105, (0, 0, 0), 0.006)
-    cylinder = rod("z", 0.025, 0.27, 0.07, (0, 0, 0), 0.012)
+    press = rod("z", 0.025, 0.27, 0.07, (0, 0, 0), 0.012)
     valve = block((-0.12, -0.045, 0.07), (-0.06, 0.045, 0.22), 0.01)
     rods = Mesh()
     for x, y in ((0.055, 0.06), (0.055, -0.06), (-0.075, 0.06), (-0.075, -0.06)):
@@ -322,7 +298,7 @@ def _counterpoint() -> dict[str, tuple[Shapes, Parts]]:
     head = block((-0.09, -0.08, 0.27), (0.075, 0.08, 0.305), 0.02, 0.006)
     body = {
         "grey": plate + head,
-        "blue": cylinder,
+        "blue": press,
         "dark": valve,
         "steel": rods + bolts("z", 0.025, 0.09, 8, 0.008),
         "yellow": lathe("z", [(0.14, 0.0715), (0.165, 0.0715)]),
@@ -335,21 +311,21 @@ def _counterpoint() -> dict[str, tuple[Shapes, Parts]]:
         "body": (
             body,
             [
-                _cylinder("z", 0.0, 0.025, 0.105, (0, 0, 0)),
-                _cylinder("z", 0.025, 0.27, 0.072, (0, 0, 0)),
-                _box((-0.12, -0.08, 0.025), (0.075, 0.08, 0.305)),
+                cylinder("z", 0.0, 0.025, 0.105, (0, 0, 0)),
+                cylinder("z", 0.025, 0.27, 0.072, (0, 0, 0)),
+                box((-0.12, -0.08, 0.025), (0.075, 0.08, 0.305)),
             ],
         ),
         "nose": (
             {"steel": nose, "brass": lathe("z", [(0.405, 0.036), (0.415, 0.036)])},
             [
-                _cylinder("z", 0.305, 0.42, 0.040, (0, 0, 0)),
-                _cylinder("z", 0.42, 0.45, 0.024, (0, 0, 0)),
+                cylinder("z", 0.305, 0.42, 0.040, (0, 0, 0)),
+                cylinder("z", 0.42, 0.45, 0.024, (0, 0, 0)),
             ],
         ),
         "tip": (
             {"steel": lathe("z", [(0.45, 0.022), (0.492, 0.018), (0.5, 0.013)])},
-            [_cylinder("z", 0.45, 0.50, 0.022, (0, 0, 0))],
+            [cylinder("z", 0.45, 0.50, 0.022, (0, 0, 0))],
         ),
     }
 
@@ -369,60 +345,26 @@ def _vacuum_gripper() -> dict[str, tuple[Shapes, Parts]]:
         "body": (
             body,
             [
-                _cylinder("z", 0.0, 0.02, 0.09, (0, 0, 0)),
-                _box((-0.05, -0.05, 0.02), (0.085, 0.075, 0.075)),
+                cylinder("z", 0.0, 0.02, 0.09, (0, 0, 0)),
+                box((-0.05, -0.05, 0.02), (0.085, 0.075, 0.075)),
             ],
         ),
-        "nose": ({"steel": mast}, [_cylinder("z", 0.075, 0.15, 0.016, (0, 0, 0))]),
-        "tip": ({"dark": cup}, [_cylinder("z", 0.15, 0.20, 0.038, (0, 0, 0))]),
+        "nose": ({"steel": mast}, [cylinder("z", 0.075, 0.15, 0.016, (0, 0, 0))]),
+        "tip": ({"dark": cup}, [cylinder("z", 0.15, 0.20, 0.038, (0, 0, 0))]),
     }
-
-
-def _link(
-    name: str, stem: str, folder: str, content: tuple[Shapes, Parts] | None, out: dict[str, str]
-) -> str:
-    if content is None:
-        return f'  <link name="{name}"/>\n'
-    shapes, parts = content
-    lines = [f'  <link name="{name}">']
-    for colour, mesh in shapes.items():
-        file = f"meshes/{stem}_{colour}.obj"
-        out[file] = mesh.obj()
-        lines.append(
-            f'    <visual><geometry><mesh filename="{folder}{file}"/></geometry>'
-            f'<material name="{colour}"/></visual>'
-        )
-    lines += [f"    <collision>{part}</collision>" for part in parts]
-    return "\n".join([*lines, "  </link>\n"])
-
-
-def _materials(used: Sequence[str]) -> str:
-    return "".join(
-        f'  <material name="{c}"><color rgba="{COLOURS[c]}"/></material>\n' for c in used
-    )
-
-
-def _fixed(name: str, parent: str, child: str, origin: str = "") -> str:
-    return (
-        f'  <joint name="{name}" type="fixed">{origin}<parent link="{parent}"/>'
-        f'<child link="{child}"/></joint>\n'
-    )
-
-
-_HEAD = '<?xml version="1.0"?>\n<!-- Made by pn2code.robot.models.build; change that. -->\n'
 
 
 def _arm(spec: ArmSpec, out: dict[str, str]) -> None:
     long = f"{round(spec.d4 * 1000)}"
     links = [
-        _link("base_link", "base", "", _base(), out),
-        _link("link_1", "link_1", "", _column(), out),
-        _link("link_2", "link_2", "", _lower_arm(spec.a2), out),
-        _link("link_3", "link_3", "", _elbow(spec.offset), out),
-        _link("link_4", f"link_4_{long}", "", _forearm(spec.d4), out),
-        _link("link_5", "link_5", "", _wrist(), out),
-        _link("link_6", "link_6", "", _flange_disc(), out),
-        _link("flange", "", "", None, out),
+        link_text("base_link", "base", "", _base(), out),
+        link_text("link_1", "link_1", "", _column(), out),
+        link_text("link_2", "link_2", "", _lower_arm(spec.a2), out),
+        link_text("link_3", "link_3", "", _elbow(spec.offset), out),
+        link_text("link_4", f"link_4_{long}", "", _forearm(spec.d4), out),
+        link_text("link_5", "link_5", "", _wrist(), out),
+        link_text("link_6", "link_6", "", _flange_disc(), out),
+        link_text("flange", "", "", None, out),
     ]
     places = [
         (0.0, 0.0, spec.d1),
@@ -437,16 +379,16 @@ def _arm(spec: ArmSpec, out: dict[str, str]) -> None:
         low, high = (math.radians(v) for v in spec.limits[i])
         parent = f"link_{i}" if i else "base_link"
         joints.append(
-            f'  <joint name="joint_{i + 1}" type="revolute">{_origin(place, "0 0 0")}'
+            f'  <joint name="joint_{i + 1}" type="revolute">{origin(place, "0 0 0")}'
             f'<parent link="{parent}"/><child link="link_{i + 1}"/><axis xyz="{_AXIS[i]}"/>\n'
             f'    <limit lower="{low!r}" upper="{high!r}" effort="0" '
             f'velocity="{math.radians(spec.speeds[i])!r}"/></joint>\n'
         )
-    flange = _fixed("mount", "link_6", "flange", _origin((spec.d6, 0, 0), f"0 {math.pi / 2!r} 0"))
+    flange = fixed("mount", "link_6", "flange", origin((spec.d6, 0, 0), f"0 {math.pi / 2!r} 0"))
     # Never tested against each other: neighbours, and what meets in the wrist.
     ignore = '  <pn2code ignore="link_4+link_6 link_4+flange"/>\n'
     out[f"{spec.name}.urdf"] = (
-        f'{_HEAD}<robot name="{spec.name}">\n{_materials(("orange", "dark", "grey", "steel"))}'
+        f'{HEAD}<robot name="{spec.name}">\n{materials(("orange", "dark", "grey", "steel"))}'
         f"{''.join(links)}{''.join(joints)}{flange}{ignore}</robot>\n"
     )
 
@@ -454,13 +396,15 @@ def _arm(spec: ArmSpec, out: dict[str, str]) -> None:
 def _tool(
     name: str, tcp: float, links: dict[str, tuple[Shapes, Parts]], out: dict[str, str]
 ) -> None:
-    text = [_link(part, f"{name}_{part}", "../", content, out) for part, content in links.items()]
-    text += ['  <link name="tcp"/>\n', _fixed("nose_mount", "body", "nose")]
-    text += [_fixed("tip_mount", "nose", "tip")]
-    text += [_fixed("tcp_mount", "tip", "tcp", _origin((0, 0, tcp), "0 0 0"))]
+    text = [
+        link_text(part, f"{name}_{part}", "../", content, out) for part, content in links.items()
+    ]
+    text += ['  <link name="tcp"/>\n', fixed("nose_mount", "body", "nose")]
+    text += [fixed("tip_mount", "nose", "tip")]
+    text += [fixed("tcp_mount", "tip", "tcp", origin((0, 0, tcp), "0 0 0"))]
     used = sorted({c for shapes, _ in links.values() for c in shapes})
     out[f"tools/{name}.urdf"] = (
-        f'{_HEAD}<robot name="{name}">\n{_materials(used)}{"".join(text)}'
+        f'{HEAD}<robot name="{name}">\n{materials(used)}{"".join(text)}'
         "  <!-- Only the last 50 mm may touch the work piece. -->\n"
         '  <pn2code contact="tip"/>\n</robot>\n'
     )
@@ -471,6 +415,7 @@ def files() -> dict[str, str]:
     out: dict[str, str] = {}
     for spec in ARMS:
         _arm(spec, out)
+    cobots(out)
     _tool("drill_riveter", 0.5, _drill(), out)
     _tool("counterpoint", 0.5, _counterpoint(), out)
     _tool("vacuum_gripper", 0.2, _vacuum_gripper(), out)
