@@ -16,7 +16,6 @@ from helpers.session import alone, common, once
 from helpers.thorough import THOROUGH
 from pn2code.diagnostics import Diagnostics
 from pn2code.toolchain import build, programs
-from pn2code.verify.controller import proofs
 
 pytest_plugins = ("pace.plugin",)
 ROOT = Path(__file__).resolve().parent.parent
@@ -79,7 +78,6 @@ def quick_programs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as changed:
         changed.setattr(programs._Builder, "_library", one_library)
         changed.setattr(programs, "MOST_PROGRAMS", 512)
-        changed.setattr(proofs, "MOST_SECONDS", 3600.0)  # what is known does not depend on time
         if not THOROUGH:
             flags = tuple("-O0" if flag == "-O2" else flag for flag in DELIVERED)
             changed.setattr(programs, "FLAGS", flags)

@@ -248,7 +248,7 @@ class Seen:
             return NOTHING
         if self.loose:
             return LOOSE
-        limits = Limits(max_states=20_000, max_seconds=60.0, traces=0)
+        limits = Limits(max_states=20_000, processor_seconds=60.0, traces=0)
         d = Diagnostics()
         found = explore(self.net, {}, limits, d)
         if found is None:

@@ -9,8 +9,7 @@
  *   - places that the table does not say it reads make no difference
  *   - without a token that a firing takes it is not enabled; an arc that takes what there is (a reset) never needs one
  *   - a firing whose token has no room is refused for that reason, and says in which place
- *   - a binding that the search does not give (one component is changed) does no harm either, but that a firing
- *     which misses a token may have taken others; the marking is of no use then
+ *   - a binding that the search does not give (one component is changed) does no harm either
  *   - with little memory for strings and lists a firing is refused for that reason, or does the same
  */
 #include <string.h>
@@ -225,7 +224,7 @@ static ex_outcome_t fire(ex_t *ex, uint32_t transition, const void *before, cons
     if (is_accepted) {
         ex->has_fired[transition] = true;
         check_changed(ex, transition, before, is_strict);
-    } else if (outcome != EX_MISSING) {
+    } else {
         check_unchanged(ex, transition, before);
     }
     return outcome;

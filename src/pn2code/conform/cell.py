@@ -183,7 +183,7 @@ class ProgramComparison:
 
         Args:
             program: the supervisor.
-            patience: seconds that it may take for an answer.
+            patience: seconds of processor time that it may take for an answer.
             tables_first: where these differ, no state is looked at.
 
         Raises:

@@ -23,6 +23,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.processor_time import Patience, group_time
 from pn2code.toolchain.programs import Host
 
 HOST = Host(
@@ -34,6 +35,8 @@ HOST = Host(
     instead=("port_posix.c",),
 )
 PATIENCE_S = 60.0
+"""Of processor time: whether a program comes to rest does not depend on who else computes."""
+_LOOK_S = 0.5
 SESSION = "00000001"
 """The name of the only session that a program under test ever has."""
 
@@ -71,7 +74,7 @@ class Probe:
     Args:
         program: compiled with `HOST`.
         options: for the program, such as its input folder.
-        patience: seconds to wait for an answer; a program that takes longer does not come to rest.
+        patience: seconds of processor time for an answer; a program that takes longer does not come to rest.
 
     Attributes:
         tables: what the program says of itself (cell_config.c, and the tables of net.c).
@@ -82,7 +85,7 @@ class Probe:
     def __init__(
         self, program: Path, options: Sequence[str] = (), patience: float = PATIENCE_S
     ) -> None:
-        self._patience = patience
+        self._seconds = patience
         self._rest = b""
         self._said = tempfile.TemporaryFile("w+b")  # noqa: SIM115 - closed at the end of the conversation
         self._process = subprocess.Popen(
@@ -92,6 +95,8 @@ class Probe:
             stderr=self._said,
             start_new_session=True,
         )
+        # Its states are saved in processes: the one that answers is of its group.
+        self._patience = Patience(patience, lambda: group_time(self._process.pid))
         self.depth = 0
         try:
             self.tables = self._line()
@@ -163,10 +168,15 @@ class Probe:
         """The next line, or what there is of it at the end."""
         assert self._process.stdout is not None
         pipe = self._process.stdout.fileno()
+        self._patience.renew()
         while b"\n" not in self._rest:
-            if not select.select([pipe], [], [], self._patience)[0]:
-                self.kill()
-                raise ProbeError(f"it does not come to rest within {self._patience:g} s")
+            if not select.select([pipe], [], [], _LOOK_S)[0]:
+                if self._patience.is_over():
+                    self.kill()
+                    raise ProbeError(
+                        f"it does not come to rest within {self._seconds:g} s of processor time"
+                    )
+                continue
             if not (more := os.read(pipe, 1 << 16)):
                 return self._rest
             self._rest += more

@@ -1,8 +1,10 @@
 """An occurrence printed with the inline functions of its places (pn_place.h), and with slots (`passes.slots`).
 
 First everything is worked out, so that whatever raises leaves the marking alone. Then it is looked whether the slots
-have room, then tokens are taken from the other places and put there; if one of those turns out to be full, all is put
-back. The slots change last. What the search has found in a slot is not looked at again: only enabled bindings occur.
+have room, then tokens are taken from the other places and put there; if one is missing, or a place turns out to be
+full, all is put back. The slots change last. What the search has found in a slot is not looked at again: only enabled
+bindings occur. From the other places tokens may be missing, since an inscription may give another value than it gave in
+the search (random numbers, files, references).
 """
 
 from __future__ import annotations
@@ -255,11 +257,27 @@ class DirectFiring(NetStatements):
     def _take(self, takes: list[_Move]) -> None:
         if not takes:
             return
+        done: list[tuple[str, _Move]] = []
         for i, move in enumerate(takes):
+            is_last = i == len(takes) - 1
+            name = "is_taken"
+            if not is_last:
+                place = self._x.place_names[move.place]
+                name = self._scope.name(("taken", i), f"is_taken_{place}")
+            before = f"{done[-1][0]} && " if done else ""
             self.note(move.note)
-            start = "bool is_taken = " if i == 0 else "is_taken = is_taken && "
-            self.line(f"{start}{self._call(move)};")
+            self.line(f"const bool {name} = {before}{self._call(move)};")
+            if not is_last:
+                done.append((name, move))
         self.line("if (!is_taken) {")
+        if self._puts_back and done:
+            self._depth += 1
+            self.note("a token is missing: those before it are put back")
+            for name, move in done:
+                self.line(f"if ({name}) {{")
+                self.line(f"    (void){self._call(move, 'add')};")
+                self.line("}")
+            self._depth -= 1
         self.line("    return pn_fail_missing(cx);")
         self.line("}")
 

@@ -26,6 +26,7 @@ from pn2code.verify.exploring.result import Exploration
 from pn2code.verify.report.text import report
 
 SECONDS = 300.0
+"""Of processor time, for one net."""
 _MOST_LINES = 4
 _SECONDS = re.compile(r"     Secs:   \d+")
 _NODES = re.compile(r"     (?:(\d+) )?\[([\d,]*)(?:,\.\.\.)?\]")
@@ -43,7 +44,7 @@ def explored(corpus: Path, path: str) -> Finding:
     if net is None:
         return NOTHING
     try:
-        found = explore(net, {}, Limits(max_seconds=SECONDS, traces=0), d)
+        found = explore(net, {}, Limits(processor_seconds=SECONDS, traces=0), d)
     except GameError as error:
         return differs(error.message)
     if found is None:

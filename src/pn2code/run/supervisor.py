@@ -15,7 +15,6 @@ import selectors
 import signal
 import subprocess
 import threading
-import time
 from collections import deque
 from contextlib import suppress
 from dataclasses import dataclass
@@ -23,6 +22,8 @@ from pathlib import Path
 from typing import IO, Final
 
 from pn2code.base.closing import Closing
+
+from pn2code.base.processor_time import Patience, processor_time
 
 EXIT_MEANING: Final[dict[int, str]] = {
     0: "finished",
@@ -40,6 +41,7 @@ EXIT_USAGE: Final = 2
 """Wrong usage, or a mistake in an input file."""
 
 _KEPT_LINES = 400
+_LOOK_S = 0.5
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +118,7 @@ class SupervisorProcess(Closing):
             reply_timeout_s: overrides the cell's.
             poll_ms: look at the files instead of being woken.
             verbosity: 0, 1 or 2.
-            answer_timeout_s: wall time that a `step` may take.
+            answer_timeout_s: processor time that a `step` may take.
         """
         command = [str(program.resolve()), "--dir", str(directory), "--input", str(input_dir)]
         if trace is not None:
@@ -213,7 +215,10 @@ class SupervisorProcess(Closing):
             self._process.kill()
             ended = self._end()
             return StepResult(
-                0, None, False, f"the supervisor did not answer within {self._answer_timeout:g} s"
+                0,
+                None,
+                False,
+                f"the supervisor did not answer within {self._answer_timeout:g} s of processor time",
             )
         ended = self._end()
         return StepResult(
@@ -223,13 +228,14 @@ class SupervisorProcess(Closing):
     def _answer(self) -> str:
         """One line from stdout; "" when the process ended or did not answer in time."""
         stdout = self._stream(self._process.stdout)
-        end = time.monotonic() + self._answer_timeout
+        patience = Patience(self._answer_timeout, lambda: processor_time(self.pid))
         with selectors.DefaultSelector() as selector:
             selector.register(stdout, selectors.EVENT_READ)
             while b"\n" not in self._pending:
-                left = end - time.monotonic()
-                if left <= 0 or not selector.select(left):
-                    return ""
+                if not selector.select(_LOOK_S):
+                    if patience.is_over():
+                        return ""
+                    continue
                 data = os.read(stdout.fileno(), 4096)
                 if not data:
                     self._process.wait()

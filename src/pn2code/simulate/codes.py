@@ -15,9 +15,9 @@ SIMULATOR_FAILED = register(
     "simulator-failed",
     "the compiled simulator failed",
     "The compiled net was killed, or did not say how its run ended. If the system ended it (not enough memory), try a "
-    "shorter run. If a function of the net never returns, it is ended after two minutes without a step, or some "
-    "seconds after Ctrl-C. Otherwise this is a bug in pn2code. `--engine reference` simulates the same run without C, "
-    "and names the expression that does not terminate.",
+    "shorter run. If a function of the net never returns, it is ended after two minutes of computing without a step, "
+    "or some seconds after Ctrl-C. Otherwise this is a bug in pn2code. `--engine reference` simulates the same run "
+    "without C, and names the expression that does not terminate.",
 )
 ENGINE_CHANGED = register(
     "engine-reference",

@@ -19,6 +19,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import IO, Any
 
+from pn2code.base.processor_time import Patience, processor_time
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.monitors.compiling import Instrumented
 from pn2code.monitors.simple import Simple
@@ -34,7 +35,7 @@ from pn2code.trace.script import Trace, TraceRefusedError
 from pn2code.trace.writing import TraceUnwritableError
 
 ENDLESS_S = 120.0
-"""Without a word for so long, the process is in an expression that has no end: between steps it says something."""
+"""Of processor time without a word: it is in an expression that has no end; between steps it says something."""
 GRACE_S = 5.0
 """Told to end, it has so much time."""
 PROGRESS_S = 0.25
@@ -127,7 +128,6 @@ class _Process:
         self.traced: IO[str] | None = None
         self._threads: list[threading.Thread] = []
         self._ended = threading.Event()
-        self._heard = time.monotonic()
         self._follows = follows
         self.endless = False
         report_in, report_out = os.pipe()
@@ -154,6 +154,7 @@ class _Process:
         finally:
             for fd in handed:
                 os.close(fd)
+        self._patience = Patience(ENDLESS_S, lambda: processor_time(self.process.pid))
         if self.process.stdout is not None:
             self._start(self._collect, self.process.stdout, self.output)
         assert self.process.stderr is not None
@@ -188,7 +189,7 @@ class _Process:
         """Tells the process when the run shall end; ends it when it does not hear."""
         while not self._ended.wait(0.05):
             # Who follows a trace may be slower than the process, which waits then.
-            silent = not self._follows and time.monotonic() - self._heard > ENDLESS_S
+            silent = not self._follows and self._patience.is_over()
             if not (silent or self.request.interrupted()):
                 continue
             with suppress(ProcessLookupError):
@@ -201,7 +202,7 @@ class _Process:
     def lines(self) -> Iterator[dict[str, Any]]:
         """What it reports, line by line."""
         for text in self.report:
-            self._heard = time.monotonic()
+            self._patience.renew()
             try:
                 yield json.loads(text)
             except ValueError:

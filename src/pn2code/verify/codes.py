@@ -113,8 +113,17 @@ CONTROL_FAILED = register(
 CONTROL_OPEN = register(
     "controller-unchecked",
     "it is not known whether the supervisor keeps to its execution scheme",
-    "Not all states of the cell as it runs were seen (the limits of `generate` are small), or there is no C compiler. "
+    "Not all states of the cell as it runs were seen (`generate` looks at 3,000,000), or there is no C compiler. "
     "The programs are generated, and say that they are not checked. `pn2code verify cell.toml` has no such limits.",
+)
+CONTROL_BEYOND = register(
+    "controller-beyond",
+    "this machine cannot look at the states of the cell",
+    "Before a supervisor is generated, up to 3,000,000 states of the cell as it runs are searched "
+    "(docs/execution.md), whatever time that takes, so that every machine comes to the same program. On this one there "
+    "is too little memory, or the search has computed for a quarter of an hour, perhaps in an inscription that has no "
+    "end. Nothing is generated, since another machine might generate something else. `pn2code generate --unchecked` "
+    "generates the supervisor without the search, and says so in the generated files.",
 )
 CAPACITY_UNPROVED = register(
     "capacity-unproved",

@@ -200,10 +200,14 @@ PN_NET_SEARCH static bool Pick_fire(pn_ctx_t *cx, void *marking, uint32_t self, 
         return false;
     }
     /* Buffer: b (ID30) */
-    bool is_taken = BOX_array_64_take(&m->Buffer, &b->b, 1U);
+    const bool is_taken_Buffer = BOX_array_64_take(&m->Buffer, &b->b, 1U);
     /* Count: n (ID32) */
-    is_taken = is_taken && INT_array_64_take(&m->Count, &b->n, 1U);
+    const bool is_taken = is_taken_Buffer && INT_array_64_take(&m->Count, &b->n, 1U);
     if (!is_taken) {
+        /* a token is missing: those before it are put back */
+        if (is_taken_Buffer) {
+            (void)BOX_array_64_add(cx, &m->Buffer, &s_at_Buffer, &b->b, 1U);
+        }
         return pn_fail_missing(cx);
     }
     /* Count: n + label b (ID34) */

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Callable
 from pathlib import Path
 from random import Random
+from time import sleep
 
 import pytest
 
@@ -15,6 +17,7 @@ from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.graph import state_space
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.verify.exploring.covering import Covering, Search, write
+from pn2code.verify.exploring.meanwhile import FROM_STATES, Meanwhile
 
 HEAD = """
     net One
@@ -140,3 +143,34 @@ def test_random_nets_with_finitely_many_markings() -> None:
             finite += 1
             assert looked(net, walks=4) is None, seed
     assert finite > 30
+
+
+SPENDS = HEAD.replace(
+    "var n", "fun spend 0 = 0 | spend n = spend (n - 1);\n      var n"
+) + ROUND.replace("trans Go\n", "trans Go guard [spend 400 = 0]\n")
+
+
+@pytest.mark.parametrize("text", [HEAD + ROUND, SPENDS], ids=["asking", "evaluating"])
+def test_how_far_it_searches_is_a_number_of_steps(text: str) -> None:
+    """No place that may count grows, so that all walks are made: as far as they may be, whatever time that takes."""
+    search = Search(flat(text), {}, among={0})
+    assert search.look(most=500) is None
+    assert 500 <= search.work < 600
+
+
+def test_after_a_limit_the_search_does_its_part(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What is found does not depend on how far it has come beside the explorer."""
+    net = flat(HEAD + ROUND)
+    with Meanwhile(net, {}) as search:
+        search.note(FROM_STATES)
+        assert search.last(lambda: False) is not None
+
+    def slowly(self: Search, is_over: Callable[[], bool]) -> Covering | None:
+        sleep(0.2)
+        return None if is_over() else look(self, is_over)
+
+    look = Search.look
+    monkeypatch.setattr(Search, "look", slowly)
+    with Meanwhile(net, {}) as search:
+        search.note(FROM_STATES)
+        assert search.last(lambda: False) is not None

@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
-
-import pytest
-
 from pn2code.base.deadline import NEVER, Deadline
-from pn2code.verify.exploring.grace import MOST, Grace, processor_time
+from pn2code.verify.exploring.grace import MOST, Grace
 
 
 class Machine:
@@ -59,11 +54,3 @@ def test_where_the_processor_time_is_not_known_the_clock_decides() -> None:
     assert not at(machine, grace, 11.0, None)
     assert at(machine, grace, 11.2, None)
     assert not Grace(NEVER, lambda: None).is_over()
-
-
-def test_processor_time_of_a_process() -> None:
-    if not Path("/proc/self/stat").exists():
-        pytest.skip("this system has no /proc")
-    used = processor_time(os.getpid())
-    assert used is not None and used > 0.0
-    assert processor_time(2**22 + 1) is None  # more than Linux has

@@ -15,6 +15,7 @@ expression has seen it.
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -101,6 +102,7 @@ class Evaluator:
     Attributes:
         now: the model time that `time()` gives; set by the token game.
         steps: what `step()` gives.
+        spent: steps, as `Limits` counts them, of all evaluations that have come to a value.
         random: the source of all random functions.
         colours: operations of the colour sets.
         globals: the values of the top-level symbols.
@@ -129,6 +131,7 @@ class Evaluator:
         self.min_int: int = -(2 ** (program.int_bits - 1))
         self.now: int | float = 0.0 if real_time else 0
         self.steps = 0
+        self.spent = 0
         # Both know each other: a subset colour set has a predicate, an expression colour-set functions.
         self.colours = Colours(self)
         self.globals: dict[int, Value] = {}
@@ -170,7 +173,8 @@ class Evaluator:
 
     def _run(self, step: Step) -> Any:
         waiting: list[Task] = []
-        fuel = self.limits.steps
+        most = math.inf if self.limits.steps is None else self.limits.steps
+        count = 0
         depth = self.limits.depth
         current: Any = step
         while True:
@@ -180,11 +184,11 @@ class Evaluator:
                 waiting.append(current)
                 current = None
             elif not waiting:
+                self.spent += count
                 return current
-            if fuel is not None:
-                fuel -= 1
-                if fuel < 0:
-                    raise MlLimit(f"no end after {self.limits.steps} steps")
+            count += 1
+            if count > most:
+                raise MlLimit(f"no end after {most} steps")
             try:
                 current = waiting[-1].send(current)
             except StopIteration as stop:

@@ -6,6 +6,7 @@ _CLAUSES = {
     "states": "the limit of states was reached",
     "seconds": "the limit of time was reached",
     "memory": "the limit of memory was reached",
+    "processor": "the explorer computed for too long",
     "messages": "in the closed net more and more messages gather in a channel",
     "infinite": "the state space is infinite",
     "interrupted": "it was interrupted",

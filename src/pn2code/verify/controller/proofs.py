@@ -5,6 +5,9 @@
     found.verdicts                           # lines for the head of cell_config.c
 
 Of a net without a cell.toml only the structure is looked at: it takes no compiler and little time.
+
+The same cell gives the same program on every machine, however busy: how far is looked is a number of states. Where a
+machine cannot look so far, nothing is generated.
 """
 
 from __future__ import annotations
@@ -22,7 +25,7 @@ from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.structure import bounds_and_sums
 from pn2code.toolchain.build import TOOL_MISSING
 from pn2code.verify.answers.reasons import clause
-from pn2code.verify.codes import BEYOND_ROOM, CONTROL_FAILED, CONTROL_OPEN
+from pn2code.verify.codes import BEYOND_ROOM, CONTROL_BEYOND, CONTROL_FAILED, CONTROL_OPEN
 from pn2code.verify.controller import arena, control, control_types
 from pn2code.verify.controller.control_types import MOST_STATES, Check, Control, Plan
 from pn2code.verify.controller.poses import Arms, Poses
@@ -31,8 +34,14 @@ from pn2code.verify.exploring import place_capacity as rooms
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits, cores
 
-MOST_SECONDS = 60.0
-"""A supervisor of a larger space is generated with a warning; `verify` takes as long as it takes."""
+MOST_PROCESSOR_SECONDS = 900.0
+"""For one exploration. `MOST_STATES` take a minute or two of it: only a net whose inscriptions compute for very long,
+or for ever, comes to this end."""
+_BEYOND = {
+    "processor": f"the explorer has computed for {MOST_PROCESSOR_SECONDS:,.0f} s",
+    "memory": "there is too little memory for them",
+}
+"""What keeps a machine from looking at the states, of which another one might see more."""
 _WIDTH = 136
 """Of a line in the head of a generated file."""
 UNCHECKED = "Not checked, since it was generated with --unchecked (docs/execution.md):"
@@ -102,7 +111,7 @@ def prove(
         primitives=config.primitives,
         arms=arms,
     )
-    looked = _look(partition, plan, d)
+    looked = _look(partition, config, plan, d)
     if looked is None:
         return None
     for check in looked.failed:
@@ -162,14 +171,21 @@ def declared(
     return found
 
 
-def _look(partition: Partition, plan: Plan, d: Diagnostics) -> Control | None:
+def _look(partition: Partition, config: CellConfig, plan: Plan, d: Diagnostics) -> Control | None:
     """The checks; open ones where the state space cannot be had. None after an error that has nothing to do with it."""
     own = Diagnostics()
-    limits = Limits(max_states=MOST_STATES, max_seconds=MOST_SECONDS, threads=cores(), traces=0)
+    limits = Limits(
+        max_states=MOST_STATES,
+        processor_seconds=MOST_PROCESSOR_SECONDS,
+        threads=cores(),
+        traces=0,
+    )
+    plan = replace(plan, wishes=ExploreOptions(quick=True))
     try:
-        found = control.examine(
-            partition, replace(plan, wishes=ExploreOptions(quick=True)), limits, own
-        )
+        found = control.examine(partition, plan, limits, own)
+        if found is not None and limits.threads > 1 and any(c.why == "states" for c in found.open):
+            # Which states are the first is the same each time for one thread only.
+            found = control.examine(partition, plan, replace(limits, threads=1), own)
     except GameError as error:
         error.report(d)
         return None
@@ -180,6 +196,16 @@ def _look(partition: Partition, plan: Plan, d: Diagnostics) -> Control | None:
         )
     # A place that grows without end is one without a bound, which is refused with a better hint.
     d.items += [i for i in own.items if i.code != BEYOND_ROOM]
+    if found is not None and all(i.code != BEYOND_ROOM for i in own.items):
+        beyond = next((why for c in found.open if (why := _BEYOND.get(c.why or ""))), None)
+        if beyond is not None and not found.failed:
+            d.error(
+                CONTROL_BEYOND,
+                f"the states of the cell cannot be looked at: {beyond}",
+                config.supervisor.origin,
+                hint="`--unchecked` generates it without looking at them; `pn2code verify` has no limits of its own",
+            )
+            return None
     return found
 
 

@@ -24,6 +24,7 @@ finds no proof that there is no such run.
 
 from __future__ import annotations
 
+import math
 import random
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import closing, suppress
@@ -47,6 +48,11 @@ WALK = 300
 """Steps of the longest walk; the first ones are shorter, so that short runs are found first."""
 WALKS = 80
 """Walks of a whole search."""
+MOST_WORK = 200_000
+"""Of a search that others wait for, or whose result decides theirs: transitions that are asked whether they are
+enabled. It is counted in these, not in seconds, so that a busy machine finds the same."""
+_CALLS = 100
+"""Steps of CPN ML that take about as long as a transition does without any."""
 _SHORTEST = 20
 _BINDINGS = 20
 """Of a transition, of which one is chosen."""
@@ -112,6 +118,7 @@ class Search:
     def __init__(
         self, net: FlatNet, storage: Mapping[str, str], among: Collection[int] | None = None
     ) -> None:
+        self._asked = 0
         self.net = net
         self.game = Game(net, storage, files=Files(None))
         self._nodes = Nodes(net)
@@ -123,25 +130,38 @@ class Search:
             for t in net.transitions
         }
 
+    @property
+    def work(self) -> int:
+        """How often it has asked a transition whether it is enabled; what is evaluated for long counts in addition."""
+        return self._asked + self.game.evaluator.spent // _CALLS
+
     def look(
-        self, is_over: Callable[[], bool] = lambda: False, walks: int = WALKS
+        self,
+        is_over: Callable[[], bool] = lambda: False,
+        walks: int = WALKS,
+        most: float = math.inf,
     ) -> Covering | None:
         """The first covering run that a walk comes upon; None: none does.
 
         Args:
             is_over: asked at each step whether to give up.
             walks: how many.
+            most: gives up after so much work.
         """
         if self.net.real_time or not self._pure:
             return None
+
+        def has_enough() -> bool:
+            return self.work >= most or is_over()
+
         choice = random.Random(1)
         for number in range(walks):
             length = min(WALK, _SHORTEST * (1 + number // 4))
             with suppress(GameError, MlException, MlLimit):  # a walk that comes upon an exception
-                found = self._walk(choice, length, is_over, is_uniform=number % 2 == 0)
+                found = self._walk(choice, length, has_enough, is_uniform=number % 2 == 0)
                 if found is not None:
                     return found
-            if is_over():
+            if has_enough():
                 return None
         return None
 
@@ -161,6 +181,7 @@ class Search:
             if is_over():
                 return None
             now = self.game.advance_time(marking)
+            self._asked += len(self.net.transitions)
             enabled = self.game.enabled_transitions(now)
             if not enabled:
                 return None
@@ -219,6 +240,7 @@ class Search:
 
     def _played(self, marking: Marking, turn: Sequence[BindingElement]) -> Marking | None:
         """The marking after these steps; None: one of them is not enabled."""
+        self._asked += len(turn)
         for element in turn:
             marking = self.game.advance_time(marking)
             own = BindingElement(element.transition, element.values)

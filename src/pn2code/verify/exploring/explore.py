@@ -19,8 +19,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import IO, Any
 
-from pn2code.base.deadline import Deadline, TimeIsOverError
+from pn2code.base.deadline import TimeIsOverError
 from pn2code.base.os_reason import os_reason
+from pn2code.base.processor_time import Patience, processor_time
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.net.flat import FlatNet
 from pn2code.net.predicate import Predicate
@@ -32,7 +33,7 @@ from pn2code.verify.codes import (
     TIME_OVER,
 )
 from pn2code.verify.exploring import covering, nondeterminism, programs
-from pn2code.verify.exploring.grace import Grace, processor_time
+from pn2code.verify.exploring.grace import Grace
 from pn2code.verify.exploring.limits import REACHED, Limits, default_memory
 from pn2code.verify.exploring.meanwhile import Meanwhile
 from pn2code.verify.exploring.programs import Generated, Sizes
@@ -146,12 +147,13 @@ def explore(
         open_places = [p.index for p in net.places if p.index not in bounds]
         if not open_places:
             wishes = replace(wishes, covering=False)  # no place can grow without bound
-    with Meanwhile(net, storage, open_places) as search:
+    is_limited = limits.max_states is not None
+    with Meanwhile(net, storage, open_places, is_limited=is_limited) as search:
         found = _explored(net, storage, limits, d, wishes, search if wishes.covering else None)
         is_open = found is not None and not found.seen.markings and found.why in _LIMITS
         if found is None or not wishes.covering or not is_open:
             return found
-        run = search.last(limits.deadline)
+        run = search.last(lambda: wishes.interrupted() or limits.deadline.is_over())
     if run is None:
         return found
     if wishes.traces is not None:
@@ -222,7 +224,7 @@ def _explored(
             options = _options(own, chosen, sizes, wishes)
             options += ["--still"] if nondeterminism.draws(net) else []
             telling = replace(wishes, progress=_nothing) if is_first else wishes
-            found = _run_with_tables(net, program, options, chosen, telling, deadline, d, search)
+            found = _run_with_tables(net, program, options, chosen, telling, limits, d, search)
         if found is None:
             return None
         if is_first and _is_too_much(found, own, limits):
@@ -312,8 +314,7 @@ def _options(limits: Limits, chosen: Chosen, sizes: Sizes, wishes: ExploreOption
     left = limits.deadline.left
     late = None if left is None else max(left, LEAST_SECONDS)
     # What was seen has to be told within the deadline, too.
-    ends = [limits.max_seconds, None if left is None else left * SEARCH_PART]
-    seconds = min((s for s in ends if s is not None), default=None)
+    seconds = None if left is None else left * SEARCH_PART
     given: list[tuple[str, object]] = [
         ("--threads", limits.threads),
         ("--order", limits.order.value),
@@ -349,7 +350,7 @@ def _run_with_tables(
     options: Sequence[str],
     chosen: Chosen,
     wishes: ExploreOptions,
-    deadline: Deadline,
+    limits: Limits,
     d: Diagnostics,
     search: Meanwhile | None,
 ) -> dict[str, Any] | None:
@@ -380,7 +381,7 @@ def _run_with_tables(
                 )
                 return None
             options += [option, name]
-        return _run(net, program, options, wishes, deadline, d, search)
+        return _run(net, program, options, wishes, limits, d, search)
     finally:
         for table in made:
             table.unlink(missing_ok=True)
@@ -402,7 +403,7 @@ def _run(
     program: Path,
     options: Sequence[str],
     wishes: ExploreOptions,
-    deadline: Deadline,
+    limits: Limits,
     d: Diagnostics,
     search: Meanwhile | None,
 ) -> dict[str, Any] | None:
@@ -424,10 +425,13 @@ def _run(
     )
     for listener in listeners:
         listener.start()
-    told = is_late = is_endless = False
+    told = is_late = is_endless = is_long = False
     if search is not None:
         search.is_heard = False
-    grace = Grace(deadline, lambda: processor_time(process.pid))
+    grace = Grace(limits.deadline, lambda: processor_time(process.pid))
+    patience = None
+    if limits.processor_seconds is not None:
+        patience = Patience(limits.processor_seconds, lambda: processor_time(process.pid))
     try:
         while True:
             with suppress(subprocess.TimeoutExpired):
@@ -442,6 +446,9 @@ def _run(
             if grace.is_over():  # in an inscription that takes too long, or for ever
                 is_late = True
                 process.kill()
+            if patience is not None and patience.is_over():
+                is_long = True
+                process.kill()
     except BaseException:
         process.kill()
         process.wait()
@@ -455,6 +462,8 @@ def _run(
         _tidy(wishes, process.pid)
         if told and process.returncode == -signal.SIGINT:  # before it could listen
             return nothing(net, Limits())
+        if is_long:
+            return nothing(net, Limits(), "processor")
         if is_late:
             d.warning(
                 TIME_OVER,

@@ -7,9 +7,7 @@ lost because it had to wait.
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
-from pathlib import Path
 
 from pn2code.base.deadline import GRACE, GRACE_S, Deadline
 
@@ -44,14 +42,3 @@ class Grace:
         if used is None or self._at_the_end is None or -left > MOST * grace:
             return True
         return used - self._at_the_end > grace
-
-
-def processor_time(pid: int) -> float | None:
-    """Seconds of processor time of a process with all its threads; None where the system does not tell."""
-    try:
-        # The name of the program, in parentheses, may have blanks in it.
-        words = Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()
-    except OSError:
-        return None
-    user, system = int(words[11]), int(words[12])
-    return float(user + system) / os.sysconf("SC_CLK_TCK")

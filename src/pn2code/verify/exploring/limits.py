@@ -45,7 +45,8 @@ class Limits:
 
     Args:
         max_states: markings, None: no limit.
-        max_seconds: of exploration, None: no limit.
+        processor_seconds: of processor time of one exploration, all threads together, None: no limit. What it has found
+            by then is lost.
         deadline: when all has to be over: compiling, too, and whatever else is explored for the same command.
         memory: MiB of the explorer's tables, None: three quarters of what is free at the start.
         threads: at least 1.
@@ -58,7 +59,7 @@ class Limits:
     """
 
     max_states: int | None = None
-    max_seconds: float | None = None
+    processor_seconds: float | None = None
     deadline: Deadline = NEVER
     memory: int | None = None
     threads: int = 1

@@ -3,29 +3,30 @@
 with Meanwhile(net, {}) as search:
     search.note(12_000)             # so many markings were found: it begins
     search.found                    # a Covering, as soon as there is one
+
+Whether one is found does not depend on who is quicker: after an exploration that came to a limit, the search goes on
+until it has done its part.
 """
 
 from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from contextlib import suppress
 from typing import Self
 
-from pn2code.base.deadline import Deadline
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.enabling import GameError
-from pn2code.verify.exploring.covering import Covering, Search
+from pn2code.verify.exploring.covering import MOST_WORK, Covering, Search
 
 FROM_STATES = 5_000
 """A smaller state space is explored before a walk would come upon anything."""
-LAST_SECONDS = 5.0
-"""Of the search after an exploration that came to a limit."""
 _STACK = 64 << 20
 _NICE = 10
 _LEAVE_S = 2.0
 """A walk looks at each step whether to end; one that computes for longer is left behind."""
+_LOOK_S = 0.05
 
 
 class Meanwhile:
@@ -34,15 +35,24 @@ class Meanwhile:
     Args:
         net, storage: as for `Game`.
         among: the places that may grow; None: all.
+        is_limited: whether the exploration may come to a limit of its own. Else the search goes on for longer: without
+            a limit there is no other end of an infinite state space.
     """
 
     def __init__(
-        self, net: FlatNet, storage: Mapping[str, str], among: Collection[int] | None = None
+        self,
+        net: FlatNet,
+        storage: Mapping[str, str],
+        among: Collection[int] | None = None,
+        *,
+        is_limited: bool = True,
     ) -> None:
         self._net = net
         self._storage = storage
         self._among = among
+        self._is_limited = is_limited
         self._ends = threading.Event()
+        self._is_waited_for = threading.Event()
         self._thread: threading.Thread | None = None
         self.found: Covering | None = None
         self.is_heard = False
@@ -57,14 +67,8 @@ class Meanwhile:
     def note(self, states: int) -> None:
         """So many markings are known: from some thousands on the search begins."""
         self.is_heard = True
-        if states < FROM_STATES or self._thread is not None:
-            return
-        before = threading.stack_size(_STACK)
-        try:
-            self._thread = threading.Thread(target=self._look, daemon=True)
-            self._thread.start()
-        finally:
-            threading.stack_size(before)
+        if states >= FROM_STATES:
+            self._begin()
 
     def stop(self) -> None:
         """Ends the thread."""
@@ -72,21 +76,38 @@ class Meanwhile:
         if self._thread is not None:
             self._thread.join(_LEAVE_S)
 
-    def last(self, deadline: Deadline) -> Covering | None:
-        """What is known after an exploration that came to a limit; a search that has not begun is made now."""
-        if self._thread is None:
-            own = Deadline.after(LAST_SECONDS)
-            with suppress(GameError):  # the explorer has said so
-                self.found = self._search().look(lambda: own.is_over() or deadline.is_over())
-        else:
-            self.stop()
+    def last(self, is_over: Callable[[], bool]) -> Covering | None:
+        """What is known after an exploration that came to a limit: the search does its part first.
+
+        Args:
+            is_over: asked from time to time whether there is no time for that.
+        """
+        self._is_waited_for.set()
+        thread = self._begin()
+        while thread.is_alive() and not is_over():
+            thread.join(_LOOK_S)
+        self.stop()
         return self.found
 
-    def _look(self) -> None:
-        with suppress(OSError, AttributeError):  # a system without priorities of threads
-            os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICE)
-        with suppress(GameError):  # the explorer has said so
-            self.found = self._search().look(self._ends.is_set)
+    def _begin(self) -> threading.Thread:
+        if self._thread is None:
+            before = threading.stack_size(_STACK)
+            try:
+                self._thread = threading.Thread(target=self._look, daemon=True)
+                self._thread.start()
+            finally:
+                threading.stack_size(before)
+        return self._thread
 
-    def _search(self) -> Search:
-        return Search(self._net, self._storage, self._among)
+    def _look(self) -> None:
+        if not self._is_waited_for.is_set():
+            with suppress(OSError, AttributeError):  # a system without priorities of threads
+                os.setpriority(os.PRIO_PROCESS, threading.get_native_id(), _NICE)
+        with suppress(GameError):  # the explorer has said so
+            search = Search(self._net, self._storage, self._among)
+
+            def is_over() -> bool:
+                has_done = self._is_limited or self._is_waited_for.is_set()
+                return self._ends.is_set() or (has_done and search.work >= MOST_WORK)
+
+            self.found = search.look(is_over)

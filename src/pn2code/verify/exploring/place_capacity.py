@@ -16,7 +16,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from pn2code.base.deadline import Deadline
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.ir import nodes as ir
@@ -28,7 +27,7 @@ from pn2code.structure.bounds import PlaceBound
 from pn2code.structure.report import Names, weighted
 from pn2code.verify.codes import CAPACITY_ASSUMED, CAPACITY_LARGE, CAPACITY_UNPROVED
 from pn2code.verify.exploring import nondeterminism
-from pn2code.verify.exploring.covering import Covering, Search
+from pn2code.verify.exploring.covering import MOST_WORK, Covering, Search
 from pn2code.verify.exploring.result import Exploration
 
 DECLARED = "declared"
@@ -37,8 +36,6 @@ SPACE = "state space"
 INPUTS = "state space with input files"
 ASSUMED = "assumed"
 _LISTED = 5
-SEARCH_SECONDS = 5.0
-"""Of the search for a run that shows that a place grows without bound."""
 MOST_TOKENS = 1 << 20
 """Of a place: for more, no program is generated."""
 MOST_DOUBLED = 1 << 16
@@ -151,9 +148,8 @@ def growing(
     }
     if not among:
         return None
-    deadline = Deadline.after(SEARCH_SECONDS)
     try:
-        return Search(net, storage, among).look(deadline.is_over)
+        return Search(net, storage, among).look(most=MOST_WORK)
     except GameError:
         return None  # whoever plays the net says so
 

@@ -98,7 +98,7 @@ class Exploration:
 
     Args:
         complete: whether all that was wanted was done; else `why` says what was in the way: "states", "seconds",
-            "memory", "interrupted", "error", "approximation", "messages" (see
+            "memory", "processor", "interrupted", "error", "approximation", "messages" (see
             `ExploreOptions.heaps`), "infinite" (see `covering`).
         seen: what is complete, also where not all is.
         error: of "error": `message`, `where`, `transition` (index or None), `node` (None: not known),
