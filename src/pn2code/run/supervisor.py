@@ -22,7 +22,6 @@ from pathlib import Path
 from typing import IO, Final
 
 from pn2code.base.closing import Closing
-
 from pn2code.base.processor_time import Patience, processor_time
 
 EXIT_MEANING: Final[dict[int, str]] = {
