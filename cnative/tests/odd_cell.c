@@ -58,8 +58,8 @@ static const pn_cell_channel_t CHANNEL[] = {
     { "answer", "answer.robcad", 10U, "Odd.answer", PN_CHANNEL_IN, PN_CHANNEL_FLAG, 0U, 1U, FLAG },
 };
 static const pn_cell_input_t INPUT[] = {
-    { "orders", "orders.txt", 0U, "Odd.Orders", 1U, ORDER },
-    { "name", "name.txt", 1U, "Odd.Name", 1U, NAME },
+    { "orders", "orders.txt", 0U, "Odd.Orders", 1U, ORDER, false, 0U },
+    { "name", "name.txt", 1U, "Odd.Name", 1U, NAME, true, 0x18ae13aaU }, /* checked with "nobody" */
 };
 static const pn_cell_peer_t PEER[] = { { "robot1", 1 }, { "robot2", 2 } };
 static const uint32_t FINAL[] = { 3U, 4U };

@@ -541,7 +541,7 @@ def test_directory_missing_or_below_a_file(cell: Cell) -> None:
         robot_fails(
             cell,
             directory,
-            5,
+            2,
             f"`{directory}`",
             "is not a directory" if directory == file else "does not exist",
         )
@@ -558,7 +558,7 @@ def test_no_supervisor_and_two_robots_of_one_name(cell: Cell, children: list[Chi
         until(lambda: cell.holds("flag1_interno"), "the first command")
         children.append(cell.robot("robot1"))
         until(lambda: not cell.holds("dadosrobo1"), "robot 1 has moved and waits for robot 2")
-        robot_fails(cell, cell.shared, 5, "another process is `robot1`")
+        robot_fails(cell, cell.shared, 2, "another process is `robot1`")
         assert children[0].poll() is None
         assert supervisor.running
 
@@ -603,7 +603,7 @@ def test_read_only_directory(cell: Cell) -> None:
             robot_fails(
                 local,
                 shared,
-                5,
+                2,
                 "the shared directory fails",
                 "ermission denied",
                 prepare=obey_modes,

@@ -263,7 +263,7 @@ def test_a_full_disk(net: Path, small_disk: Path, tmp_path: Path) -> None:
     done = pn2code("verify", net, *SMALL, "--json", *files, *plot)
     said = json.loads(done.stdout)
     known = (done.returncode, said["complete"], said["nodes"], said["traces"])
-    assert known == (1, True, NODES, [])
+    assert known == (2, True, NODES, [])
     assert done.stderr.count("error[report-unwritable]") == 3
     assert "warning[dead-trace-unwritable]" in done.stderr
     assert sorted(small_disk.rglob("*")) == before

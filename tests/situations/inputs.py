@@ -105,6 +105,14 @@ def texts(lab: Lab) -> None:
 
 
 @situation
+def a_token_that_was_not_checked(lab: Lab) -> None:
+    """The proofs rest on the token that the cell was checked with; with another one the supervisor says so, and runs."""
+    warning = "name.txt: not the token that the cell was checked with"
+    assert warning not in lab.run("odd", name=b'"nobody"').finished().err
+    assert warning in lab.run("odd", name=b'"other"').finished().err
+
+
+@situation
 def a_token_for_which_there_is_no_memory(lab: Lab) -> None:
     program = lab.program("odd", "-DODD_ARENA=256U")
     done = lab.run(program, name=b'"' + b"a" * 200 + b'"')

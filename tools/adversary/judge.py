@@ -15,10 +15,10 @@ from typer.testing import CliRunner
 
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
-from pn2code.input_files import tokens
+from pn2code.input_files import begin
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import FlatNet
-from pn2code.semantics.game.marking import BindingElement, PlaceMarking, place_of
+from pn2code.semantics.game.marking import BindingElement, PlaceMarking
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.colour_json import from_json
 
@@ -72,11 +72,10 @@ def begun(built: Built) -> Mapping[str, PlaceMarking]:
     partition, config = built.generated.partition, built.generated.config
     assert config is not None
     d = Diagnostics()
-    found = tokens(partition.net, config, d)
+    found = begin(partition.net, config, d)
     assert not d.errors, [e.message for e in d.errors]
-    return {
-        t.place.name: place_of(t.place.colset, [from_json(t.place.colset, t.data)]) for t in found
-    }
+    initial = Game(found.net, config.storage).own_initial_marking
+    return {g.name: initial.places[g.place] for g in found.given}
 
 
 def markings(

@@ -180,7 +180,8 @@ def play() -> NoReturn:
         signal.signal(number, _interrupt)
     if signal.getsignal(signal.SIGHUP) == signal.SIG_DFL:  # else: `nohup`
         signal.signal(signal.SIGHUP, _interrupt)
-    # Nets are trees: the search for cycles finds nothing, and took a third of the time of checking a large one.
+    # Nets are trees: the search for cycles finds nothing, and took a third of the time of checking a large one. At
+    # 500,000 instead of 50,000 objects `check` takes 8 % less time and 1 to 3 % more memory.
     gc.set_threshold(500_000, 20, 20)
     # Accepted expressions nest up to some 250 levels, each worth several Python frames.
     sys.setrecursionlimit(max(20_000, sys.getrecursionlimit()))

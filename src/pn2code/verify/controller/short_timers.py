@@ -95,7 +95,8 @@ class _Timers:
             asked = {
                 p: self._channels[p].reader
                 for p in _puts_one(start)
-                if p in self._channels and self._channels[p].writer == 0
+                if p in self._channels
+                and self._partition.owners[self._channels[p].writer].kind is OwnerKind.SUPERVISOR
             }
             timers = self._delays(start) if asked else {}
             for place, seconds in timers.items():
