@@ -57,8 +57,12 @@ def judge(seed: int, folder: Path, runs: int) -> Verdict:
     counts.update(f"{name} {c['answer']}" for name, c in said.controller.items())
     counts.update(f"claim {answer}" for answer in said.claims)
     counts.update(f"medium {m['answer']}" for m in said.medium[:1])
-    made = [wander.run(built, k) for k in range(runs)]
     r = Random(seed)
+    if all(c["answer"] != "no" for name, c in said.controller.items() if name != "confluence"):
+        deployed = wander.prepare(folder, Diagnostics(), checked=True)
+        counts["deployed"] += deployed is not None
+        built = replace(deployed, most_events=built.most_events) if deployed else built
+    made = [wander.run(built, k) for k in range(runs)]
     for k in range(max(1, runs // 4)):
         who = r.choice([o.name for o in built.generated.partition.owners])
         made += wander.run_again(built, 1000 + 2 * k, wander.Crash(who, r.randint(1, 12)))
