@@ -7,6 +7,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from random import Random
 from typing import Any
 
 from tools.adversary.cells import Cell
@@ -35,8 +36,21 @@ class Said:
     whole: Mapping[str, Any]
 
 
-def ask(folder: Path, cell: Cell, seconds: float = 60.0) -> Said | str:
-    """Asks; a text when nothing was answered."""
+def ways(r: Random, *, is_timed: bool) -> list[str]:
+    """How `verify` goes about it: mostly as it does by itself; else reduced, approximately, or not to the end."""
+    how = r.random()
+    if how < 0.5:
+        return []
+    if how < 0.65:
+        return ["--max-states", str(r.choice([5, 30, 100, 400]))]
+    if how < 0.7:
+        return ["--approximate", r.choice(["bitstate", "hash"])]
+    kinds = ["partial-order", "symmetry", *(["time"] if is_timed else [])]
+    return [x for kind in r.sample(kinds, r.randint(1, 2)) for x in ("--reduce", kind)]
+
+
+def ask(folder: Path, cell: Cell, how: Sequence[str] = (), seconds: float = 60.0) -> Said | str:
+    """Asks, with more options; a text when nothing was answered."""
     options = [x for c in cell.claims for x in ("--property", c.text)]
     traces = folder / "traces"
     traces.mkdir(exist_ok=True)
@@ -50,6 +64,7 @@ def ask(folder: Path, cell: Cell, seconds: float = 60.0) -> Said | str:
             str(traces),
             "--max-seconds",
             str(seconds),
+            *how,
             *options,
         ],
     )
