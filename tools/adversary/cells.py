@@ -13,45 +13,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from random import Random
 
+from tools.adversary import claims
+from tools.adversary.claims import Claim
 from tools.adversary.devices import Program, program
+from tools.adversary.links import link
 from tools.adversary.pages import DECLARATIONS, TIMED, Page
 from tools.adversary.supervisors import Supervisor
-
-
-@dataclass(frozen=True)
-class Claim:
-    """A property, and the same in Python: over the numbers of tokens by the place's name.
-
-    Args:
-        text: in the language of properties.
-        places: their names; `most`: the sum of their tokens is never larger than this.
-    """
-
-    text: str
-    places: tuple[str, ...]
-    most: int = 0
-    every: bool = False
-    """all of them are marked at once, never"""
-    follows: bool = False
-    """after the first is marked the second one is marked at some time"""
-
-    def broken(self, run: Sequence[dict[str, int]], *, is_over: bool) -> int | None:
-        """The first marking of a run that contradicts it; None: there is none.
-
-        Args:
-            run: numbers of tokens, one marking after the other.
-            is_over: nothing comes after the last of them.
-        """
-        if self.follows:
-            one, other = self.places
-            last = max((i for i, at in enumerate(run) if at[one]), default=-1)
-            is_open = is_over and last >= 0 and not any(at[other] for at in run[last:])
-            return last if is_open else None
-        for i, at in enumerate(run):
-            held = [at[p] for p in self.places]
-            if all(held) if self.every else sum(held) > self.most:
-                return i
-        return None
 
 
 @dataclass(frozen=True)
@@ -77,10 +44,11 @@ class _Maker:
         self.is_timed = r.random() < 0.4
         self.top = Page("Top")
         self.toml: list[str] = []
-        devices: list[Program] = []
+        self.devices = devices = list[Program]()
         for k in range(1, r.choice([1, 1, 2, 2, 3]) + 1):
             is_again = k > 1 and r.random() < 0.25  # another instance of the same page
             devices.append(devices[-1] if is_again else program(r, k, is_timed=self.is_timed))
+        self.links = list(link(r, devices))
         self.supervisor = Supervisor(r, devices, is_timed=self.is_timed)
         self.sensors = sorted({s for made in devices for s in made.sensors})
         self.looked_at = list(self.supervisor.looked_at)
@@ -90,28 +58,33 @@ class _Maker:
         for k, made in enumerate(devices, 1):
             self.looked_at += [f"Top.D{k}.{x}" for x in made.places]
             sockets += self._join(k, made)
+        for made in self.links:
+            self._channel(made.name, made.colset, made.kind)
         self.top.transitions.insert(0, f"    subst Supervisor = Sup ({', '.join(sockets)})")
 
     def _join(self, k: int, made: Program) -> Iterator[str]:
         """A device on the top page and in cell.toml; gives the supervisor's sockets for it."""
         for p in made.ports:
-            name = f"{p.name}{k}"
-            self.top.place(name, p.colset)
-            self.toml.append(
-                f'[[channel]]\nplace = "{name}"\nfile = "{name}.txt"\nkind = "{p.kind}"'
-            )
-            yield f"{name} -> {name}"
-        ports = ", ".join(f"{p.name} -> {p.name}{k}" for p in made.ports)
+            self._channel(f"{p.name}{k}", p.colset, p.kind)
+            yield f"{p.name}{k} -> {p.name}{k}"
+        pairs = [(p.name, f"{p.name}{k}") for p in made.ports]
+        pairs += [(port, found.name) for found in self.links for port in found.ports(k)]
+        ports = ", ".join(f"{port} -> {socket}" for port, socket in pairs)
         self.top.transitions.append(f"    subst D{k} = {made.page.name} ({ports})")
         self.toml.append(f'[devices.dev{k}]\ninstance = "D{k}"')
 
+    def _channel(self, name: str, colset: str, kind: str) -> None:
+        """A place of the top page that is a file."""
+        self.top.place(name, colset)
+        self.toml.append(f'[[channel]]\nplace = "{name}"\nfile = "{name}.txt"\nkind = "{kind}"')
+
     def made(self) -> Cell:
         """The cell."""
-        capacities, claims = list(self._capacities()), list(self._claims())
+        capacities = list(self._capacities())
         return Cell(
             self._net(),
             self._config(capacities),
-            tuple(claims),
+            tuple(self._claims()),
             bool(self.sensors),
             tuple(capacities),
             tuple((file, text) for _, file, text in self.inputs),
@@ -134,7 +107,8 @@ class _Maker:
             f"reply_timeout_s = {r.choice([1.0, 30.0])}" if r.random() < 0.15 else "",
             *self.toml,
             *(f'[[input]]\nplace = "{place}"\nfile = "{file}"' for place, file, _ in self.inputs),
-            f'[primitives]\nact = {{ command = "tool", action = "act", duration_s = {seconds} }}',
+            f'[primitives]\nact = {{ command = "tool", action = "act", duration_s = {seconds} }}\n'
+            'rest = { command = "wait" }',
         ]
         for sensor in self.sensors:
             said = {"verdict": '"green"', "level": "2", "is_held": "true"}[sensor]
@@ -153,27 +127,28 @@ class _Maker:
 
     def _capacities(self) -> Iterator[Claim]:
         for place in self.r.sample(self.looked_at, 2) if self.r.random() < 0.2 else ():
-            yield Claim("", (place,), self.r.choice([1, 2]))
+            yield claims.at_most(place, self.r.choice([1, 2]))
 
     def _claims(self) -> Iterator[Claim]:
         r = self.r
         for _ in range(3):
-            a, b = r.sample(self.looked_at, 2)
-            text = f"never tokens({_asked(a)}) >= 1 && tokens({_asked(b)}) >= 1"
-            yield Claim(text, (a, b), every=True)
+            yield claims.never_both(*r.sample(self.looked_at, 2))
+        yield claims.reached(*r.sample(self.looked_at, 2))
         for place in r.sample(self.looked_at, 3):
-            most = r.choice([0, 1, 1, 2])
-            yield Claim(f"bound {_asked(place)} <= {most}", (place,), most)
-        for pair in self.supervisor.followed[:2]:
-            a, b = pair
-            text = f"every tokens({_asked(a)}) >= 1 is followed by tokens({_asked(b)}) >= 1"
-            yield Claim(text, (a, b), follows=True)
+            yield claims.at_most(place, r.choice([0, 1, 1, 2]))
+        for one, other in self.supervisor.followed[:2]:
+            yield claims.followed(one, other)
+            yield claims.followed_within(one, other, r.randint(1, 12))
+        yield claims.ends_with("Top.Supervisor.Finished")
+        fired = self._transitions()
+        yield claims.silent(r.choice(fired))
+        yield claims.not_before(*r.sample(fired, 2))
 
-
-def _asked(place: str) -> str:
-    """A place as properties name it: by its path, or by its page where the path is that of a fusion set."""
-    fused = place.removeprefix("Fusion.")
-    return f'"{place}"' if fused == place else f"Sup'{fused}"
+    def _transitions(self) -> list[str]:
+        """The paths of those of the supervisor's page and of the devices."""
+        of_devices = [(f"D{k}", made.page) for k, made in enumerate(self.devices, 1)]
+        pages = [("Supervisor", self.supervisor.page), *of_devices]
+        return [f"Top.{at}.{name}" for at, page in pages for name in page.names]
 
 
 def random_cell(r: Random) -> Cell:

@@ -24,6 +24,8 @@ class Port:
 
 
 INT = SORTS[0]
+_CODES = ("act ()", "act ()", "act ()", "rest 1.5", "(act (); rest 0.5)", "rest 0.0")
+_MEMORIES = ("k", "n + k", "10 div k", "n * 2", "if n > 2 then 0 else n + 1", "(n + k) mod 3")
 
 
 @dataclass
@@ -34,6 +36,10 @@ class Program:
     ports: list[Port] = field(default_factory=list)
     places: list[str] = field(default_factory=list)
     sensors: set[str] = field(default_factory=set)
+    end: str = "Done"
+    """the place from which it answers"""
+    memory: str = ""
+    """a place with a number that it keeps; "": it keeps none"""
 
     def port(self, name: str) -> Port | None:
         """That of a name; None: it has none."""
@@ -58,16 +64,45 @@ def program(r: Random, number: int, *, is_timed: bool) -> Program:
     page.place("Told", told.colset)
     is_late = is_timed and r.random() < 0.4
     page.place("Done", "TU" if is_late else "")
-    takes = ["in Waiting : ()", f"in cmd : {told.variable}", f"out Told : {told.variable}"]
-    if made.port("dat"):
-        takes.insert(2, "in dat : d")
-    page.transition("Accept", takes, head(r.choice(PRIORITIES)))
-    if made.port("hint"):
-        page.transition("Note", ["both Waiting : ()", "in hint : e"], head(r.choice(PRIORITIES)))
+    _accepts(r, made, told)
     made.places += ["Told", "Done"]
+    made.memory = "Memo" if r.random() < 0.25 else ""
+    if made.memory:
+        page.place("Memo", "INT", f"1`{r.randint(0, 2)}")
     _works(r, made, told, is_late=is_late)
     _reports(r, made, answer)
     return made
+
+
+def _accepts(r: Random, made: Program, told: Sort) -> None:
+    """From `Waiting` to `Told`: any command alike, or each with the messages that belong to it."""
+    page, v = made.page, told.variable
+    takes = ["in Waiting : ()", f"in cmd : {v}", f"out Told : {v}"]
+    with_data = [*takes, "in dat : d"] if made.port("dat") else takes
+    how = r.random()
+    if how < 0.75:
+        page.transition("Accept", with_data, head(r.choice(PRIORITIES)))
+    else:
+        one, other = (*told.tests, *told.tests)[:2]
+        guard = f"not ({one})" if how < 0.85 else other
+        page.transition("Accept", with_data, head(r.choice(PRIORITIES), one))
+        code = "act ()" if how < 0.9 else ""
+        page.transition("Accept2", takes, head(r.choice(PRIORITIES), guard, code=code))
+    if not made.port("hint"):
+        return
+    how = r.random()
+    if how < 0.5:
+        page.transition("Note", ["both Waiting : ()", "in hint : e"], head(r.choice(PRIORITIES)))
+    elif how < 0.8:  # it does something without being told
+        arcs = ["in Waiting : ()", "in hint : e", "out Done : ()"]
+        guard = r.choice(["", "", "e > 2"])
+        page.transition(
+            "Note", arcs, head(r.choice(PRIORITIES), guard, code=r.choice(["", "act ()"]))
+        )
+    else:  # it cannot end its work before
+        page.place("Noted")
+        page.transition("Note", ["in Done : ()", "in hint : e", "out Noted : ()"], head())
+        made.end = "Noted"
 
 
 def _works(r: Random, made: Program, told: Sort, *, is_late: bool) -> None:
@@ -110,9 +145,16 @@ def _works(r: Random, made: Program, told: Sort, *, is_late: bool) -> None:
     ways = r.randint(1, 3)
     for w in range(ways):
         guard = r.choice(told.tests) if w and ways > 1 and r.random() < 0.6 else ""
-        code = "act ()" if not is_late and r.random() < 0.6 else ""
-        clauses = head(r.choice(PRIORITIES), guard, code=code)
-        page.transition(f"Work{w}", [f"in {start} : {v}", finish], clauses)
+        code = r.choice(_CODES) if not is_late and r.random() < 0.6 else ""
+        arcs = [f"in {start} : {v}", finish]
+        if told.colset == "INT" and r.random() < 0.2:
+            if is_late:
+                arcs[1] = f"out Done : ()@+(k {r.choice(['', '', '- 1'])})"
+            else:
+                code = f"input (k); action rest (Real.fromInt (k {r.choice(['', '', '- 1'])}))"
+        if made.memory and told.colset == "INT" and r.random() < 0.5:
+            arcs += [f"in {made.memory} : n", f"out {made.memory} : {r.choice(_MEMORIES)}"]
+        page.transition(f"Work{w}", arcs, head(r.choice(PRIORITIES), guard, code=code))
         if r.random() < 0.5:
             break
 
@@ -122,16 +164,26 @@ def _reports(r: Random, made: Program, answer: Sort) -> None:
     for w in range(r.choice([1, 1, 2])):
         value = r.choice(answer.values)
         sensor = {"COL": "verdict", "SMALL": "level", "B": "is_held"}.get(answer.colset)
-        if w == 0 and sensor and r.random() < 0.4:
+        is_computed = bool(made.memory) and r.random() < 0.7
+        if w == 0 and sensor and not is_computed and r.random() < 0.4:
             value = sensor
             made.sensors.add(sensor)
         after = "Waiting"
         if r.random() < 0.05:
             after = "Over"
             made.page.place("Over")
-        arcs = ["in Done : ()", f"out {after} : ()", f"out ans : {value}"]
+        arcs = [f"in {made.end} : ()", f"out {after} : ()"]
+        guard = ""
+        if is_computed:
+            said = r.choice(["n", "n", "10 div n", "n + 1", "n * n"])
+            is_kept = r.random() < 0.5
+            arcs += ["both Memo : n"] if is_kept else ["in Memo : n", f"out Memo : {said}"]
+            guard = r.choice(["", "", "n > 0", "10 div n > 3", "n < 3"])
+            if answer.colset in ("INT", "SMALL"):
+                value = said
+        arcs.append(f"out ans : {value}")
         if made.port("rep") and (w == 0 or r.random() < 0.8):
             arcs.append(f"out rep : {r.randint(0, 3)}")
-        made.page.transition(f"Report{w}", arcs, head(r.choice(PRIORITIES)))
+        made.page.transition(f"Report{w}", arcs, head(r.choice(PRIORITIES), guard))
         if after == "Over":
             break

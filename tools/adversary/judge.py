@@ -7,9 +7,11 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from random import Random
 from typing import Any
 
-from tools.adversary.cells import Cell, Claim
+from tools.adversary.cells import Cell
+from tools.adversary.claims import Claim, Moment
 from tools.adversary.wander import Built, Run
 from typer.testing import CliRunner
 
@@ -34,8 +36,21 @@ class Said:
     whole: Mapping[str, Any]
 
 
-def ask(folder: Path, cell: Cell, seconds: float = 60.0) -> Said | str:
-    """Asks; a text when nothing was answered."""
+def ways(r: Random, *, is_timed: bool) -> list[str]:
+    """How `verify` goes about it: mostly as it does by itself; else reduced, approximately, or not to the end."""
+    how = r.random()
+    if how < 0.5:
+        return []
+    if how < 0.65:
+        return ["--max-states", str(r.choice([5, 30, 100, 400]))]
+    if how < 0.7:
+        return ["--approximate", r.choice(["bitstate", "hash"])]
+    kinds = ["partial-order", "symmetry", *(["time"] if is_timed else [])]
+    return [x for kind in r.sample(kinds, r.randint(1, 2)) for x in ("--reduce", kind)]
+
+
+def ask(folder: Path, cell: Cell, how: Sequence[str] = (), seconds: float = 60.0) -> Said | str:
+    """Asks, with more options; a text when nothing was answered."""
     options = [x for c in cell.claims for x in ("--property", c.text)]
     traces = folder / "traces"
     traces.mkdir(exist_ok=True)
@@ -49,6 +64,7 @@ def ask(folder: Path, cell: Cell, seconds: float = 60.0) -> Said | str:
             str(traces),
             "--max-seconds",
             str(seconds),
+            *how,
             *options,
         ],
     )
@@ -78,12 +94,10 @@ def begun(built: Built) -> Mapping[str, PlaceMarking]:
     return {g.name: initial.places[g.place] for g in found.given}
 
 
-def markings(
-    net: FlatNet, run: Run, initial: Mapping[str, PlaceMarking]
-) -> list[dict[str, int]] | str:
-    """The numbers of tokens after each occurrence; a text when one was not possible."""
+def markings(net: FlatNet, run: Run, initial: Mapping[str, PlaceMarking]) -> list[Moment] | str:
+    """The moments after each occurrence; a text when one was not possible."""
     game = Game(net, initial=initial)
-    found = [_tokens(game)]
+    found = [Moment(_tokens(game))]
     names = {t.name: t for t in net.transitions}
     for line in run.record.events:
         if "transition" not in line:
@@ -104,7 +118,7 @@ def markings(
         if obstacle is not None:
             return f"{t.name}: {obstacle}"
         game.marking, _ = game.occur(game.marking, element)
-        found.append(_tokens(game))
+        found.append(Moment(_tokens(game), t.name))
     return found
 
 
@@ -130,15 +144,15 @@ def _answer(said: Said, check: str) -> str:
     return str(said.controller[check]["answer"]) if check in said.controller else ""
 
 
-def _of_run(cell: Cell, said: Said, run: Run, found: list[dict[str, int]] | str) -> Iterator[str]:
+def _of_run(cell: Cell, said: Said, run: Run, found: list[Moment] | str) -> Iterator[str]:
     if isinstance(found, str):
         yield f"the run is none of the net: {found}"
         return
     is_over = run.end in ("finished", "stuck")
     for claim, answer in zip(cell.claims, said.claims, strict=True):
-        at = claim.broken(found, is_over=is_over) if answer == "yes" else None
+        at = claim.broken(found, is_over=is_over) if answer == claim.answer else None
         if at is not None:
-            yield f"`{claim.text}` is yes, but not after {at} steps"
+            yield f"`{claim.text}` is {answer}, but not after {at} steps"
     if _answer(said, "capacity") == "yes":
         for claim in cell.capacities:
             if claim.broken(found, is_over=is_over) is not None:
@@ -182,10 +196,10 @@ def _whose(why: str) -> str:
     return next((check for words, check in _CHECKS.items() if words in why), "non-blocking")
 
 
-def _bounds(said: Said, found: Sequence[Mapping[str, int]]) -> Iterator[str]:
+def _bounds(said: Said, found: Sequence[Moment]) -> Iterator[str]:
     """The numbers of tokens that places can have in the cell as it runs."""
     for row in said.whole.get("cell", {}).get("bounds") or []:
-        place, held = row["place"], [tokens[row["place"]] for tokens in found]
+        place, held = row["place"], [at.tokens[row["place"]] for at in found]
         if max(held) > row["upper"]:
             yield f"at most {row['upper']} tokens in {place}, but there were {max(held)}"
         if min(held) < row["lower"]:

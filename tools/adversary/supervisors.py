@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from random import Random
 
 from tools.adversary.devices import Program
+from tools.adversary.extras import more, relay
 from tools.adversary.pages import PRIORITIES, Page, head
 
 _PATH = "Top.Supervisor."
@@ -35,6 +36,8 @@ class Supervisor:
             self._exchange(k, made)
         self._ends(len(devices))
         self._extras()
+        self.looked_at += more(r, page, len(devices), self._head, is_timed=is_timed, path=_PATH)
+        self.pages += relay(r, page, len(devices))
         self.may_fail = r.random() < 0.5
         if self.may_fail:
             self.guards.transition("GiveUp", ["in Alarm : ()", "out Failed : ()"], self._head())
@@ -171,7 +174,7 @@ class Supervisor:
             self.looked_at.append(f"{_PATH}Queue")
         if r.random() < 0.2:
             page.place("Events", "EVENT", "1`none")
-            what = r.choice(["told 1", "heard red"])
+            what = r.choice(["told 1", "heard red", "felt 0.5"])
             arcs = ["in Events : ev", f"out Events : {what}", "both Armed1 : ()"]
             page.transition("Event", arcs, self._head("ev = none"))
         if r.random() < 0.2:

@@ -61,9 +61,16 @@ class Run:
     most_firings: int
 
 
-def prepare(folder: Path, d: Diagnostics) -> Built | None:
-    """Generates and builds, whatever the checks say of the cell; None after an error."""
-    generated = pipeline.generate(folder, d, checked=False)
+def prepare(folder: Path, d: Diagnostics, *, checked: bool = False) -> Built | None:
+    """Generates and builds; None after an error.
+
+    Args:
+        folder: of the cell.
+        d: gets what is wrong.
+        checked: whether a cell that fails a check is refused, and arrays and memory are as large as was proven to be
+            enough, and no larger: what is deployed. Else all is built, with room for more.
+    """
+    generated = pipeline.generate(folder, d, checked=checked)
     if generated is None or generated.config is None:
         return None
     config = generated.config

@@ -21,7 +21,7 @@ from pn2code.robot_scripts import names as robot_names
 from pn2code.robot_scripts.evaluate import Evaluator
 from pn2code.robot_scripts.ir import Element, place_element
 from pn2code.robot_scripts.machine import Machine, Step, initial_tokens, unstamped
-from pn2code.robot_scripts.names import Names, identifier
+from pn2code.robot_scripts.names import Names, identifier, small_identifier
 from pn2code.robot_scripts.not_a_number import may_be_nan
 from pn2code.robot_scripts.values import (
     Shape,
@@ -162,7 +162,7 @@ class Data:
         return self._place_stems(place)
 
     def _place_stems(self, place: int) -> list[str]:
-        stem = identifier(self.partition.net.places[place].short).lower()
+        stem = small_identifier(self.partition.net.places[place].short)
         return robot_names.of_stem(stem, self.shapes[place])
 
     def _initial(self, place: int) -> bool:

@@ -30,6 +30,11 @@ def identifier(text: str) -> str:
     return f"{out}_" if out in KEYWORDS or out in RESERVED else out
 
 
+def small_identifier(text: str) -> str:
+    """The same in small letters, as places and transitions are named."""
+    return identifier(text.lower())
+
+
 def of_pattern(pattern: core.Pat | None, shape: Shape) -> list[str] | None:
     """Names for the leaves of a shape as the variables of a pattern suggest them; None if it suggests none."""
     match pattern:

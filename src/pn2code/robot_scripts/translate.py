@@ -33,7 +33,7 @@ from pn2code.robot_scripts.ir import (
     transition_element,
 )
 from pn2code.robot_scripts.machine import Machine, analyse
-from pn2code.robot_scripts.names import Names, identifier
+from pn2code.robot_scripts.names import Names, small_identifier
 from pn2code.robot_scripts.procedures import extract
 from pn2code.robot_scripts.states import States
 from pn2code.robot_scripts.structure import Tree, structure
@@ -145,7 +145,7 @@ def _lower(
 def _assembled(data: Data, trees: dict[int, Tree], left_out: Sequence[LeftOut]) -> RobotIR:
     """The program of a robot's states."""
     machine, names, places = data.machine, data.names, data.partition.net.places
-    labels = {p: names.unique(identifier(places[p].short).lower()) for p in machine.control}
+    labels = {p: names.unique(small_identifier(places[p].short)) for p in machine.control}
     clash = {x for x in labels.values() if list(labels.values()).count(x) > 1}
     unique = {p: f"{x}_{i}" if x in clash else x for i, (p, x) in enumerate(labels.items())}
     whole = structure(machine.start, trees, lambda p: unique[p], data.may_be_nan)
@@ -153,7 +153,7 @@ def _assembled(data: Data, trees: dict[int, Tree], left_out: Sequence[LeftOut]) 
     taken: set[str] = set()
 
     def procedure(first: Region) -> str:
-        stem = identifier(first.element.rpartition(".")[2]).lower()
+        stem = small_identifier(first.element.rpartition(".")[2])
         name, n = names.unique(stem), 1
         while name in taken:
             n += 1

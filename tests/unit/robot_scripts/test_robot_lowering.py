@@ -389,6 +389,29 @@ def test_names_that_scripts_cannot_have(tmp_path: Path) -> None:
     assert replayed(cell, [("x", (1,)), ("x", (3,))]).ok
 
 
+def test_names_that_scripts_cannot_have_in_small_letters(tmp_path: Path) -> None:
+    steps = "drill (); moveHome (); " * 10
+    robot = f"""
+    place World = 1
+    place Until = 1
+    place Round : INT = 1`7
+    trans Note guard [n > 1]
+      both World
+      in Round : n
+      out Round : k
+      in x : k
+    trans Pose guard [k <= 1] code action ({steps} ())
+      both World
+      in Round : k
+      out Round : n
+      in x : n
+    """
+    cell = Cell(tmp_path, robot, ("x in INT",))
+    cell.checked()
+    assert "var round_ : int" in cell.text
+    assert replayed(cell, [("x", (1,)), ("x", (3,))]).ok
+
+
 def test_long_branches_become_procedures(tmp_path: Path) -> None:
     steps = "drill (); moveHome (); " * 10
     robot = f"""
