@@ -106,7 +106,7 @@ def texts(lab: Lab) -> None:
 
 @situation
 def a_token_that_was_not_checked(lab: Lab) -> None:
-    """The proofs rest on the token that the cell was checked with; with another one the supervisor says so, and runs."""
+    """What is proved rests on the token that the cell was checked with; with another one the supervisor says so."""
     warning = "name.txt: not the token that the cell was checked with"
     assert warning not in lab.run("odd", name=b'"nobody"').finished().err
     assert warning in lab.run("odd", name=b'"other"').finished().err
