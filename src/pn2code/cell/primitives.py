@@ -78,7 +78,9 @@ class _Checker:
         for declaration in net.program.declarations:
             if isinstance(declaration, core.RecBind | core.ValBind):
                 block = net.blocks.get(declaration.span.source.origin, "")
-                functions += [(block, s, e) for s, e in bound(declaration) if isinstance(s.type, TFun)]
+                functions += [
+                    (block, s, e) for s, e in bound(declaration) if isinstance(s.type, TFun)
+                ]
         beside = {block for block, symbol, _ in functions if symbol.uid in self.primitives}
         for block, symbol, body in functions:
             if symbol.uid in self.primitives:

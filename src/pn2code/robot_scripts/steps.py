@@ -167,7 +167,9 @@ class StepTranslator:
             if isinstance(bind, BindEquation):
                 value, owed = self.pure.owing(bind.value, env)
                 given = bind.value.symbol.colset if isinstance(bind.value, core.Var) else None
-                asked.add(order.of_equation(i), self._matched(bind.pattern, value, env, given), owed)
+                asked.add(
+                    order.of_equation(i), self._matched(bind.pattern, value, env, given), owed
+                )
             elif isinstance(bind, BindAll | BindRandom) and bind.symbol.uid not in env:
                 sensor, name, leaf = self._sensor(bind.symbol, step, avoid)
                 avoid.add(name)

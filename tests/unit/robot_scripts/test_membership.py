@@ -50,9 +50,7 @@ def test_what_is_asked(what: str, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(("colset", "taken"), [("INT", "even"), ("STRING", "low")])
 def test_what_cannot_be_asked(colset: str, taken: str, tmp_path: Path) -> None:
-    cell = Cell(
-        tmp_path, PAGE.format(taken=taken), (f"x in {colset}", "y out INT"), extra=EXTRA
-    )
+    cell = Cell(tmp_path, PAGE.format(taken=taken), (f"x in {colset}", "y out INT"), extra=EXTRA)
     (message,) = cell.messages
     assert "error[unsupported-robot-expression]" in message
     assert f"variable `{taken}` takes only what is in colour set `{taken.upper()}`" in message

@@ -1,4 +1,4 @@
-"""What no robot can carry out raises an exception in the net of the cell as it runs, however its function is declared."""
+"""What no robot can carry out raises an exception in the net of the running cell, however its function is declared."""
 
 from __future__ import annotations
 

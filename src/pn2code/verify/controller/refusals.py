@@ -67,9 +67,7 @@ class _Refusal:
         self._true = true
         self._uids = uids
 
-    def declared(
-        self, d: core.Dec, primitives: Mapping[int, Primitive]
-    ) -> Iterator[core.Dec]:
+    def declared(self, d: core.Dec, primitives: Mapping[int, Primitive]) -> Iterator[core.Dec]:
         """A declaration; the primitives in it take what a robot can carry out."""
         match d:
             case core.RecBind(bindings):
