@@ -21,7 +21,7 @@ from pn2code.input_files import begin
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.marking import BindingElement, PlaceMarking
-from pn2code.semantics.game.token_game import Game
+from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.colour_json import from_json
 
 
@@ -94,9 +94,14 @@ def begun(built: Built) -> Mapping[str, PlaceMarking]:
     return {g.name: initial.places[g.place] for g in found.given}
 
 
-def markings(net: FlatNet, run: Run, initial: Mapping[str, PlaceMarking]) -> list[Moment] | str:
-    """The moments after each occurrence; a text when one was not possible."""
-    game = Game(net, initial=initial)
+def markings(
+    net: FlatNet, run: Run, initial: Mapping[str, PlaceMarking], storage: Mapping[str, str]
+) -> list[Moment] | str:
+    """The moments after each occurrence; a text when one was not possible.
+
+    What a script announces just before it stops may be what no token can come of: that is no occurrence.
+    """
+    game = Game(net, storage, initial=initial)
     found = [Moment(_tokens(game))]
     names = {t.name: t for t in net.transitions}
     for line in run.record.events:
@@ -117,7 +122,11 @@ def markings(net: FlatNet, run: Run, initial: Mapping[str, PlaceMarking]) -> lis
         obstacle = game.why_disabled(game.marking, element, priorities=False)
         if obstacle is not None:
             return f"{t.name}: {obstacle}"
-        game.marking, _ = game.occur(game.marking, element)
+        try:
+            game.marking, _ = game.occur(game.marking, element)
+        except GameError as error:
+            is_last = run.end != "finished" and line is run.record.events[-1]
+            return found if is_last else f"{t.name}: {error}"
         found.append(Moment(_tokens(game), t.name))
     return found
 
@@ -129,9 +138,11 @@ def _tokens(game: Game) -> dict[str, int]:
 def contradictions(cell: Cell, said: Said, runs: Sequence[Run], built: Built) -> Iterator[str]:
     """Each thing that was said and is not so."""
     net, initial = built.generated.partition.net, begun(built)
+    config = built.generated.config
+    assert config is not None
     told: set[str] = set()
     for i, run in enumerate(runs):
-        for text in _of_run(cell, said, run, markings(net, run, initial)):
+        for text in _of_run(cell, said, run, markings(net, run, initial, config.storage)):
             if text not in told:
                 yield f"run {i} ({run.end} {run.why}): {text}"
             told.add(text)

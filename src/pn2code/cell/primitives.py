@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 from pn2code.cell import codes
 from pn2code.cell.config import CellConfig, CommandName, Primitive
 from pn2code.cell.partition import Owner, Partition
-from pn2code.cell.reach import Reach
+from pn2code.cell.reach import Reach, bound
 from pn2code.diagnostics import Diagnostics, Span
 from pn2code.diagnostics.suggestions import nearest
 from pn2code.ml.core import terms as core
@@ -74,11 +74,13 @@ class _Checker:
     def _blocks(self) -> None:
         """Looks for functions that stand among the primitives."""
         net = self.partition.net
-        functions: list[tuple[str, core.Symbol, core.Lambda]] = []
+        functions: list[tuple[str, core.Symbol, core.Exp]] = []
         for declaration in net.program.declarations:
-            if isinstance(declaration, core.RecBind):
+            if isinstance(declaration, core.RecBind | core.ValBind):
                 block = net.blocks.get(declaration.span.source.origin, "")
-                functions += [(block, symbol, body) for symbol, body in declaration.bindings]
+                functions += [
+                    (block, s, e) for s, e in bound(declaration) if isinstance(s.type, TFun)
+                ]
         beside = {block for block, symbol, _ in functions if symbol.uid in self.primitives}
         for block, symbol, body in functions:
             if symbol.uid in self.primitives:
@@ -346,10 +348,10 @@ def _values(e: core.Exp) -> Iterable[core.Exp]:
             return [e]
 
 
-def _gives_back(body: core.Lambda) -> bool:
+def _gives_back(body: core.Exp) -> bool:
     """Whether a function does nothing: it gives back what it gets."""
-    match body.rules:
-        case (core.Rule(core.PVar(symbol), core.Var(given)),):
+    match body:
+        case core.Lambda((core.Rule(core.PVar(symbol), core.Var(given)),)):
             return symbol == given
         case _:
             return False

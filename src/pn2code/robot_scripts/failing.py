@@ -151,7 +151,8 @@ def _combined(operator: str, a: Range, b: Range) -> Range:
         return Range(0 if b.low >= 0 else -most, 0 if b.high <= 0 else most)
     by = [b.low, b.high]
     if operator == "div":
-        by = [x for x in (b.low, b.high, -1, 1) if x in b and x != 0]
+        # Numbers between the ends that are left out (`without`) do not matter: more results are no harm.
+        by = [x for x in (b.low, b.high, -1, 1) if x != 0 and b.low <= x <= b.high]
     results = [_OPERATIONS[operator](x, y) for x in (a.low, a.high) for y in by]
     return Range(min(results), max(results)) if results else ALL
 

@@ -26,6 +26,7 @@ from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import ArcKind, BindAll, BindEquation, BindRandom
 from pn2code.robot_scripts import codes as codes
+from pn2code.robot_scripts import membership
 from pn2code.robot_scripts.conditions import Asked, Order, all_hold
 from pn2code.robot_scripts.evaluate import Evaluator
 from pn2code.robot_scripts.failing import Known
@@ -160,11 +161,15 @@ class StepTranslator:
         for place, term, arc, index in ordered:
             if term.pattern is not None:
                 at = order.of_pattern(arc, index)
-                asked.add(at, self.pure.match(term.pattern, values[place], env))
+                colset = self.machine.net.places[place].colset
+                asked.add(at, self._matched(term.pattern, values[place], env, colset))
         for i, bind in enumerate(transition.plan):
             if isinstance(bind, BindEquation):
                 value, owed = self.pure.owing(bind.value, env)
-                asked.add(order.of_equation(i), self.pure.match(bind.pattern, value, env), owed)
+                given = bind.value.symbol.colset if isinstance(bind.value, core.Var) else None
+                asked.add(
+                    order.of_equation(i), self._matched(bind.pattern, value, env, given), owed
+                )
             elif isinstance(bind, BindAll | BindRandom) and bind.symbol.uid not in env:
                 sensor, name, leaf = self._sensor(bind.symbol, step, avoid)
                 avoid.add(name)
@@ -202,6 +207,17 @@ class StepTranslator:
             conditions,
             tuple(sensed),
         )
+
+    def _matched(
+        self, pattern: core.Pat, value: Value, env: Env, colset: Colset | None
+    ) -> list[t.Expression]:
+        """Conditions of a match, which binds variables; `colset`: that of the value, None: it is not known."""
+        before = set(env)
+        found = self.pure.match(pattern, value, env)
+        for symbol, source in membership.of_pattern(pattern, colset):
+            if symbol.uid not in before:
+                found += membership.conditions(symbol, env[symbol.uid], source, pattern.span)
+        return found
 
     def known(self, conditions: Iterable[t.Expression] = ()) -> Known:
         """What is known of numbers where some conditions hold."""

@@ -124,6 +124,11 @@ LOST = {
         "code action let val x = at 3 in moveHome () end",
         "the result of this call",
     ),
+    "it gives back what it gets, as a value": (
+        "  val measure = fn (p : POSE) => p;\n",
+        "code action moveJoint (measure (at 3))",
+        "`measure` stands among the primitives",
+    ),
     "it gives back what it gets": (
         "  fun measure (p : POSE) = p;\n",
         "code action moveJoint (measure (at 3))",

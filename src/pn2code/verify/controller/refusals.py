@@ -10,15 +10,17 @@ segment that commands a move to where the arm cannot go, where it is known of wh
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import count
 
 from pn2code.cell.config import Primitive
 from pn2code.cell.partition import Partition
+from pn2code.diagnostics import Span
 from pn2code.ml.core import terms as core
-from pn2code.ml.core.types import BOOL, INT, REAL, TFun, TRecord, Type, tuple_of
+from pn2code.ml.core.types import BOOL, INT, REAL, TFun, TRecord, TVar, Type, tuple_of
 from pn2code.net.flat import FlatNet, FlatTransition
+from pn2code.net.uses import pattern_variables
 from pn2code.verify.controller.equals import Equals
 from pn2code.verify.controller.poses import Bad
 
@@ -40,18 +42,7 @@ def refusing(partition: Partition, moves: Sequence[Bad] = ()) -> FlatNet:
     true = next(c for c, _ in net.program.datatypes["bool"].constructors if c.name == "true")
     make = _Refusal(true, uids)
     declarations = tuple(
-        replace(
-            d,
-            bindings=tuple(
-                (s, make.primitive(f, partition.primitives[s.uid]))
-                if s.uid in partition.primitives
-                else (s, f)
-                for s, f in d.bindings
-            ),
-        )
-        if isinstance(d, core.RecBind)
-        else d
-        for d in net.program.declarations
+        part for d in net.program.declarations for part in make.declared(d, partition.primitives)
     )
     transitions = tuple(
         make.delays(t) if owner else t
@@ -75,6 +66,38 @@ class _Refusal:
     def __init__(self, true: core.Constructor, uids: count[int]) -> None:
         self._true = true
         self._uids = uids
+
+    def declared(self, d: core.Dec, primitives: Mapping[int, Primitive]) -> Iterator[core.Dec]:
+        """A declaration; the primitives in it take what a robot can carry out."""
+        match d:
+            case core.RecBind(bindings):
+                yield replace(
+                    d,
+                    bindings=tuple(
+                        (s, self.primitive(f, primitives[s.uid]) if s.uid in primitives else f)
+                        for s, f in bindings
+                    ),
+                )
+            case core.ValBind(pattern):
+                own = [s for s in pattern_variables(pattern) if s.uid in primitives]
+                others = {s.uid: replace(s, uid=next(self._uids)) for s in own}
+                yield replace(d, pattern=_renamed(pattern, others)) if own else d
+                for s in own:
+                    function = self._through(s, others[s.uid], d.span)
+                    checked = self.primitive(function, primitives[s.uid])
+                    yield core.RecBind(((s, checked),), d.span)
+            case _:
+                yield d
+
+    def _through(self, symbol: core.Symbol, other: core.Symbol, at: Span) -> core.Lambda:
+        """A function that does what another one does, for `val NAME = FUNCTION`."""
+        t = symbol.type
+        assert isinstance(t, TFun)
+        given = core.Symbol(next(self._uids), "given", t.argument)
+        generics = range(symbol.first_generic, symbol.first_generic + symbol.generics)
+        function = core.Var(other, t, at, tuple(map(TVar, generics)))
+        applied = core.Apply(function, core.Var(given, t.argument, at), t.result, at)
+        return core.Lambda((core.Rule(core.PVar(given, t.argument, at), applied, at),), t, at)
 
     def primitive(self, function: core.Lambda, primitive: Primitive) -> core.Lambda:
         """The function, with an argument that a robot can carry out."""
@@ -106,6 +129,8 @@ class _Refusal:
             case t if t == REAL:
                 zero = core.Lit(0.0, REAL, value.span)
                 return [_compared("Real.>=", value, zero, REAL), _is_finite(value)]
+            case t if t == INT:
+                return [_compared("Int.>=", value, core.Lit(0, INT, value.span), INT)]
             case _:
                 return []
 
@@ -153,6 +178,22 @@ class _Refusal:
         pattern = core.PCon(self._true, None, BOOL, value.span)
         rule = core.Rule(pattern, value, value.span)
         return core.Case(condition, (rule,), value.type, value.span)
+
+
+def _renamed(pattern: core.Pat, others: Mapping[int, core.Symbol]) -> core.Pat:
+    """A pattern with other symbols, by number, in the places of some of its own."""
+    match pattern:
+        case core.PVar(symbol):
+            return replace(pattern, symbol=others.get(symbol.uid, symbol))
+        case core.PRecord(fields):
+            return replace(pattern, fields=tuple((x, _renamed(p, others)) for x, p in fields))
+        case core.PCon(argument=argument) if argument is not None:
+            return replace(pattern, argument=_renamed(argument, others))
+        case core.PAs(symbol, inner):
+            own = others.get(symbol.uid, symbol)
+            return replace(pattern, symbol=own, pattern=_renamed(inner, others))
+        case _:
+            return pattern
 
 
 def _of_speed(value: core.Exp, primitive: Primitive) -> list[core.Exp]:

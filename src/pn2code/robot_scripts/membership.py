@@ -1,0 +1,108 @@
+"""Whether a token is in the colour set of the variable that takes it, as the net asks whenever it binds one.
+
+    var s : SMALL;  and an arc `in flag : s` from a place of colour set INT
+    ->  s >= 0 and s <= 3
+
+Where all tokens of the place are in the colour set, nothing is asked.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from pn2code.diagnostics import Span
+from pn2code.ml.core import terms as core
+from pn2code.ml.core.colsets import Colset, Kind
+from pn2code.ml.core.terms import Symbol
+from pn2code.robot_scripts.values import Rec, Scalar, UnsupportedError, Value, builtin, select
+from pn2code.tdl import tree as t
+from pn2code.tdl import types as tdl
+
+
+def of_pattern(pattern: core.Pat, source: Colset | None) -> Iterator[tuple[Symbol, Colset | None]]:
+    """The variables of a pattern, each with the colour set of what it takes; None: that is not known."""
+    match pattern:
+        case core.PVar(symbol):
+            yield symbol, source
+        case core.PAs(symbol, inner):
+            yield symbol, source
+            yield from of_pattern(inner, source)
+        case core.PRecord(fields):
+            parts = _parts(source)
+            for label, part in fields:
+                yield from of_pattern(part, parts.get(label))
+        case core.PCon(argument=argument) if argument is not None:
+            yield from of_pattern(argument, None)
+        case _:
+            return
+
+
+def conditions(
+    symbol: Symbol, value: Value, source: Colset | None, span: Span
+) -> list[t.Expression]:
+    """What has to be so of a value that a variable is to have.
+
+    Raises:
+        UnsupportedError: scripts cannot ask it.
+    """
+    if symbol.colset is None:
+        return []
+    try:
+        return [e for e in _of(symbol.colset, value, source, span) if e != t.Value(True)]
+    except _UnaskableError as problem:
+        colset = problem.args[0]
+        raise UnsupportedError(
+            f"variable `{symbol.name}` takes only what is in colour set `{colset.name}`, and a script cannot ask "
+            "whether a value is in it: give the variable the colour set of the place, or of what is computed",
+            span,
+        ) from None
+
+
+class _UnaskableError(Exception):
+    pass
+
+
+def _of(c: Colset, value: Value, source: Colset | None, span: Span) -> Iterator[t.Expression]:
+    c = c.resolved
+    source = None if source is None else source.resolved
+    if c == source or not _has_bounds(c):
+        return
+    if c.kind in (Kind.RECORD, Kind.PRODUCT):
+        inner = _parts(source)
+        for label, part in _parts(c).items():
+            yield from _of(part, select(value, label, span), inner.get(label), span)
+        return
+    if c.kind not in (Kind.INT, Kind.REAL) or not isinstance(value, Scalar):
+        raise _UnaskableError(c)
+    own = source if source is not None and source.kind is c.kind else None
+    name = "Int" if c.kind is Kind.INT else "Real"
+    if c.low is not None and not (own and own.low is not None and own.low >= c.low):  # type: ignore[operator]
+        yield _compared(f"{name}.>=", value, c.low, span)
+    if c.high is not None and not (own and own.high is not None and own.high <= c.high):  # type: ignore[operator]
+        yield _compared(f"{name}.<=", value, c.high, span)
+
+
+def _compared(name: str, value: Scalar, end: int | float | str, span: Span) -> t.Expression:
+    assert not isinstance(end, str), "the ends of numbers are numbers"
+    kind = tdl.Type.INT if name.startswith("Int") else tdl.Type.REAL
+    limit = Scalar(t.Value(end), kind)
+    found = builtin(name, Rec((("1", value), ("2", limit))), span)
+    assert isinstance(found, Scalar)
+    return found.exp
+
+
+def _parts(c: Colset | None) -> dict[str, Colset]:
+    """The components of a record or product by label."""
+    while c is not None and c.kind in (Kind.ALIAS, Kind.SUBSET):
+        c = c.components[0]
+    if c is None or c.kind not in (Kind.RECORD, Kind.PRODUCT):
+        return {}
+    labels = c.labels or tuple(str(i) for i in range(1, len(c.components) + 1))
+    return {x: part for x, part in zip(labels, c.components, strict=True) if part is not None}
+
+
+def _has_bounds(c: Colset) -> bool:
+    """Whether some value of its type is not in a colour set."""
+    if c.kind is Kind.SUBSET or c.low is not None or c.high is not None or c.length is not None:
+        return True
+    return any(_has_bounds(part) for part in c.components if part is not None)
