@@ -26,10 +26,11 @@ COLSET_KINDS = (
 
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_']*")
 _KEYWORDS = """
-abstype and andalso as case datatype do else end exception fn fun functor handle if in infix infixr let local nonfix of
-op open orelse raise rec signature struct structure then type val while with withtype
+abstype and andalso as case datatype do else end eqtype exception fn fun functor handle if in include infix infixr let
+local nonfix of op open orelse raise rec sharing sig signature struct structure then type val where while with withtype
 """
-_RESERVED = frozenset(_KEYWORDS.split())
+RESERVED = frozenset(_KEYWORDS.split())
+"""The keywords of CPN ML, also those of signatures."""
 
 Warn = Callable[[Node, Node], None]
 """Reports an unknown child of an element, once per kind."""
@@ -160,9 +161,9 @@ class DeclarationReader:
         return RawVar(node.get("id"), names, type_name, origin)
 
     def check_name(self, name: str, origin: Origin) -> None:
-        """Names of colour sets and variables are alphanumeric names of CPN ML."""
-        if name and (not _NAME.fullmatch(name) or name in _RESERVED):
-            reason = "it is a keyword" if name in _RESERVED else "names have no such characters"
+        """Names that are declared are alphanumeric names of CPN ML."""
+        if name and (not _NAME.fullmatch(name) or name in RESERVED):
+            reason = "it is a keyword" if name in RESERVED else "names have no such characters"
             self.d.error(
                 CPN_ELEMENT,
                 f"`{name}` cannot be declared: {reason}",
@@ -177,6 +178,8 @@ class DeclarationReader:
         base = self.origin(node, f"reference `{name}`", "declaration")
         if ml is None or not name:
             return self.other(node)
+        if name in RESERVED:
+            self.check_name(name, base)
         return RawGlobref(node.get("id"), name, ml.source(base), base)
 
     def other(self, node: Node) -> RawOther:

@@ -9,7 +9,9 @@ import pytest
 
 from helpers.netbuilder import cpn
 from pn2code.diagnostics import Diagnostics
+from pn2code.ml.parsing.lexer import KEYWORDS
 from pn2code.reading.cpn import read, read_data
+from pn2code.reading.declarations import RESERVED
 from pn2code.reading.document import Document, RawGlobref, RawMl, RawOther, RawUse
 
 NET = """
@@ -356,6 +358,19 @@ def test_constants_and_labels_are_names_of_cpn_ml(definition: str) -> None:
     _, d = parse(change("</globbox>", colset))
     assert [(x.code, x.severity.value) for x in d] == [("cpn-element", "error")]
     assert "cannot be declared" in d.items[0].message
+
+
+@pytest.mark.parametrize("word", ["eqtype", "include", "sharing", "sig", "where"])
+def test_keywords_of_signatures_are_keywords(word: str) -> None:
+    """Nothing of that name can be declared, whether it is used or not."""
+    variable = f"<var id='X1'><type><id>INT</id></type><id>{word}</id></var>"
+    reference = f"<globref id='X2'><id>{word}</id><ml>0</ml></globref>"
+    _, d = parse(change("</globbox>", f"{variable}{reference}</globbox>"))
+    assert [x.message for x in d] == [f"`{word}` cannot be declared: it is a keyword"] * 2
+
+
+def test_names_may_not_be_any_keyword_of_cpn_ml() -> None:
+    assert RESERVED == KEYWORDS
 
 
 def test_labels_of_a_record_may_be_numbers() -> None:

@@ -11,7 +11,7 @@ import pytest
 from helpers.netbuilder import flat
 from pn2code.diagnostics import Diagnostics
 from pn2code.semantics.evaluation.evaluate import Limits
-from pn2code.semantics.game import report
+from pn2code.semantics.game import report, token_game
 from pn2code.semantics.game.graph import state_space
 from pn2code.semantics.game.marking import BindingElement, place_from_json, place_to_json
 from pn2code.semantics.game.token_game import Game, GameError, NotEnabled
@@ -498,6 +498,21 @@ def test_endless_functions_are_given_up() -> None:
     """
     with pytest.raises(GameError, match="no end after 10000 steps"):
         game(body, limits=Limits(steps=10_000)).enabled()
+
+
+def test_initial_markings_may_take_longer(monkeypatch: pytest.MonkeyPatch) -> None:
+    """They are computed once: sorting thousands of tokens is no endless function."""
+    usual = Limits().steps
+    assert token_game.AT_START.steps is not None and usual is not None
+    assert token_game.AT_START.steps > usual
+    monkeypatch.setattr(token_game, "AT_START", Limits(steps=300))
+    head = "\n        fun f n = if n = 0 then 7 else f (n - 1);\n"
+    with pytest.raises(GameError, match="initial marking of `Top.P` was given up: no end after 300"):
+        game(head + "        place P : INT = f 1000\n")
+    with pytest.raises(GameError, match="a declaration was given up: no end after 300 steps"):
+        game(head + "        val x = f 1000;\n        place P : INT\n")
+    own = game(head + "        place P : INT = f 10\n")
+    assert own.evaluator.limits == Limits()
 
 
 def test_what_is_not_enabled_does_not_occur() -> None:

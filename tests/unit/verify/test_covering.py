@@ -6,6 +6,7 @@ import json
 from collections.abc import Callable
 from pathlib import Path
 from random import Random
+from threading import Event, Thread
 from time import sleep
 
 import pytest
@@ -156,6 +157,34 @@ def test_how_far_it_searches_is_a_number_of_steps(text: str) -> None:
     search = Search(flat(text), {}, among={0})
     assert search.look(most=500) is None
     assert 500 <= search.work < 600
+
+
+def test_without_time_no_search_begins(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its first marking may take for ever: nobody would end it."""
+    begun: list[Search] = []
+    monkeypatch.setattr(Search, "look", lambda self, _: begun.append(self))
+    with Meanwhile(flat(HEAD + ROUND), {}) as search:
+        assert search.last(lambda: True) is None
+    assert not begun
+
+
+def test_a_search_that_computes_is_left_behind_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    waits: list[float | None] = []
+    goes_on = Event()
+    monkeypatch.setattr(Search, "look", lambda self, _: goes_on.wait() and None)
+    join = Thread.join
+
+    def counted(self: Thread, timeout: float | None = None) -> None:
+        waits.append(timeout)
+        join(self, 0.01)
+
+    monkeypatch.setattr(Thread, "join", counted)
+    with Meanwhile(flat(HEAD + ROUND), {}) as search:
+        search.note(FROM_STATES)
+        search.stop()
+        search.stop()
+    assert len(waits) == 1
+    goes_on.set()
 
 
 def test_after_a_limit_the_search_does_its_part(monkeypatch: pytest.MonkeyPatch) -> None:

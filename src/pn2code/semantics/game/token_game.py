@@ -44,6 +44,9 @@ from pn2code.semantics.values.multiset import MultiSet, TimedMultiSet
 
 __all__ = ["Binding", "BindingElement", "Game", "GameError", "Marking", "NotEnabled"]
 
+AT_START = Limits(steps=10_000_000)
+"""Of a declaration or an initial marking, which are computed once: one of some thousand sorted tokens takes millions."""
+
 
 class NotEnabled(ValueError):  # noqa: N818
     """A binding element was to occur that is not enabled; the message says why."""
@@ -58,7 +61,7 @@ class Game:
         initial: markings that replace the initial markings of the places of these names.
         seed: of the random functions.
         still: they give the same numbers at each step, as in a run that the explorer has found.
-        limits: of each evaluation.
+        limits: of each evaluation; None: the usual ones, `AT_START` for what is computed once.
         output: is given what the net prints.
         files: what the net can do with files; nothing by default.
 
@@ -89,7 +92,7 @@ class Game:
                 net.program,
                 real_time=net.real_time,
                 seed=seed,
-                limits=limits,
+                limits=limits or AT_START,
                 output=output,
                 files=files,
             )
@@ -105,6 +108,7 @@ class Game:
         own = Marking(self.start, tuple(map(self._initial, net.places)))
         self.own_initial_marking = self.with_references(own)
         self.marking = self._with_overrides(self.own_initial_marking, initial or {})
+        self.evaluator.limits = limits or Limits()
         self.evaluator.random.is_still = still
         self.steps = 0
 

@@ -24,7 +24,7 @@ FROM_STATES = 5_000
 """A smaller state space is explored before a walk would come upon anything."""
 _STACK = 64 << 20
 _NICE = 10
-_LEAVE_S = 2.0
+_LEAVE_S = 0.5
 """A walk looks at each step whether to end; one that computes for longer is left behind."""
 _LOOK_S = 0.05
 
@@ -71,17 +71,20 @@ class Meanwhile:
             self._begin()
 
     def stop(self) -> None:
-        """Ends the thread."""
+        """Ends the thread; it is waited for once."""
+        has_ended = self._ends.is_set()
         self._ends.set()
-        if self._thread is not None:
+        if self._thread is not None and not has_ended:
             self._thread.join(_LEAVE_S)
 
     def last(self, is_over: Callable[[], bool]) -> Covering | None:
         """What is known after an exploration that came to a limit: the search does its part first.
 
         Args:
-            is_over: asked from time to time whether there is no time for that.
+            is_over: asked from time to time whether there is no time for that; if so at once, nothing begins.
         """
+        if self._thread is None and is_over():
+            return None
         self._is_waited_for.set()
         thread = self._begin()
         while thread.is_alive() and not is_over():
