@@ -12,11 +12,12 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pn2code
+from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
 from pn2code.cell.locate import locate
 from pn2code.cell.partition import Partition
@@ -43,7 +44,7 @@ if TYPE_CHECKING:
 Examine = Callable[[FlatNet, CellConfig | None, Diagnostics], None]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Generated:
     """What the generator gives.
 

@@ -16,11 +16,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import pn2code.robot.commands as commands
+from pn2code.base.frozen import frozen
 from pn2code.cell.config import Primitive
 from pn2code.cell.reach import Reach
 from pn2code.ml.core.types import UNIT, TFun
@@ -31,7 +31,7 @@ from pn2code.semantics.values.data import Native, Value
 _NAMES = ("x", "y", "z", "rx", "ry", "rz")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Unknown:
     """A call of a function that is no command, and does nothing else."""
 

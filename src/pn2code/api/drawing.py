@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
+from pn2code.base.frozen import frozen
 from pn2code.base.whole_file import whole_file
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Drawing:
     """A picture; a notebook shows it by itself.
 

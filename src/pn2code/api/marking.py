@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from pn2code.api.drawing import Drawing
 from pn2code.api.errors import playing
+from pn2code.base.frozen import frozen
 from pn2code.semantics.game import report
 from pn2code.semantics.game.marking import (
     BindingElement,
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pn2code.api.net import Net
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Token:
     """Equal tokens of a place.
 
@@ -40,7 +40,7 @@ class Token:
     time: int | float | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Binding:
     """A transition with values of its variables.
 

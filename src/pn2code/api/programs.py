@@ -3,19 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from types import MappingProxyType
 
 from pn2code import pipeline
 from pn2code.api.errors import refuse
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostic, Diagnostics
 from pn2code.emission.write import OutputFolderError, write
 
 __all__ = ["OutputFolderError", "Programs", "generate"]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Programs:
     """The C supervisor, and a script for each robot.
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pn2code.api.errors import playing, refuse
 from pn2code.api.marking import Marking
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics
 from pn2code.simulate.choose import Wish, monitors_of
 from pn2code.simulate.choose import simulate as play
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from pn2code.api.net import Net
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Simulation:
     """What became of a run.
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import tempfile
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from pn2code.api.errors import playing, refuse
 from pn2code.base.deadline import Deadline
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics
 from pn2code.verdict import properties as own
 from pn2code.verdict.opened import OpenNet
@@ -23,7 +23,7 @@ INT_BITS = 31
 """Of `int` in the programs of a cell."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PropertyAnswer:
     """What is known of a property.
 
@@ -48,7 +48,7 @@ class PropertyAnswer:
     assumes: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Verification:
     """What a state space says.
 

@@ -15,8 +15,10 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from types import FrameType
+
+from pn2code.base.frozen import frozen
 
 _AGAIN_S = 0.1
 """An exception that is raised in a destructor is lost: the alarm comes again and again until it has been heard."""
@@ -43,7 +45,7 @@ class TimeIsOverError(BaseException):
     """The deadline came while pure Python was at work. It is no error of what was done, so nothing catches it."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Deadline:
     """When the time is over.
 

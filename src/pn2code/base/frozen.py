@@ -1,9 +1,13 @@
 """`@frozen`: what `@dataclass(frozen=True, slots=True)` gives, for modules with dozens of node classes.
 
 Python 3.11's dataclasses compile six functions for each class, about a millisecond; with some hundred node classes that
-was half of the start-up time. A frozen class compiles one, its `__init__`, when the first object is made; the rest is
-shared. They are dataclasses in every other way: `fields`, `replace`, `match`, subclasses. What they do not have:
+was half of the start-up time. A frozen class compiles none: its `__init__` is the code of another class with as many
+fields, with its own names in it, and is made when the first object is; the rest is shared. They are dataclasses in
+every other way: `fields`, `replace`, `match`, subclasses. What they do not have:
 `__post_init__`, `init=False`, key-word-only fields, class variables, comparisons and the like of their own.
+
+`@frozen(eq=False)` compares and hashes by identity, as `@dataclass(frozen=True, slots=True, eq=False)` does, and
+`@record` gives what `@dataclass(slots=True)` gives: objects that may be changed.
 
 Example:
 
@@ -18,8 +22,10 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable
+from functools import cache, partial
 from operator import attrgetter
-from typing import Any, NoReturn, TypeVar, dataclass_transform
+from types import CodeType, FunctionType
+from typing import Any, NoReturn, TypeVar, dataclass_transform, overload
 
 T = TypeVar("T")
 
@@ -41,9 +47,38 @@ _SHARED = frozenset(
 """What all frozen classes have from here."""
 
 
+@overload
 @dataclass_transform(frozen_default=True, field_specifiers=(dataclasses.field,))
-def frozen(cls: type[T]) -> type[T]:
-    """Make a class a frozen, slotted dataclass that compares and hashes by value."""
+def frozen(cls: type[T]) -> type[T]: ...
+
+
+@overload
+@dataclass_transform(frozen_default=True, field_specifiers=(dataclasses.field,))
+def frozen(*, eq: bool) -> Callable[[type[T]], type[T]]: ...
+
+
+def frozen(cls: type[T] | None = None, *, eq: bool = True) -> Any:
+    """Make a class a frozen, slotted dataclass that compares and hashes by value, or else by identity."""
+    return partial(_made, eq=eq) if cls is None else _made(cls, eq)
+
+
+@overload
+@dataclass_transform(field_specifiers=(dataclasses.field,))
+def record(cls: type[T]) -> type[T]: ...
+
+
+@overload
+@dataclass_transform(field_specifiers=(dataclasses.field,))
+def record(*, eq: bool) -> Callable[[type[T]], type[T]]: ...
+
+
+def record(cls: type[T] | None = None, *, eq: bool = True) -> Any:
+    """Make a class a slotted dataclass whose objects may be changed, and have no hash if they compare by value."""
+    changing = partial(_made, eq=eq, is_frozen=False)
+    return changing if cls is None else changing(cls)
+
+
+def _made(cls: type[T], eq: bool, is_frozen: bool = True) -> type[T]:
     inherited: dict[str, dataclasses.Field[Any]] = {}
     for base in reversed(cls.__mro__[1:]):
         inherited.update(getattr(base, "__dataclass_fields__", {}))
@@ -71,14 +106,15 @@ def frozen(cls: type[T]) -> type[T]:
             "__dataclass_params__": _PARAMETERS,
             "__repr__": _repr,
             "__reduce__": _reduce,
-            "__setattr__": _frozen,
-            "__delattr__": _frozen,
+            **(_UNCHANGED if is_frozen else {}),
         },
     )
     made.__qualname__ = cls.__qualname__
     fields = tuple(everything.values())
     made.__init__ = _first_init(made, fields)
-    made.__eq__, made.__hash__ = _comparison(tuple(f.name for f in fields if f.compare))
+    if eq:
+        made.__eq__, hashed = _comparison(tuple(f.name for f in fields if f.compare))
+        made.__hash__ = hashed if is_frozen else None
     return made  # type: ignore[no-any-return]
 
 
@@ -117,26 +153,39 @@ def _first_init(made: Any, fields: tuple[dataclasses.Field[Any], ...]) -> Callab
 
 
 def _init(made: type, fields: tuple[dataclasses.Field[Any], ...]) -> Callable[..., None]:
+    """The `__init__` of a class: code for as many fields, in which the names and defaults are those of this one."""
     names: dict[str, object] = {"MISSING": dataclasses.MISSING}
-    parameters, lines = ["self"], []
-    for f in fields:
+    defaults: list[object] = []
+    factories: list[int] = []
+    for n, f in enumerate(fields):
         # Setting through the slot itself passes by the `__setattr__` that forbids it.
-        names[f"set_{f.name}"] = getattr(made, f.name).__set__
-        parameter, value = f.name, f.name
+        names[f"set{n}"] = getattr(made, f.name).__set__
         if f.default_factory is not dataclasses.MISSING:
-            names[f"make_{f.name}"] = f.default_factory
-            parameter = f"{f.name}=MISSING"
-            value = f"make_{f.name}() if {f.name} is MISSING else {f.name}"
+            names[f"make{n}"] = f.default_factory
+            factories.append(n)
+            defaults.append(dataclasses.MISSING)
         elif f.default is not dataclasses.MISSING:
-            names[f"default_{f.name}"] = f.default
-            parameter = f"{f.name}=default_{f.name}"
-        parameters.append(parameter)
-        lines.append(f"    set_{f.name}(self, {value})")
-    code = "\n".join([f"def __init__({', '.join(parameters)}):", *lines, "    return None"])
-    exec(code, names)  # the names come from the class statement
-    made_init: Any = names["__init__"]
-    made_init.__qualname__ = f"{made.__qualname__}.__init__"
-    return made_init  # type: ignore[no-any-return]
+            defaults.append(f.default)
+        elif defaults:
+            raise TypeError(f"non-default argument {f.name!r} follows default argument")
+    code = _code(len(fields), tuple(factories)).replace(
+        co_varnames=("self", *(f.name for f in fields)),
+        co_qualname=f"{made.__qualname__}.__init__",
+    )
+    return FunctionType(code, names, "__init__", tuple(defaults))
+
+
+@cache
+def _code(count: int, factories: tuple[int, ...]) -> CodeType:
+    """That of an `__init__` with so many fields; `factories`: the numbers of those whose default is made anew."""
+    lines = [f"def __init__({', '.join(['self', *(f'a{n}' for n in range(count))])}):"]
+    for n in range(count):
+        value = f"make{n}() if a{n} is MISSING else a{n}" if n in factories else f"a{n}"
+        lines.append(f"    set{n}(self, {value})")
+    found: dict[str, Any] = {}
+    exec("\n".join([*lines, "    return None"]), found)
+    code: CodeType = found["__init__"].__code__
+    return code
 
 
 def _comparison(
@@ -175,3 +224,6 @@ def _reduce(self: Any) -> tuple[type, tuple[Any, ...]]:
 
 def _frozen(self: object, name: str, value: object = None) -> NoReturn:
     raise dataclasses.FrozenInstanceError(f"cannot assign to field {name!r}")
+
+
+_UNCHANGED = {"__setattr__": _frozen, "__delattr__": _frozen}

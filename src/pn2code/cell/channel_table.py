@@ -7,14 +7,15 @@ lines(rows(partition, config))      # a table, with its head
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import astuple, dataclass, fields
+from dataclasses import astuple, fields
 
+from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Partition
 from pn2code.cell.scalars import scalars_of
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ChannelRow:
     """A channel.
 

@@ -9,9 +9,9 @@ reader of its text needs to know: kind, names, range. Channels and input files h
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 
+from pn2code.base.frozen import frozen
 from pn2code.ml.core.colsets import Colset, Kind
 
 
@@ -27,7 +27,7 @@ class ScalarKind(Enum):
     INDEX = "index"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Scalar:
     """One scalar.
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, record
 from pn2code.cell.partition import Channel, Partition
 from pn2code.channel_model.faults import Fault
 from pn2code.channel_model.rules import Rules
@@ -103,7 +103,7 @@ def modelled(partition: Partition) -> tuple[Channel, ...]:
     return tuple(c for c in partition.channels if 0 in (c.writer, c.reader))
 
 
-@dataclass(slots=True)
+@record
 class _Program:
     """What an owner holds while its process lives."""
 

@@ -20,12 +20,12 @@ import secrets
 import time
 from collections.abc import Iterable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import Enum
 from pathlib import Path
 
 from pn2code.base.closing import Closing
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, record
 from pn2code.channels.message import (
     EMPTY,
     MAX_PAYLOAD,
@@ -96,7 +96,7 @@ class NotWritten:
     text: str
 
 
-@dataclass(slots=True)
+@record
 class _ChannelState:
     """What this side remembers of one channel."""
 

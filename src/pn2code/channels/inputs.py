@@ -8,8 +8,8 @@ read("5\\n1 2 x\\n", lines_of(colset))      # Mistake(2, 5, "`x` is not a number
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.cell.scalars import Scalar
 from pn2code.channels.scalars import Malformed, ScalarValue, parse_scalars
 
@@ -17,7 +17,7 @@ MOST_BYTES = 65_535
 """Of an input file: what the supervisor has room for."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Mistake:
     """What is wrong first, and where; counted from 1."""
 

@@ -13,16 +13,16 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any
 
+from pn2code.base.frozen import frozen
 from pn2code.cell.scalars import Scalar, ScalarKind
 
 ScalarValue = bool | int | float | str
 """BOOL: bool. INT, INDEX: int. REAL: float. STRING: str. ENUM: the constructor's name. UNIT: 1."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Malformed:
     """Text that is no token of the colour set: what was found, what was expected, and where (1-based column)."""
 

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import NoReturn
 
 import typer
 
+from pn2code.base.frozen import frozen
 from pn2code.cli.options import Exit, Format, stop
 from pn2code.diagnostics import Diagnostics
 from pn2code.trace import replay as own
@@ -21,7 +21,7 @@ def refuse(message: str) -> NoReturn:
     raise typer.Exit(Exit.USAGE)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Claims:
     """What the claims of a trace are compared with; see `trace.replay.replay`."""
 

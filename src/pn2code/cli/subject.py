@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from pn2code import pipeline
 from pn2code.base.deadline import NEVER, Deadline, TimeIsOverError
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.output import OutputFile
 from pn2code.verdict.opened import OpenNet
@@ -21,7 +21,7 @@ RUNTIME = "runtime/"
 """Generated files below it are the same for all nets."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Subject:
     """What was looked at.
 

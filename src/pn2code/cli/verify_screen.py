@@ -9,11 +9,11 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
 from pn2code.base.deadline import TimeIsOverError
+from pn2code.base.frozen import frozen
 from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.marking import BindingElement
@@ -61,7 +61,7 @@ _WIDTH = 110
 _NAME = 21
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Item:
     """One answer: what was asked, how it came out ("good", "bad", "open"), and what there is to say."""
 

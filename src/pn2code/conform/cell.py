@@ -9,9 +9,10 @@ import json
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import closing
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
+from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Owner
 from pn2code.conform import core, data, declared, folder, robot, supervisor
@@ -32,7 +33,7 @@ from pn2code.tdl.parse import parse
 from pn2code.toolchain import programs
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Conformance:
     """What was compared.
 

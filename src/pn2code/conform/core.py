@@ -13,10 +13,11 @@ import json
 import subprocess
 import tempfile
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.frozen import frozen
 from pn2code.conform.clock import Clock
 from pn2code.conform.scheme import MOST_STATES
 from pn2code.diagnostics import Diagnostics
@@ -35,7 +36,7 @@ WALKS = 20
 WALK_STEPS = 500
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class CoreReport:
     """What was compared.
 

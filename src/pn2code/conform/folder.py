@@ -10,9 +10,9 @@ nobody generated is foreign; one that `make` or the C compiler would take for a 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
+from pn2code.base.frozen import frozen
 from pn2code.base.os_reason import os_reason
 from pn2code.conform.codes import GENERATED_UNREADABLE
 from pn2code.diagnostics import Diagnostics, Origin
@@ -25,7 +25,7 @@ _MAKEFILES = ("GNUmakefile", "makefile")
 """What `make` reads before `Makefile`."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Folder:
     """What a folder has; paths are relative to it.
 

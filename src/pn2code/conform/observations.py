@@ -14,8 +14,9 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
+from pn2code.base.frozen import frozen, record
 from pn2code.cell.partition import Channel, Partition
 from pn2code.conform.clock import Clock
 from pn2code.conform.scheme import SUPERVISOR, Scheme
@@ -23,7 +24,7 @@ from pn2code.semantics.game.marking import Marking
 from pn2code.semantics.game.token_game import Game
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Observation:
     """Args:
     marking: of what the supervisor sees; everything else is as at the start.
@@ -36,7 +37,7 @@ class Observation:
     signs: frozenset[tuple[int, str]]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ObservedChange:
     """How one sight turns into another: an occurrence in words, or time that goes on by `later`."""
 
@@ -44,7 +45,7 @@ class ObservedChange:
     later: float = 0
 
 
-@dataclass(slots=True)
+@record
 class Observations:
     """Args:
     others: for each sight, those that it turns into without the supervisor, and by what.
@@ -59,7 +60,7 @@ class Observations:
     overruns: list[tuple[str, ...]] = field(default_factory=list)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _State:
     """Args:
     marking: of the closed net.

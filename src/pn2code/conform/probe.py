@@ -19,10 +19,10 @@ import subprocess
 import tempfile
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.frozen import frozen
 from pn2code.base.processor_time import Patience, group_time
 from pn2code.toolchain.programs import Host
 
@@ -45,7 +45,7 @@ class ProbeError(Exception):
     """The program under test does not answer; the message says how it ended."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Answer:
     """What a cycle has left.
 

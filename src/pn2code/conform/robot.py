@@ -15,8 +15,9 @@ from __future__ import annotations
 import math
 from collections import Counter, deque
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import astuple, dataclass, replace
+from dataclasses import astuple, replace
 
+from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Channel, ChannelKind, Partition
 from pn2code.conform.clock import Clock
@@ -51,7 +52,7 @@ from pn2code.tdl.requests import (
 )
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RobotReport:
     """What was compared.
 
@@ -82,7 +83,7 @@ class DeviationError(Exception):
     """The script does something else; the text says what."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _State:
     """Args:
     marking: of the closed net.

@@ -12,8 +12,9 @@ once for each of those, however many markings they occur in.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from pn2code.base.frozen import frozen
 from pn2code.cell.partition import Partition
 from pn2code.net.flat import FlatTransition
 from pn2code.semantics.evaluation.references import Held
@@ -28,7 +29,7 @@ SUPERVISOR = 0
 """Its number among the owners of a partition."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Changes:
     """What is different after an occurrence.
 
@@ -48,7 +49,7 @@ class Changes:
         return replace(marking, places=tuple(places), references=self.references)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Cycle:
     """Step 2 of one cycle.
 
@@ -65,7 +66,7 @@ class Cycle:
     is_overrun: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Step:
     """An occurrence, in words, and what it changes."""
 
@@ -77,7 +78,7 @@ class Step:
         return self.changes.of(marking)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Steps:
     """What an owner may do. `raises`: something of it raises an exception, which stops the owner."""
 

@@ -12,8 +12,9 @@ session, number and checksum. Sights are visited depth first: the program's stat
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from pn2code.base.frozen import frozen, record
 from pn2code.cell.partition import ChannelKind, Partition
 from pn2code.channels.message import EMPTY, ChannelSpec, Message, compose, parse, specs_of
 from pn2code.conform.clock import Clock
@@ -29,7 +30,7 @@ MOST_DEPTH = 4000
 """Saved states at a time, each of which is a process."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Deviation:
     """Where the program does something else than the net.
 
@@ -42,7 +43,7 @@ class Deviation:
     way: tuple[str, ...]
 
 
-@dataclass(slots=True)
+@record
 class Report:
     """What was compared.
 
@@ -78,7 +79,7 @@ class _DeviationError(Exception):
     """The program does something else; the text says what."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _State:
     """What the program is in. What it does depends on the sight alone.
 
@@ -93,7 +94,7 @@ class _State:
     sent: tuple[int, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Move:
     """Something that can happen. `sight`: what it leads to; None: it is the supervisor's cycle."""
 

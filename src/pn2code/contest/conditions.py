@@ -9,10 +9,11 @@ Numbers of tokens are integers, so that the opposite of `sum <= limit` is `-sum 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+
+from pn2code.base.frozen import frozen
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class AtMost:
     """The sum of factor * tokens is at most `limit`; `factors` are (place, factor), by place, none of them 0."""
 
@@ -28,7 +29,7 @@ class AtMost:
         return sum(n * marking[p] for p, n in self.factors) <= self.limit
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Junction:
     """All of the parts (`is_all`), or one of them. Without parts: true, or false."""
 
@@ -36,7 +37,7 @@ class Junction:
     parts: tuple[Condition, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Dead:
     """No transition is enabled. It stands only alone: the question for a deadlock."""
 

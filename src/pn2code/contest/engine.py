@@ -15,10 +15,11 @@ import tempfile
 import threading
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 from queue import SimpleQueue
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics
 from pn2code.toolchain import programs
 from pn2code.toolchain.programs import Host
@@ -36,7 +37,7 @@ _GRACE_S = 1.0
 """After its time a process is ended."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Answer:
     """What a method has found out.
 
@@ -53,7 +54,7 @@ class Answer:
     method: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Space:
     """Sizes of a state space that was seen to its end; `dead` is None where it was not asked for."""
 
@@ -70,7 +71,7 @@ def engine(d: Diagnostics) -> AbstractContextManager[Path | None]:
     return programs.program(HOST, (), d)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Task:
     """One method with some questions.
 

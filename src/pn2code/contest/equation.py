@@ -20,12 +20,12 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from pn2code.base.frozen import frozen
 from pn2code.contest import certificates
 from pn2code.contest.conditions import AtMost, Condition, Dead, Junction, junction
 from pn2code.contest.tables import Tables
@@ -52,7 +52,7 @@ class _UnknownError(Exception):
     """There is no proof: a solution satisfies everything, or the time is over."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Solution:
     """What the linear program says.
 
@@ -69,7 +69,7 @@ class _Solution:
     duals: Any
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Node:
     """A part of the search: rows that hold, choices of which one part must, and how many fractions were split."""
 

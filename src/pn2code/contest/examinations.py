@@ -9,9 +9,9 @@ several where all of them are.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
+from pn2code.base.frozen import frozen
 from pn2code.contest import linear
 from pn2code.contest.formulas import Formula, FormulaError, Op, Tokens, read
 from pn2code.contest.tables import Tables
@@ -26,7 +26,7 @@ SPACE = "StateSpace"
 ALL = (SPACE, *GLOBAL, *FORMULAS)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Part:
     """One question for the engine.
 
@@ -39,7 +39,7 @@ class Part:
     text: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Asked:
     """One line of the result.
 

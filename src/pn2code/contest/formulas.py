@@ -8,10 +8,11 @@ stays there, and counts.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 from lxml import etree
+
+from pn2code.base.frozen import frozen
 
 _NAMESPACE = "{http://mcc.lip6.fr/}"
 _LARGEST = 64 << 20
@@ -21,21 +22,21 @@ class FormulaError(Exception):
     """A file of formulas is not as the contest writes them."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Constant:
     """A number."""
 
     value: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Tokens:
     """The number of tokens that some places hold together."""
 
     places: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class AtMost:
     """Comparison: left <= right."""
 
@@ -43,14 +44,14 @@ class AtMost:
     right: Constant | Tokens
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Fireable:
     """One of the transitions is enabled."""
 
     transitions: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Op:
     """An operator: `not`, `and`, `or`; `A`, `E` (paths); `X`, `F`, `G`, `U` (time)."""
 
@@ -62,7 +63,7 @@ Formula = AtMost | Fireable | Op | Tokens
 """`Tokens` alone asks for a bound."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Question:
     """One formula of a file, under the contest's name for it."""
 

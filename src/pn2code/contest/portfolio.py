@@ -10,10 +10,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 from queue import Empty, SimpleQueue
 
+from pn2code.base.frozen import frozen, record
 from pn2code.contest.diagrams import KINDS, METHOD, Diagrams
 from pn2code.contest.engine import Answer, Said, Space, Task, ask
 from pn2code.contest.examinations import Asked, Part
@@ -40,7 +41,7 @@ _LEAST_SLICE_S = 0.25
 """With less for each of the questions they are asked together."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Result:
     """The answer to one line of an examination."""
 
@@ -49,7 +50,7 @@ class Result:
     techniques: str
 
 
-@dataclass(slots=True)
+@record
 class _Line:
     """A line with what is known of its parts."""
 
@@ -79,7 +80,7 @@ class _Line:
         return Result(a.name, value, " ".join(sorted(self.techniques)))
 
 
-@dataclass(slots=True)
+@record
 class _Place:
     """Where a question belongs: the part of a line, or a hint with the answer that decides."""
 

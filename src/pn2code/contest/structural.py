@@ -13,8 +13,9 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from pn2code.base.frozen import record
 from pn2code.contest import conditions
 from pn2code.contest.conditions import FALSE, TRUE, AtMost, Condition, Dead, TooLargeError
 from pn2code.contest.engine import Answer, Said
@@ -32,7 +33,7 @@ _FEW = 40
 _LEAST_S = 0.1
 
 
-@dataclass(slots=True)
+@record
 class Smaller:
     """A question about a reduced net.
 
@@ -61,7 +62,7 @@ class Smaller:
         return f"guided {len(self.guide)} {steps} {text}"
 
 
-@dataclass(slots=True)
+@record
 class Question:
     """A question about reachability or about a bound, with what is known.
 

@@ -10,13 +10,13 @@ place is the sum of its colours, a coloured transition is enabled if one of its 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.contest.formulas import AtMost, Constant, Fireable, Formula, FormulaError, Op, Tokens
 from pn2code.unfold.net import Unfolding
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Tables:
     """A place/transition net.
 

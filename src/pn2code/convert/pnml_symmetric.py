@@ -12,9 +12,9 @@ Everything else is reported by the element that has it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
 
+from pn2code.base.frozen import frozen
 from pn2code.convert import pnml
 from pn2code.convert.codes import UNSUPPORTED_IN_PNML
 from pn2code.convert.pnml import element
@@ -63,7 +63,7 @@ class _NotSymmetricError(Exception):
         self.why = why
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Sort:
     """A colour set as a sort: its id; `colset` is looked through to what it is."""
 

@@ -6,10 +6,10 @@ explain CODE` prints the explanation. Each code has at least one test that trigg
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from pn2code.base.frozen import frozen
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Code:
     """A code, a title of a few words, and an explanation of some sentences with an example."""
 

@@ -8,10 +8,10 @@ bug in pn2code).
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import Enum
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, record
 from pn2code.diagnostics.codes import require_code
 from pn2code.diagnostics.origin import Origin, Span
 
@@ -63,7 +63,7 @@ class Diagnostic:
     hint: str = ""
 
 
-@dataclass(slots=True)
+@record
 class Diagnostics:
     """What the stages of one run have to say; the only mutable value handed from stage to stage."""
 

@@ -14,9 +14,9 @@ Example:
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, record
 from pn2code.drawing.geometry import Point
 
 GAP_X, GAP_Y = 90.0, 80.0
@@ -35,7 +35,7 @@ class Arrangement:
     bends: dict[str, tuple[Point, ...]]
 
 
-@dataclass(slots=True)
+@record
 class _Part:
     """A connected part; nodes are numbered, dummies come after the real ones."""
 

@@ -9,8 +9,9 @@ an arc whose bend lies beside a node meets it at a right angle; texts in their d
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from pn2code.base.frozen import record
 from pn2code.drawing import text
 from pn2code.drawing.arrange import Arrangement
 from pn2code.drawing.geometry import Box, Point, along, around, enter, of_points, union
@@ -48,7 +49,7 @@ def build(document: Document, page: RawPage) -> Scene:
     return _Builder(document, in_points(document, page)).scene()
 
 
-@dataclass(slots=True)
+@record
 class _Builder:
     document: Document
     page: RawPage

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from pn2code.base.frozen import frozen
 from pn2code.emission.c_literals import c_big, c_bytes, c_integer
 from pn2code.emission.c_types import Types
 from pn2code.emission.environment import c_float
@@ -17,7 +16,7 @@ from pn2code.ir.printed import is_nil
 _PRIMARY, _POSTFIX, _UNARY, _CONDITIONAL = 17, 16, 14, 3
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PackedPlace:
     """A packed place as statements see it.
 

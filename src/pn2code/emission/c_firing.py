@@ -9,8 +9,7 @@ the search (random numbers, files, references).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from pn2code.base.frozen import frozen
 from pn2code.emission.c_expressions import Expressions
 from pn2code.emission.c_net_statements import NetStatements
 from pn2code.emission.c_types import Types
@@ -20,7 +19,7 @@ from pn2code.ir.nodes import Rep, Stmt
 from pn2code.lowering.passes.moves import is_count
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Move:
     """A take or put that is worked out.
 
@@ -41,7 +40,7 @@ class _Move:
     is_packed: bool
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _SlotMove:
     """A take from a slot or a put into it that is worked out.
 

@@ -7,13 +7,13 @@ const ORDER_slot_t *const at_order = pn_bag_look(own->order, m);
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.emission.names import Scope
 from pn2code.ir.nodes import Access
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class OwnPlaces:
     """Of one transition.
 

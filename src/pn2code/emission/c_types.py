@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from pn2code.base.frozen import frozen
 from pn2code.emission.names import Names, label
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import IrType, Rep
@@ -20,7 +19,7 @@ _SCALARS = {
 }
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Types:
     """C types by name: declarations live in net.h."""
 

@@ -7,8 +7,7 @@ needs.flags                           # ("-DPN_FLAT_TYPES",): no list, no union,
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from pn2code.base.frozen import frozen
 from pn2code.ir.nodes import NetIR, Rep
 
 SIDE = "supervisor"
@@ -17,7 +16,7 @@ _NESTED = frozenset({Rep.LIST, Rep.UNION, Rep.REF})
 _NONE = "NULL"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Needs:
     """Functions of the runtime that cell_config.c names, as C expressions.
 

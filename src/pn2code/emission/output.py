@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Origin
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Block:
     """Lines `first`..`last` (1-based, inclusive) of a file that implement one net element.
 
@@ -24,7 +25,7 @@ class Block:
     last: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class OutputFile:
     """One file: path relative to the output folder with `/`, its text, its blocks."""
 

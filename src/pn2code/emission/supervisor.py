@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
+from pn2code.base.frozen import frozen
 from pn2code.cell.partition import Channel, ChannelKind, OwnerKind, Partition
 from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
 from pn2code.diagnostics import Origin
@@ -31,7 +31,7 @@ _INT_MIN, _INT_MAX = -(2**63), 2**63 - 1
 _REAL_MAX = 1.7976931348623157e308
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Names:
     """A table of constructors."""
 
@@ -39,7 +39,7 @@ class _Names:
     values: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Scalar:
     """A row of a scalar table, ready to print."""
 
@@ -51,7 +51,7 @@ class _Scalar:
     name_count: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Table:
     """The scalars of one place."""
 

@@ -8,8 +8,9 @@ checker refuses is a bug of ours, not a file.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from pn2code.base.frozen import frozen, record
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.diagnostics.render import report
 from pn2code.emission.environment import render
@@ -107,7 +108,7 @@ def _wrapped(lead: str, text: str) -> list[str]:
 # --- declarations ------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Section:
     """Declarations of one kind: lines, and the net element of each."""
 
@@ -165,7 +166,7 @@ def _variables(declared: Sequence[Declared]) -> tuple[list[str], list[Element]]:
 # --- statements --------------------------------------------------------------------------------
 
 
-@dataclass(slots=True)
+@record
 class _Printer:
     """Prints nodes and remembers which lines (from 0) belong to which region."""
 
@@ -228,7 +229,7 @@ class _Printer:
             self.lines.append("")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Procedure:
     name: str
     printer: _Printer

@@ -7,15 +7,15 @@ import shutil
 import tempfile
 from collections.abc import Iterable
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 
+from pn2code.base.frozen import frozen
 from pn2code.base.os_reason import os_reason
 from pn2code.emission.manifest import NAME as MANIFEST
 from pn2code.emission.output import OutputFile
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Written:
     """What writing did (or, with `check`, would do): relative paths."""
 

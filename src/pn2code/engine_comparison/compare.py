@@ -9,10 +9,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostic, Diagnostics
 from pn2code.engine_comparison.finding import AGREES, NOTHING, Finding, State, differs
 from pn2code.net import front
@@ -30,7 +30,7 @@ SEED = 1
 QUESTIONS = ("verdict", "elements", "initial marking", "run", "state space")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Compared:
     """A net and the findings about it, one for each of `QUESTIONS`.
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
+
+from pn2code.base.frozen import frozen
 
 
 class State(Enum):
@@ -20,7 +21,7 @@ class State(Enum):
     """there is nothing to compare"""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Finding:
     """An answer compared; `note` says how it differs, or why there is none."""
 

@@ -7,13 +7,12 @@ the arena).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from pn2code.base.frozen import frozen
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Rep
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Infix:
     """A binary operator of C."""
 
@@ -21,14 +20,14 @@ class Infix:
     precedence: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Prefix:
     """A unary operator of C."""
 
     operator: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Call:
     """A C function. `context`: its first argument is the context; `table`: the next is the type's table;
     `pointers`: which operands are passed by address; `order`: it gives -1, 0, 1, of which an `order` is made."""
@@ -40,7 +39,7 @@ class Call:
     order: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Compared:
     """A comparison by way of a function that gives -1, 0, 1."""
 
@@ -48,7 +47,7 @@ class Compared:
     operator: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Literal:
     """A constant."""
 

@@ -15,11 +15,12 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence, Set
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
+from pn2code.base.frozen import record
 from pn2code.diagnostics import Diagnostics, Origin, PlacedText, Severity, SourceText, Span
 from pn2code.ml import codes, library
 from pn2code.ml.core import terms as core
@@ -75,7 +76,7 @@ _RECURSION_LIMIT = 20_000
 """Python frames for one text: nesting is limited by `fixity.MAX_DEPTH`, chains of operators are not."""
 
 
-@dataclass(slots=True)
+@record
 class Aside:
     """What was declared beside a net; complete when its block has ended.
 

@@ -12,9 +12,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostic, Diagnostics, Severity, SourceText, Span
 from pn2code.ml.core.terms import Con, Dec, Let, RecBind, RecordExp, Symbol, Var
 from pn2code.ml.core.types import label_key, record
@@ -50,7 +51,7 @@ OBSERVED = ("int", "real", "IntInf.int")
 """Types of the numbers that a data collector may observe, in the order in which CPN Tools tries them."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Checked:
     """A monitor whose functions are well-typed.
 
@@ -73,7 +74,7 @@ class Checked:
     span: Span | None = None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MonitorProgram:
     """The monitors of a net.
 

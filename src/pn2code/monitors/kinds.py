@@ -9,9 +9,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from enum import Enum
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.monitors.codes import MONITOR_ERROR, UNSUPPORTED_MONITOR
 from pn2code.net.flat import FlatNet, FlatTransition, PlaceInstance
@@ -82,7 +82,7 @@ def ml_name(name: str) -> str:
     return re.sub(r"[ .\-]", "_", kept.group().strip())
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Monitor:
     """A monitor whose nodes have been found.
 

@@ -8,9 +8,10 @@ simple.rows(report["watched"], time)                     # as Watch.results()
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
+from pn2code.base.frozen import frozen
 from pn2code.monitors.functions import MonitorProgram, is_timed
 from pn2code.monitors.kinds import BREAKPOINTS, COLLECTORS, Kind, Monitor
 from pn2code.monitors.statistics import Number, restored
@@ -30,7 +31,7 @@ _SIMPLE = frozenset(
 )
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Simple:
     """The monitors of a net, all of them simple.
 

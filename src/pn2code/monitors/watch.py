@@ -15,9 +15,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
+from pn2code.base.frozen import frozen, record
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.monitors.codes import MONITOR_FILE, UNSUPPORTED_MONITOR
 from pn2code.monitors.folder import Folder
@@ -39,7 +40,7 @@ class _Unavailable(Exception):  # noqa: N818
     """A function of a monitor applied something that is not available here."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Breakpoint:
     """A breakpoint that was reached."""
 
@@ -54,7 +55,7 @@ class Breakpoint:
         }
 
 
-@dataclass(slots=True)
+@record
 class _Running:
     """A monitor at work."""
 

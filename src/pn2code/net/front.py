@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, TooManyDiagnosticsError
 from pn2code.ml.core.computing import Compute
 from pn2code.net.check import check
@@ -18,7 +18,7 @@ from pn2code.reading.cpn import give_up
 from pn2code.reading.document import Document
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Examined:
     """What the front end made of a file.
 

@@ -12,13 +12,14 @@ and B = Sub; Sub has D = Leaf and C = Leaf. The instances of Leaf are A/C: 1, B/
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from pn2code.base.frozen import frozen
 from pn2code.net.engine_names import sent_name
 from pn2code.net.typed import TypedNet, TypedPage
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PageInstance:
     """One instance of a page.
 

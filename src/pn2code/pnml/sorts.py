@@ -13,8 +13,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
+
+from pn2code.base.frozen import frozen
 
 
 class SortKind(Enum):
@@ -30,7 +31,7 @@ class SortKind(Enum):
     PARTITION = "partition"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Sort:
     """A sort, resolved.
 

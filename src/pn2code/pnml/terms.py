@@ -10,8 +10,8 @@ is then the multi-set of all combinations. An element of a partition stands for 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.pnml.codes import PNML_ELEMENT, PNML_SORT, UNSUPPORTED_PNML
 from pn2code.pnml.declarations import Declarations, number
@@ -22,7 +22,7 @@ Code = tuple[tuple[str, Node], ...]
 """Pieces of text with the elements that they came from."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Term:
     """A term.
 

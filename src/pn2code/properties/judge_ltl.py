@@ -9,10 +9,10 @@ path on which the formula holds is a cycle of the positions with guesses where a
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING
 
+from pn2code.base.frozen import frozen
 from pn2code.properties import meaning as m
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ NO_STEP = -1
 Guess = tuple[bool, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Position:
     """A node, the transition taken there (`NO_STEP`: none), and the node after it."""
 
@@ -188,7 +188,7 @@ def _cyclic(nodes: Sequence[int], edges: Sequence[tuple[int, int]]) -> Iterator[
 # --- one path --------------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Lasso:
     """A path: positions, and the one that comes after the last."""
 

@@ -18,9 +18,8 @@ accepting state infinitely often accepts. Three stages, each small:
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, record
 from pn2code.properties.meaning import Atom, Formula, Op, looks_at_steps
 
 MOST_STATES = 2_000
@@ -228,7 +227,7 @@ class _Way:
         )
 
 
-@dataclass(slots=True)
+@record
 class _Graph:
     """States 0, 1, ..; of each the ways out with the number of their target."""
 

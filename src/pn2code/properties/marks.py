@@ -7,9 +7,10 @@ of the whole marking is needed: each becomes a variable of the condition.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field, fields, is_dataclass, replace
+from dataclasses import field, fields, is_dataclass, replace
 from typing import Any
 
+from pn2code.base.frozen import record
 from pn2code.diagnostics import Diagnostics, SourceText
 from pn2code.ml.core.terms import Exp, Symbol, Var
 from pn2code.ml.elaborate import Elaborator
@@ -23,7 +24,7 @@ from pn2code.properties.names import Names
 _STRUCTURE = "Mark."
 
 
-@dataclass(slots=True)
+@record
 class Marks:
     """Types conditions on markings.
 

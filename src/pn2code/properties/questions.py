@@ -9,15 +9,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from pn2code.base.frozen import record
 from pn2code.properties import meaning as m
 from pn2code.properties.ltl import Automaton, automaton
 
 _UNARY = {"EX": "ex", "AX": "ax", "EF": "ef", "AF": "af", "EG": "eg", "AG": "ag"}
 
 
-@dataclass(slots=True)
+@record
 class Questions:
     """The lines in the making; equal items are one."""
 

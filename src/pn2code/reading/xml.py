@@ -11,10 +11,11 @@ Example: `<text>1`x &lt; 2</text>` at line 3, column 1 gives a node with text ``
 from __future__ import annotations
 
 import stat
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from xml.parsers import expat
 
+from pn2code.base.frozen import record
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.reading.codes import (
     FILE_MISSING,
@@ -50,7 +51,7 @@ _SIGNATURES = {
 Marks = tuple[tuple[int, int, int], ...]
 
 
-@dataclass(slots=True)
+@record
 class Node:
     """An element.
 
@@ -157,7 +158,7 @@ def _lower(message: str | None) -> str:
     return text[:1].lower() + text[1:]
 
 
-@dataclass(slots=True)
+@record
 class _Text:
     """The characters of an element so far.
 

@@ -10,12 +10,12 @@ the supervisor comes back to it.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.run.record import RunRecord
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Activity:
     """An activity over the whole run.
 

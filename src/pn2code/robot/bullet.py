@@ -14,7 +14,7 @@ import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 from lxml import etree
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, record
 from pn2code.robot import urdf
 from pn2code.robot.backend import (
     BackendName,
@@ -65,7 +65,7 @@ def _silent() -> Iterator[None]:
         os.close(null)
 
 
-@dataclass(slots=True)
+@record
 class _Loaded:
     """A robot in PyBullet: body, its links by index, which joints move, which pairs are tested."""
 
@@ -77,7 +77,7 @@ class _Loaded:
     pairs: list[tuple[int, int]]
 
 
-@dataclass(slots=True)
+@record
 class _Standing:
     """A scene body in PyBullet."""
 
@@ -85,7 +85,7 @@ class _Standing:
     id: int
 
 
-@dataclass(slots=True)
+@record
 class _Placed:
     """A part in PyBullet."""
 

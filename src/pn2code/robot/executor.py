@@ -11,11 +11,11 @@ The same commands give the same motions, whatever shows them: backends only repl
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Literal, assert_never
 
 import numpy as np
 
+from pn2code.base.frozen import frozen
 from pn2code.robot.commands import (
     Command,
     Measure,
@@ -35,7 +35,7 @@ CHECK_ANGLE = math.radians(2.0)  # nor than this
 MotionKind = Literal["ptp", "lin", "tool", "measure", "wait"]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Motion:
     """A command under way.
 

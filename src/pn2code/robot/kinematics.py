@@ -69,7 +69,7 @@ BRANCHES = tuple(Branch(i) for i in range(8))
 BRANCH_NAMES = {str(b): b for b in BRANCHES}
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Solution:
     """A joint position that reaches a pose, inside the limits, nearest to the reference's turns."""
 

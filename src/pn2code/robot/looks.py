@@ -7,11 +7,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
 import numpy as np
 
+from pn2code.base.frozen import frozen
 from pn2code.robot.commands import Pose
 from pn2code.robot.models.shapes import Mesh, block, rod, skin
 from pn2code.robot.panel import (
@@ -36,7 +37,7 @@ _PEDESTAL = (0.24, 0.26, 0.30, 1.0)
 _STRIPE = (0.92, 0.72, 0.08, 1.0)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Look:
     """Something to see: a mesh in world coordinates, or a mesh file in place."""
 

@@ -9,11 +9,11 @@ the cell's folder. The URDF is the only description: axes, limits and speeds are
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes, urdf
@@ -24,7 +24,7 @@ MODELS = Path(__file__).parent / "models"
 AXES = 6
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Arm:
     """A six-axis arm.
 
@@ -51,7 +51,7 @@ class Arm:
         return tuple(j.name for j in self.chain if j.type != "fixed")
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Tool:
     """An end effector: its tree, `T_flange_tcp`, and the links that may touch the work piece."""
 

@@ -13,11 +13,11 @@ is on the line to 1e-9 mm at any time. What cannot be done is a `MotionFault`, r
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Literal, Protocol
 
 import numpy as np
 
+from pn2code.base.frozen import frozen
 from pn2code.robot.commands import Pose
 from pn2code.robot.kinematics import BRANCHES, Branch, Kinematics, condition_text
 from pn2code.robot.model import AXES
@@ -72,7 +72,7 @@ class MotionFault(Exception):  # noqa: N818
         self.time = time
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class MotionLimits:
     """What a robot may do, in SI units; arrays are per axis.
 
@@ -111,7 +111,7 @@ class Trajectory(Protocol):
         """Joint positions at many times, (n, 6)."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Still:
     """Standing at a position."""
 

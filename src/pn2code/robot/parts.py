@@ -29,7 +29,7 @@ class PartFault(Exception):  # noqa: N818
     """An action that cannot be: nothing to grip, nothing to release, a place that is taken."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Part:
     """One part.
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
@@ -86,7 +86,7 @@ class ContactRule:
     depth: float
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class CellRobot:
     """One robot of the cell.
 
@@ -124,7 +124,7 @@ class CellRobot:
         )
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class SceneConfig:
     """Everything around the robots.
 
@@ -140,7 +140,7 @@ class SceneConfig:
     warning_clearance: float = 0.02
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class RobotCell:
     """Robots, motion limits, scene and parts: what backends, monitor and executors are built from.
 

@@ -7,13 +7,13 @@ for PyBullet. Any robot's URDF in the usual form can be read, so that users brin
 from __future__ import annotations
 
 import copy
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
 from lxml import etree
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.robot import codes
 from pn2code.robot.transforms import Array, rotation_xyz
@@ -22,7 +22,7 @@ JointType = Literal["revolute", "continuous", "prismatic", "fixed"]
 _MAX_BYTES = 8_000_000
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Joint:
     """A joint: `T_parent_joint` at zero, its axis in the joint frame, limits in rad and rad/s."""
 
@@ -37,7 +37,7 @@ class Joint:
     velocity: float
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Urdf:
     """The tree of a URDF file.
 

@@ -8,8 +8,9 @@ fail; after the last step all others, arc by arc.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from pn2code.base.frozen import record
 from pn2code.ml.core import terms as core
 from pn2code.net.flat import BindAll, BindEquation, BindRandom, BindTerm, FlatTransition, Term
 from pn2code.net.total import is_total
@@ -82,7 +83,7 @@ def _uids(pattern: core.Pat | None) -> set[int]:
     return {s.uid for s in pattern_variables(pattern)}
 
 
-@dataclass(slots=True)
+@record
 class Asked:
     """Conditions as they are found, in whatever order.
 

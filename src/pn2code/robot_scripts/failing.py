@@ -8,7 +8,6 @@ w + 1.0         reals do not fail
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from pn2code.base.frozen import frozen
 from pn2code.robot_scripts.guards import Constant, fact, ways
@@ -45,7 +44,7 @@ class Range:
 ALL = Range()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Known:
     """What is known of numbers at some point of a script.
 

@@ -9,8 +9,8 @@ x < 3.0      and  x >= 3.0     exclude each other: of a real that is no number (
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.robot_scripts.not_a_number import MayBeNan
 from pn2code.robot_scripts.values import FALSE, TRUE
 from pn2code.tdl import tree as t
@@ -22,7 +22,7 @@ MOST_WAYS = 64
 Constant = int | float | str | bool
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Fact:
     """`subject operator value`; the value is a constant, or the text of another expression.
 

@@ -11,9 +11,9 @@ Anything else is not a sequential program and is reported with the element that 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, record
 from pn2code.cell.partition import Channel, Owner, Partition
 from pn2code.diagnostics import Diagnostics, Note
 from pn2code.ml.core import terms as core
@@ -186,7 +186,7 @@ def delayed_tokens(
 _PLAIN = {Form.TIMED_TOKEN: Form.TOKEN, Form.TIMED_MULTISET: Form.MULTISET}
 
 
-@dataclass(slots=True)
+@record
 class _Analyser:
     partition: Partition
     owner: Owner

@@ -7,8 +7,9 @@ every transition takes them with; a message is read into the net variable of its
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from pn2code.base.frozen import record
 from pn2code.cell.scalars import Scalar as MessageScalar
 from pn2code.cell.scalars import ScalarKind
 from pn2code.diagnostics import Span
@@ -59,7 +60,7 @@ def of_stem(stem: str, shape: Shape) -> list[str]:
     return [f"{stem}_{identifier(label)}" if label else stem for label, _ in leaf_shapes(shape)]
 
 
-@dataclass(slots=True)
+@record
 class _Variable:
     type: t.TypeName
     element: Element
@@ -67,7 +68,7 @@ class _Variable:
     initial: t.Expression | None = None
 
 
-@dataclass(slots=True)
+@record
 class Names:
     """Everything that a script declares, collected while it is made."""
 

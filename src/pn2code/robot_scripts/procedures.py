@@ -6,8 +6,9 @@ A branch is moved when it is long and nothing jumps into it or out of it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from pn2code.base.frozen import record
 from pn2code.robot_scripts.ir import Chain, Line, Node, Region, Repeat
 from pn2code.tdl import tree as t
 
@@ -48,7 +49,7 @@ def length(nodes: Iterable[Node]) -> int:
     return total
 
 
-@dataclass(slots=True)
+@record
 class _Extractor:
     name: Callable[[Region], str]
     procedures: list[tuple[str, tuple[Node, ...]]] = field(default_factory=list)

@@ -12,9 +12,9 @@ becomes a `loop`; what has no structure (irreducible graphs, jumps over a merge)
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, record
 from pn2code.robot_scripts.ir import Chain, Comment, Line, Node, Region, Repeat
 from pn2code.robot_scripts.not_a_number import MayBeNan
 from pn2code.tdl import tree as t
@@ -181,7 +181,7 @@ _END: State = -1
 """The state behind the last statement."""
 
 
-@dataclass(slots=True)
+@record
 class _Structurer:
     graph: _Graph
     trees: Mapping[State, Tree]

@@ -16,11 +16,12 @@ import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
 from pn2code import pipeline
+from pn2code.base.frozen import frozen
 from pn2code.base.os_reason import os_reason
 from pn2code.cell.codes import INPUT
 from pn2code.cell.config import CellConfig
@@ -73,7 +74,7 @@ ROBOT_START_S = 10.0
 """How long a robot waits for the supervisor to announce itself."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RunOptions:
     """What `pn2code run` was asked for.
 
@@ -103,7 +104,7 @@ class RunOptions:
     checked: bool = True
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Prepared:
     """A cell that is generated and built, ready to run."""
 
@@ -114,7 +115,7 @@ class Prepared:
     program: Path
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RunResult:
     """What a run gave; the files are in the output folder."""
 

@@ -23,6 +23,7 @@ from typing import Any, NoReturn, Protocol
 
 import numpy as np
 
+from pn2code.base.frozen import record
 from pn2code.cell.partition import Partition
 from pn2code.emission.output import Block, OutputFile
 from pn2code.robot.backend import Backend
@@ -90,7 +91,7 @@ class Observer(Protocol):
         """The run is over; `engine.record` has the verdict."""
 
 
-@dataclass(slots=True)
+@record
 class RobotRunner:
     """One robot or device: its script's interpreter, its arm if it has one, and what it is doing.
 

@@ -4,19 +4,20 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
+from pn2code.base.frozen import frozen, record
 from pn2code.robot.monitor import Verdict
 from pn2code.robot.parts import PartChange
 
 FloatArray = npt.NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ActionRecord:
     """One command of a robot, done or cut short.
 
@@ -40,7 +41,7 @@ class ActionRecord:
     activity: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class MessageRecord:
     """A message consumed by its reader: time, channel name, scalars."""
 
@@ -49,7 +50,7 @@ class MessageRecord:
     values: tuple[float | int | str | bool, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PartRecord:
     """What has become of a part: time (s), robot or device, what it did."""
 
@@ -58,7 +59,7 @@ class PartRecord:
     change: PartChange
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ActivityRecord:
     """One activity of the supervisor: from its first to its last firing before the next activity begins."""
 
@@ -67,7 +68,7 @@ class ActivityRecord:
     end: float
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RunWarning:
     """Something that a person should look at, though the run went on."""
 
@@ -76,7 +77,7 @@ class RunWarning:
     text: str
 
 
-@dataclass(slots=True)
+@record
 class RunRecord:
     """A whole run.
 

@@ -16,6 +16,7 @@ from enum import IntEnum
 from pathlib import PurePath
 from typing import NoReturn, Protocol
 
+from pn2code.base.frozen import frozen
 from pn2code.cell.partition import ChannelKind
 from pn2code.cell.scalars import Scalar, ScalarKind
 from pn2code.channels import GRACE_S, LOOK_S, ChannelSpec, PeerState, SharedDirectory
@@ -51,7 +52,7 @@ class RobotExit(IntEnum):
     INTERRUPTED = 130
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Ended:
     """How a robot ended; `reason` is empty when it finished."""
 

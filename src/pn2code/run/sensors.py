@@ -11,9 +11,10 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 
+from pn2code.base.frozen import record
 from pn2code.base.os_reason import os_reason
 from pn2code.cell.codes import CELL_FILE, CELL_MISSING, CELL_VALUE
 from pn2code.cell.config import CellConfig, SensorConfig
@@ -29,7 +30,7 @@ MOST_DRAWN = 1_000_000
 """Colour sets with more values are not drawn from."""
 
 
-@dataclass(slots=True)
+@record
 class _Sensor:
     """One sensor: what it says in turn, or what it draws from."""
 
@@ -48,7 +49,7 @@ class _Sensor:
         return self.choices[source.randrange(len(self.choices))]
 
 
-@dataclass(slots=True)
+@record
 class Sensors:
     """All sensors of a cell."""
 

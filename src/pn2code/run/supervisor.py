@@ -17,11 +17,11 @@ import subprocess
 import threading
 from collections import deque
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import IO, Final
 
 from pn2code.base.closing import Closing
+from pn2code.base.frozen import frozen
 from pn2code.base.processor_time import Patience, processor_time
 
 EXIT_MEANING: Final[dict[int, str]] = {
@@ -43,7 +43,7 @@ _KEPT_LINES = 400
 _LOOK_S = 0.5
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class StepResult:
     """Result of one cycle.
 
@@ -62,7 +62,7 @@ class StepResult:
     due: float = math.inf
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Exit:
     """How the process ended: its exit code (negative: the signal that killed it) and its messages on stderr."""
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.frozen import frozen
 from pn2code.base.readable import readable
 from pn2code.diagnostics import Diagnostics, Note, Origin, Span
 from pn2code.monitors.functions import MonitorProgram
@@ -23,7 +24,7 @@ MOST_OUTPUT = 1 << 24
 """Characters of the net's output that are kept."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Request:
     """A run.
 
@@ -68,7 +69,7 @@ class Request:
         return recorded, recorded if self.seed is None else own
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Failure:
     """An error of the net.
 
@@ -118,7 +119,7 @@ class Failure:
         }
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Outcome:
     """What became of a run.
 

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.net.flat import ArcKind, FlatNet
 from pn2code.structure.skeleton import Skeleton
 
 ONE_TOKEN = frozenset({1})
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Graph:
     """Places and transitions with the arcs between them; weights are not looked at.
 

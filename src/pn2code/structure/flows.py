@@ -14,12 +14,11 @@ repeated.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from heapq import heapify, heappop, heappush
 from math import gcd
 from typing import Any
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, record
 
 Row = Mapping[int, int]
 Vector = dict[int, int]
@@ -151,7 +150,7 @@ def _eliminated(rows: Sequence[Row], limits: Limits) -> tuple[list[Vector], bool
     return [x.vector for x in working.values()], True
 
 
-@dataclass(slots=True)
+@record
 class _Line:
     """A vector, its products with the columns that are left, its support as a bit set."""
 

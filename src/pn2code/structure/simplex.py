@@ -12,8 +12,9 @@ and so needs few steps.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from math import gcd
+
+from pn2code.base.frozen import record
 
 _TOKEN = 1_000_000
 """What a token at first costs in a proof, where each place costs 1: among equally good proofs a small one is chosen."""
@@ -23,7 +24,7 @@ class TooMuchWorkError(Exception):
     """The work that was allowed is done, and the answer is not known."""
 
 
-@dataclass(slots=True)
+@record
 class _Line:
     """`scale * variable = constant + sum of entry * other variable`, over variables that are zero; scale > 0."""
 

@@ -8,8 +8,8 @@ whose number of tokens varies, "may" is the most and "must" the least of an arc.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.structure.skeleton import Mode, Size, Skeleton
 
 
@@ -75,7 +75,7 @@ def places_of(mask: int) -> Iterator[int]:
         mask ^= lowest
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Sets:
     """Minimal siphons or traps; not all if `complete` is false."""
 

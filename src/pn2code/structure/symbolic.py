@@ -16,8 +16,9 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from pn2code.base.frozen import record
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import INT, STRING, TRecord
 from pn2code.net.flat import ArcInscription, FlatNet, FlatTransition, Form
@@ -61,7 +62,7 @@ CLOCKS = frozenset({"Time.time", "Time.step"})
 _STAMPED_TOKEN = frozenset({"Time.token@+", "Time.token@++", "Time.@"})
 
 
-@dataclass(slots=True)
+@record
 class Facts:
     """What the guards of a transition say: values of variables, conditions that are true or false."""
 

@@ -9,8 +9,9 @@ reached, variables that may have no value, declarations that nothing uses.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Note, Span
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.tdl import codes, flow, paths
@@ -20,7 +21,7 @@ from pn2code.tdl.expressions import RESERVED, Scope, type_of
 from pn2code.tdl.types import NUMBERS, QUANTITIES, Type, fits
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class CheckedProgram:
     """A script without errors, ready to run.
 

@@ -11,15 +11,16 @@ from __future__ import annotations
 import math
 import struct
 from collections.abc import Callable
-from dataclasses import astuple, dataclass
+from dataclasses import astuple
 from functools import reduce
 from typing import Protocol, assert_never, cast
 
+from pn2code.base.frozen import frozen
 from pn2code.tdl import tree as t
 from pn2code.tdl.types import MAX_INT, MIN_INT, UNITS
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ScriptPose:
     """A pose as scripts and files have it: mm and degrees, fixed-axis XYZ angles."""
 

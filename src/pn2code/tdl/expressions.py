@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Final, assert_never
 
+from pn2code.base.frozen import record
 from pn2code.diagnostics import Diagnostics, Span
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.tdl import codes
@@ -31,7 +32,7 @@ FUNCTIONS: Final[dict[str, int]] = {
 RESERVED: Final = frozenset(FUNCTIONS) | frozenset(TYPES_BY_NAME) | {"world"}
 
 
-@dataclass(slots=True)
+@record
 class Scope:
     """What is declared.
 

@@ -13,9 +13,9 @@ The checker follows paths in it, the interpreter runs it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, record
 from pn2code.diagnostics import Span
 from pn2code.tdl import tree as t
 
@@ -110,7 +110,7 @@ class Body:
         return seen
 
 
-@dataclass(slots=True)
+@record
 class _Flattener:
     code: list[Instruction] = field(default_factory=list)
     labels: dict[str, int] = field(default_factory=dict)

@@ -8,8 +8,9 @@ degrees, every time in s, every speed in mm/s: literals are converted when they 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from enum import Enum
+
+from pn2code.base.frozen import frozen
 
 
 class Type(Enum):
@@ -46,7 +47,7 @@ BASE_UNIT: dict[Type, str] = {
 }
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Unit:
     """A unit: its dimension and how many base units it is."""
 

@@ -11,8 +11,9 @@ import json
 import re
 import sys
 from collections.abc import Iterator
-from dataclasses import dataclass
 from pathlib import Path
+
+from pn2code.base.frozen import frozen
 
 LISTING = Path("build", "coverage", "net.c.gcov")
 
@@ -25,7 +26,7 @@ class CoverageError(Exception):
     """It cannot be told; the message says why."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Line:
     """A line of C that counts.
 
@@ -47,7 +48,7 @@ class Line:
         return self.is_reached and not self.missed
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Coverage:
     """What the runs came to in one file.
 

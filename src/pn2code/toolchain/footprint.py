@@ -16,8 +16,9 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
+
+from pn2code.base.frozen import frozen
 
 HEAP = frozenset(("malloc", "calloc", "realloc", "free", "aligned_alloc", "reallocarray", "strdup"))
 MOST_LINES = 60
@@ -53,7 +54,7 @@ class FootprintError(Exception):
     """It cannot be found out; the message says why."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Graph:
     """What functions call.
 
@@ -212,7 +213,7 @@ def _said(folder: Path, *command: str) -> str:
     return done.stdout
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Footprint:
     """What was found of a supervisor. Bytes, where nothing else is said."""
 

@@ -7,8 +7,9 @@ what it has looked at: a transition that needs a message may have been overlooke
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from pn2code.base.frozen import frozen
 from pn2code.net.flat import ArcKind, FlatNet, FlatPlace, FlatTransition
 
 SIMULATORS = frozenset({"simulate", "reference"})
@@ -20,7 +21,7 @@ RUN = "run"
 SUPERVISOR = "supervisor"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Parties:
     """The parties of a cell.
 

@@ -12,9 +12,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
 
+from pn2code.base.frozen import frozen
 from pn2code.net.engine_names import engine_name
 from pn2code.net.flat import FlatNet, FlatTransition
 
@@ -23,7 +23,7 @@ class NotARecording(ValueError):  # noqa: N818
     """The data have another form; the message says which part."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class RecordedStep:
     """An occurrence: all as text but the number of the page instance (0: not given); `id` is "" if not given."""
 
@@ -35,7 +35,7 @@ class RecordedStep:
     id: str = ""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Recording:
     """A run.
 

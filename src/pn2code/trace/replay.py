@@ -20,10 +20,11 @@ import json
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, Protocol
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import FlatNet, FlatTransition
@@ -58,7 +59,7 @@ DEFAULT_SEED = 1
 """Of the random numbers of a run whose header does not name another."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ReplayResult:
     """What became of a trace.
 
@@ -128,7 +129,7 @@ class _Wrong(Exception):  # noqa: N818
     """A line cannot be repeated; the message says why."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Rules:
     """How strictly a trace is read.
 

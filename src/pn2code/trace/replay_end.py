@@ -7,9 +7,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
+from pn2code.base.frozen import frozen
 from pn2code.semantics.game.enabling import GivenUpError
 from pn2code.semantics.game.marking import Marking, PlaceMarking, element_text
 from pn2code.semantics.game.token_game import Game, GameError
@@ -43,7 +44,7 @@ _NOT_OF_THE_NET = ("interrupted by ", "no end ", "monitor: ", "place `", "cannot
 """How other reasons of a supervisor to stop begin: they claim nothing about what the net can do."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Ending:
     """What the last line is compared with.
 

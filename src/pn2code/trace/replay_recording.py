@@ -15,9 +15,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
+from pn2code.base.frozen import frozen
 from pn2code.ml.core.reals import may_hold_reals
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
@@ -58,7 +59,7 @@ Occurrence = tuple[int | float, BindingElement]
 """When, and what."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Followed:
     """What became of a recording.
 
@@ -85,7 +86,7 @@ class Followed:
     given_up: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class State:
     """A marking that fits what has been seen, what is not known of it, the contents of the references, and how one
     comes there (one way, if there are several)."""
@@ -106,7 +107,7 @@ class State:
         return tuple(reversed(found))
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Way:
     """A way in which a recorded binding is enabled.
 

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.frozen import frozen
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.semantics.game.marking import PlaceMarking, place_from_json
@@ -59,7 +59,7 @@ def _objects(lines: Iterable[str]) -> Iterator[tuple[int, dict[str, Any]]]:
         yield number, data
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Step:
     """An occurrence that is to be repeated.
 
@@ -96,7 +96,7 @@ class Step:
         return f"{t.index}\t{time}\t{{{bound}\t{{{everything}}}\n"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Header:
     """The first line of a trace.
 

@@ -13,9 +13,10 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
+from pn2code.base.frozen import record
 from pn2code.base.readable import readable
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.ml.core.colsets import Kind
@@ -120,7 +121,7 @@ class _TooLargeError(Exception):
         self.what, self.count, self.origin = what, count, origin
 
 
-@dataclass(slots=True)
+@record
 class _Element:
     """A binding found: what it demands."""
 
@@ -130,7 +131,7 @@ class _Element:
     post: dict[Token, int] = field(default_factory=dict)
 
 
-@dataclass(slots=True)
+@record
 class _Fault:
     name: str
     message: str

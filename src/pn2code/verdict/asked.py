@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics
 from pn2code.properties import codes, sources
 from pn2code.properties import meaning as m
@@ -18,7 +19,7 @@ from pn2code.verdict.opened import OpenNet
 _OUTSIDE = frozenset({Effect.DRAW, Effect.LOOK, Effect.WRITE, Effect.COUNT})
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Asked:
     """What is asked about a net; nothing, if no properties are written anywhere."""
 

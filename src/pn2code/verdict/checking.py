@@ -7,10 +7,10 @@ checked.is_fine, checked.file                     # True, examples/riveting/cell
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from pn2code.base.frozen import frozen
 from pn2code.cell.channel_table import ChannelRow, rows
 from pn2code.cell.locate import locate
 from pn2code.diagnostics import Diagnostics
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pn2code.cell.partition import Partition
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Checked:
     """What was looked at.
 

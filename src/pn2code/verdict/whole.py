@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from pn2code.base.deadline import NEVER, Deadline, TimeIsOverError
+from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
 from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.division import divided
@@ -59,7 +60,7 @@ class Checks:
     medium: bool = True
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Looked:
     """What was explored; the runs that properties have led to have no names yet.
 
@@ -76,7 +77,7 @@ class Looked:
     medium: medium.Answers
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Said:
     """All that is known.
 

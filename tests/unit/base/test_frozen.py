@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, record
 
 
 @frozen
@@ -131,5 +131,73 @@ def test_refuses_what_it_does_not_do() -> None:
 
 
 def test_wrong_arguments() -> None:
-    with pytest.raises(TypeError, match="name"):
+    with pytest.raises(TypeError, match="Base.__init__.*'name'"):
         Base()  # type: ignore[call-arg]
+    with pytest.raises(TypeError, match="'nothing'"):
+        Derived("a", nothing=1)  # type: ignore[call-arg]
+
+
+def test_classes_with_as_many_fields_keep_their_names() -> None:
+    @frozen
+    class Left:
+        """Two fields."""
+
+        first: int
+        second: int = 2
+
+    @frozen
+    class Right:
+        """Two others."""
+
+        up: int
+        down: list[int] = field(default_factory=list)
+
+    assert (Left(1), Left(second=3, first=1)) == (Left(1, 2), Left(1, 3))
+    assert (Right(up=1).down, Right(down=[1], up=0)) == ([], Right(0, [1]))
+    with pytest.raises(TypeError, match="follows default"):
+
+        @frozen
+        class Wrong:
+            """A field without a default after one with."""
+
+            first: int = 1
+            second: int  # type: ignore[misc]
+
+        Wrong(1, 2)
+
+
+def test_by_identity() -> None:
+    @frozen(eq=False)
+    class Node:
+        """What it holds has no hash."""
+
+        items: list[int]
+
+    item = Node([1])
+    assert item != Node([1]) and item == item and len({item, Node([1])}) == 2
+    with pytest.raises(FrozenInstanceError, match="items"):
+        item.items = []  # type: ignore[misc]
+
+
+def test_records_can_be_changed() -> None:
+    @record
+    class Counter:
+        """Compared by value, as `@dataclass(slots=True)` does it."""
+
+        name: str
+        count: int = 0
+
+    @record(eq=False)
+    class Place:
+        """Compared by identity."""
+
+        tokens: list[int] = field(default_factory=list)
+
+    item = Counter("a")
+    item.count += 1
+    assert item == Counter("a", 1) and replace(item, name="b") == Counter("b", 1)
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(item)
+    with pytest.raises(AttributeError):
+        item.other = 1  # type: ignore[attr-defined]
+    assert Place() != Place() and hash(Place()) is not None

@@ -9,9 +9,9 @@ its tokens follow from those of others: `known` says how.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from enum import Enum
 
+from pn2code.base.frozen import frozen
 from pn2code.contest.tables import Tables
 
 
@@ -22,7 +22,7 @@ class Goal(Enum):
     DEADLOCK = "whether a dead marking is reachable; no place is visible"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Affine:
     """Tokens of a place that was removed: a constant and factors of other places."""
 

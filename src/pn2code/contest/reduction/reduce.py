@@ -11,8 +11,8 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.contest import conditions
 from pn2code.contest.conditions import AtMost, Condition, Dead
 from pn2code.contest.reduction import agglomerations, places, transitions
@@ -28,7 +28,7 @@ COLOM_SILVA = "Colom, Silva 1991, Improving the linearly based characterization 
 MURATA = "Murata 1989, Petri nets: properties, analysis and applications"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Rule:
     """A reduction.
 

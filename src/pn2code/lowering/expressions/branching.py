@@ -6,8 +6,8 @@ What the parts of an expression are is the business of `expressions.Body`, which
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Span
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Ir, Local, Rep
@@ -23,7 +23,7 @@ from pn2code.ml.core.types import Type
 _UNIT = UNIT_VALUE
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Ways:
     """What becomes of rules: `finish` of the body of the one that fits; `give_up` after an exception where
     none does."""

@@ -16,9 +16,9 @@ All is known once everything else has been lowered: see `finish`.
 from __future__ import annotations
 
 from collections.abc import Hashable
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import SourceText, Span
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Ir, IrType, Local, Rep, Stmt
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from pn2code.lowering.expressions.functions import Program
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Case:
     """A function that may be the value: its tag, and how it is made from what was captured."""
 

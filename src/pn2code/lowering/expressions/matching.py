@@ -6,8 +6,9 @@ are in an order in which each is safe once those before it hold, and so are the 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from pn2code.base.frozen import record
 from pn2code.diagnostics import Span
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Ir, IrType, Rep
@@ -18,7 +19,7 @@ from pn2code.ml.core.terms import Symbol
 from pn2code.ml.core.types import Type
 
 
-@dataclass(slots=True)
+@record
 class Match:
     """The result: `conditions` in order, `bindings` from left to right (a variable may occur more than once), and
     parts that must be `equals` to the values of expressions; the latter only in patterns of a net's inscriptions."""

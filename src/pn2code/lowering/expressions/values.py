@@ -8,8 +8,8 @@ further parameters of the copy (`capture`). Tuples and records stay apart (`Reco
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Ir
 from pn2code.lowering.expressions.types import substitute
@@ -23,7 +23,7 @@ TypeEnv = Mapping[int, Type]
 """Type variable of the surrounding schemes -> type."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Closure:
     """An anonymous function; applied, it is put in place."""
 
@@ -32,7 +32,7 @@ class Closure:
     types: TypeEnv
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class NamedFunction:
     """A function of a `fun` group; applied, it becomes a call of a C function. `env`: what the group sees
     outside itself."""
@@ -48,7 +48,7 @@ class NamedFunction:
         return next(f for s, f in self.group.bindings if s == self.symbol)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class BuiltinFunction:
     """A built-in function at an instance of its type."""
 
@@ -56,7 +56,7 @@ class BuiltinFunction:
     type: Type
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class ConstructorFunction:
     """A constructor that waits for its argument."""
 
@@ -64,7 +64,7 @@ class ConstructorFunction:
     type: Type
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Partial:
     """A curried function with some of its arguments."""
 
@@ -72,7 +72,7 @@ class Partial:
     arguments: tuple[Val, ...]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class RecordVal:
     """A record whose fields are still apart."""
 
@@ -80,7 +80,7 @@ class RecordVal:
     type: Type
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Reference:
     """A top-level reference."""
 
@@ -89,14 +89,14 @@ class Reference:
     table: str
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class LocalReference:
     """A reference that is never a value (see `shapes.escapes`): a variable of the C function."""
 
     local: ir.Local
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Polymorphic:
     """A local `val` with type variables: looked at anew for each use."""
 
@@ -261,7 +261,7 @@ Rebuild = Callable[[list[Ir]], Binding]
 """Makes the same value from other C code for what was captured."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Captured:
     """A compile-time value taken apart: `key` says what it is, `code` what C values are in it, `rebuild`
     undoes it."""

@@ -7,8 +7,7 @@ loop that found the token; all others are tested together (`Wanted`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from pn2code.base.frozen import record
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Ir, Stmt
 from pn2code.lowering.codes import UNSUPPORTED_COLSET, UnsupportedError
@@ -121,7 +120,7 @@ def _name_on_page(net: FlatNet, arc: FlatArc) -> str:
     return arc.place_name or net.places[arc.place].name.rsplit(".", 1)[-1]
 
 
-@dataclass(slots=True)
+@record
 class _Demand:
     """A term that is tested with others of its place."""
 

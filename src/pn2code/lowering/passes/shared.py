@@ -11,8 +11,9 @@ kept.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from pn2code.base.frozen import frozen
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Transition
 
@@ -67,7 +68,7 @@ def _agree(a: ir.Place, b: ir.Place) -> bool:
     return a.is_slot or (a.timed, a.capacity) == (b.timed, b.capacity)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Group:
     """A transition of a page, with the instances that share its code.
 

@@ -13,9 +13,9 @@ from __future__ import annotations
 import functools
 from collections import Counter
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Any, Protocol
 
+from pn2code.base.frozen import frozen
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.constants import Constant, binary, fold, unary
 
@@ -25,7 +25,7 @@ MOST_TOKENS = 10_000
 _NAMES = {"length": "List.length", "rev": "List.rev", "size": "String.size"}
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Computed:
     """What an evaluator says of an expression.
 

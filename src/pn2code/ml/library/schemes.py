@@ -4,13 +4,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cache
 
+from pn2code.base.frozen import frozen
 from pn2code.ml.core.types import INTINF, REAL, TCon, TFun, TRecord, TVar, Type, record, tuple_of
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class BuiltinInfo:
     """One entry.
 

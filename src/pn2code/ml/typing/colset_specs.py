@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import NOWHERE, Origin, SourceText
 from pn2code.ml import codes
 from pn2code.ml.core import terms as core
@@ -45,7 +46,7 @@ _BRACKETS = re.compile(r"\s*\[.*\]\s*", re.DOTALL)
 _BARE_FN = re.compile(r"\s*fn\b")
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ColsetSpec:
     """A colour set as written, names not yet resolved.
 

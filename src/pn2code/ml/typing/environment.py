@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cache
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, record
 from pn2code.ml.core.colsets import Colset
 from pn2code.ml.core.terms import Constructor, DatatypeDec, Symbol
 from pn2code.ml.core.types import EXN, TCon, TFun, TVar, Type
@@ -30,7 +30,7 @@ from pn2code.ml.typing.engine_names import ENGINE_MEMBERS, ENGINE_STRUCTURES, EN
 from pn2code.ml.typing.inference import Quant, Ty
 
 
-@dataclass(slots=True, eq=False)
+@record(eq=False)
 class Binding:
     """A variable of the program; its symbol is made when its declaration is translated and its type known.
 
@@ -279,7 +279,7 @@ class Scope:
         return copy
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class SignatureEntry:
     """A signature, and the names in force where it was declared."""
 
@@ -287,7 +287,7 @@ class SignatureEntry:
     scope: Scope
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class FunctorEntry:
     """A functor, and the names in force where it was declared."""
 

@@ -11,10 +11,9 @@ unifies with m; nothing else is known of m at the end of the declaration, so it 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from functools import lru_cache
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, record
 from pn2code.ml.core.types import UNIT, TCon, TFun, TRecord, TVar, Type, label_key
 from pn2code.ml.library.datatypes import NO_EQUALITY
 
@@ -64,7 +63,7 @@ class IError:
     """The type of what was reported already."""
 
 
-@dataclass(slots=True, eq=False)
+@record(eq=False)
 class Quant:
     """A quantified variable; `index` is given when the declaration is translated."""
 
@@ -72,7 +71,7 @@ class Quant:
     index: int = -1
 
 
-@dataclass(slots=True, eq=False)
+@record(eq=False)
 class Meta:
     """An unknown type.
 

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TypeVar
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Note, SourceText
 from pn2code.ml import codes
 from pn2code.ml.core import terms as core
@@ -53,7 +54,7 @@ _DELAYS = {"Time.@+": "Time.token@+", "Time.@++": "Time.token@++"}
 """How a delay is added to a multi-set, and to one token."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class TypedCode:
     """A code segment: the variables it reads, those it binds, and the action giving a value (tuple) for the latter."""
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Span
 from pn2code.ml import codes
 from pn2code.ml.core import terms as core
@@ -36,7 +37,7 @@ MAX_ALTERNATIVES = 256
 """Rules that one rule with alternatives may stand for."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Deref:
     """`ref p` in a pattern: the cell gets a hidden name, and its contents are matched afterwards.
 

@@ -11,9 +11,9 @@ At zero the arm is stretched out along x; the upper arm ("link 2") runs beside t
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from pathlib import Path
 
+from pn2code.base.frozen import frozen
 from pn2code.robot.models.cobots import cobots
 from pn2code.robot.models.shapes import (
     Mesh,
@@ -38,7 +38,7 @@ from pn2code.robot.models.urdf_text import (
 )
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ArmSpec:
     """The published dimensions of an arm class, in m, degrees and degrees per second."""
 

@@ -7,8 +7,8 @@ zero the arm is stretched out along x, and its last axis looks along y.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.robot.models.shapes import Mesh, lathe, rod
 from pn2code.robot.models.urdf_text import (
     HEAD,
@@ -22,7 +22,7 @@ from pn2code.robot.models.urdf_text import (
 )
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class CobotSpec:
     """The published dimensions of a class, in m, degrees and degrees per second.
 

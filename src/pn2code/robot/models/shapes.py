@@ -8,10 +8,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from pn2code.base.frozen import record
 
 Array = NDArray[np.float64]
 # Points around a circle, by its radius in m: fine where it shows, coarse on screws.
@@ -19,7 +21,7 @@ _FINENESS = ((0.02, 10), (0.05, 18), (0.11, 26), (math.inf, 36))
 _SHARP = math.cos(math.radians(35.0))
 
 
-@dataclass(slots=True)
+@record
 class Mesh:
     """Triangles, each with its three corner points."""
 

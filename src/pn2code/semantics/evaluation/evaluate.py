@@ -18,10 +18,10 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from types import GeneratorType
 from typing import Any, assert_never
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Span
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.terms import Symbol
@@ -48,7 +48,7 @@ from pn2code.semantics.values.data import (
 Environment = Mapping[int, Value]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Limits:
     """Where evaluation gives up with `MlLimit`.
 

@@ -14,10 +14,10 @@ import errno
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO
 
+from pn2code.base.frozen import record
 from pn2code.semantics.values.data import Stream
 
 CHUNK = 4096
@@ -38,7 +38,7 @@ def not_there() -> FileProblem:
     return FileProblem("No such file or directory", "noent")
 
 
-@dataclass(slots=True, eq=False)
+@record(eq=False)
 class InStream(Stream):
     """A stream that is read: the text is there from the beginning."""
 
@@ -68,7 +68,7 @@ class InStream(Stream):
         return taken if end >= 0 else taken + "\n"
 
 
-@dataclass(slots=True, eq=False)
+@record(eq=False)
 class OutStream(Stream):
     """A stream that is written; `write` may drop what it gets."""
 
@@ -84,7 +84,7 @@ class OutStream(Stream):
             self.file.close()
 
 
-@dataclass(slots=True, eq=False)
+@record(eq=False)
 class NameStream(Stream):
     """The names in a folder."""
 

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Generator
-from dataclasses import dataclass
 from typing import Any
+
+from pn2code.base.frozen import record
 
 Task = Generator[Any, Any, Any]
 """Yields steps, is sent their values, returns a value or a `Tail`."""
@@ -12,7 +13,7 @@ Step = Any
 """A value, or a task that finds it."""
 
 
-@dataclass(slots=True, eq=False)
+@record(eq=False)
 class Tail:
     """What a task returns to be replaced by another step."""
 

@@ -11,9 +11,10 @@ Whatever fails ends it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
+from pn2code.base.frozen import frozen
 from pn2code.base.readable import readable
 from pn2code.diagnostics import Diagnostics, Note, Origin, Span
 from pn2code.ml.core.terms import Exp, Lit, Pat, Symbol
@@ -115,7 +116,7 @@ class running:  # noqa: N801 - a context manager reads as a word
             raise GivenUpError(f"{self.doing} was given up: {why}", origin) from None
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Demand:
     """Tokens that an input arc wants.
 
@@ -139,7 +140,7 @@ Found = dict[int, Value]
 """A binding while it is searched for: `uid` of the symbol -> value."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Wants:
     """What a transition wants.
 

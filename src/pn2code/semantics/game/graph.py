@@ -7,8 +7,7 @@ inscription may tell them apart (`Real.signBit`, `1.0 / x`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
+from pn2code.base.frozen import frozen
 from pn2code.ml.core.reals import may_hold_reals
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.marking import BindingElement, Marking
@@ -16,7 +15,7 @@ from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.data import zero_signs
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class StateArc:
     """An occurrence that leads from one node to another; nodes by index."""
 
@@ -25,7 +24,7 @@ class StateArc:
     target: int
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class StateSpace:
     """Markings and occurrences between them.
 

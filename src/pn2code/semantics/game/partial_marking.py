@@ -9,8 +9,9 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from pn2code.base.frozen import frozen
 from pn2code.base.readable import readable
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset
@@ -25,7 +26,7 @@ MOST_WAYS = 50
 """Ways to take tokens that are tried."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PartialMarking:
     """What is not known beside a marking.
 

@@ -25,10 +25,10 @@ import math
 import struct
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, record
 from pn2code.ml.library.exceptions import EXCEPTIONS
 
 if TYPE_CHECKING:
@@ -83,14 +83,14 @@ class Timed:
     stamp: int | float
 
 
-@dataclass(slots=True, eq=False)
+@record(eq=False)
 class Ref:
     """A reference; the only value that changes."""
 
     contents: Value
 
 
-@dataclass(slots=True, eq=False)
+@record(eq=False)
 class Array:
     """An array; like a reference it changes, and is equal only to itself."""
 
@@ -116,7 +116,7 @@ class Slice:
         return self.text[self.start : self.start + self.length]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Closure:
     """A function of the net: rules, and the values of the local variables around them."""
 
@@ -124,7 +124,7 @@ class Closure:
     environment: Mapping[int, Value] = field(repr=False)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@frozen(eq=False)
 class Native:
     """A built-in function, perhaps with some of its curried arguments already there.
 

@@ -8,9 +8,9 @@ closing(net, found, counts)      # "Verdict: NOT KNOWN. 1 of 4 answers is not kn
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import Literal
 
+from pn2code.base.frozen import frozen
 from pn2code.net.flat import FlatNet
 from pn2code.verify.answers import basis
 from pn2code.verify.answers.reasons import clause, raised
@@ -25,7 +25,7 @@ _MORE = {
 _OPEN_YET = "nothing that was asked of this state space was open any more"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Counts:
     """How many answers are as they should be, are not, and are not known.
 

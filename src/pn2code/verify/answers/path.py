@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 
+from pn2code.base.frozen import frozen
 from pn2code.base.readable import readable
 from pn2code.net.flat import FlatNet, FlatPlace, FlatTransition
 from pn2code.semantics.evaluation.files import Files
@@ -28,7 +28,7 @@ MOST_SHOWN = 100
 """Characters of a multi-set."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Change:
     """What a step takes from a place and puts there, and what is there then: CPN ML texts, "" for none."""
 
@@ -38,7 +38,7 @@ class Change:
     after: str
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Step:
     """An occurrence.
 

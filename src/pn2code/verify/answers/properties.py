@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
+from pn2code.base.frozen import frozen
 from pn2code.properties import meaning as m
 from pn2code.verify.answers import basis
 from pn2code.verify.answers.reasons import clause
@@ -16,7 +16,7 @@ from pn2code.verify.exploring.result import Exploration
 Verdict = Literal["yes", "no", "inconclusive"]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Evidence:
     """A run that shows why.
 
@@ -33,7 +33,7 @@ class Evidence:
     confirmed: bool = False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Answer:
     """What is known of a property.
 

@@ -11,10 +11,10 @@ from __future__ import annotations
 import subprocess
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from pathlib import Path
 
 import pn2code
+from pn2code.base.frozen import frozen
 from pn2code.cell.partition import Channel, Partition
 from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
 from pn2code.channels.scalars import ScalarValue
@@ -30,7 +30,7 @@ MOST_SEQ = 10**18 - 1
 """The longest number that a message can have."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Read:
     """What a file is: "empty", "message" (`seq` is None without line 2), or "refused" and why, such as "checksum"."""
 

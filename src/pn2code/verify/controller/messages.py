@@ -11,9 +11,9 @@ value that the state space shows is written and read by the compiled codec of th
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any
 
+from pn2code.base.frozen import frozen
 from pn2code.cell.partition import Channel, Partition
 from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
 from pn2code.channels.message import MAX_PAYLOAD, Message, compose, parse, specs_of
@@ -27,7 +27,7 @@ _INTEGER = 20
 """Characters of the longest integer of 64 bits."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Format:
     """Whether all messages can be written and read.
 
@@ -44,7 +44,7 @@ class Format:
     wrong: tuple[Unsendable, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Unsendable:
     """A message that cannot be sent: its channel, its value in the form of traces, and that in words."""
 

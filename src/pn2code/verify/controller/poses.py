@@ -13,10 +13,11 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from itertools import islice
 from typing import Protocol
 
+from pn2code.base.frozen import frozen, record
 from pn2code.cell.config import Primitive
 from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.cell.reach import Reach
@@ -51,7 +52,7 @@ class Arms(Protocol):
         """Why the arm cannot come to the pose of a command, with its name; "": it can."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Bad:
     """A move that an arm cannot make, if it comes to it.
 
@@ -66,7 +67,7 @@ class Bad:
     why: str
 
 
-@dataclass(slots=True)
+@record
 class Told:
     """What arms are told.
 

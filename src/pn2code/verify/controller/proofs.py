@@ -15,8 +15,9 @@ from __future__ import annotations
 import textwrap
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Partition
 from pn2code.cell.place_finder import PlaceFinder
@@ -47,7 +48,7 @@ _WIDTH = 136
 UNCHECKED = "Not checked, since it was generated with --unchecked (docs/execution.md):"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Proofs:
     """What was found.
 

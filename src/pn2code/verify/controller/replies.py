@@ -13,9 +13,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, record
 from pn2code.cell.config import CellConfig, Primitive
 from pn2code.cell.partition import ChannelKind, Partition
 from pn2code.cell.reach import Reach
@@ -122,7 +121,7 @@ class Replies:
         )
 
 
-@dataclass(slots=True)
+@record
 class _Silence:
     """How long a program may go on without a message to the supervisor."""
 

@@ -28,10 +28,11 @@ import math
 import random
 from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import closing, suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import islice
 from pathlib import Path
 
+from pn2code.base.frozen import frozen
 from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
 from pn2code.semantics.evaluation.effects import Effects, effects_of
 from pn2code.semantics.evaluation.files import Files
@@ -59,7 +60,7 @@ _BINDINGS = 20
 _TAKING = (ArcKind.INPUT, ArcKind.BOTH)
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Covering:
     """A run to a marking, and a round that can be repeated from there.
 

@@ -54,9 +54,9 @@ these nets are refused.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, record
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Kind
 from pn2code.ml.core.reals import may_hold_reals
@@ -83,7 +83,7 @@ _LISTED = frozenset({Kind.UNIT, Kind.BOOL, Kind.ENUM, Kind.INT, Kind.INDEX})
 _TAKING = (ArcKind.INPUT, ArcKind.BOTH)
 
 
-@dataclass(slots=True)
+@record
 class _Use:
     """What the arcs between a transition and a place do.
 
@@ -258,7 +258,7 @@ def check(net: FlatNet, effects: Effects) -> None:
             raise NotPossibleError(f"transition `{t.name}` {why.value}")
 
 
-@dataclass(slots=True)
+@record
 class _Reach:
     """What a transition does with references."""
 
@@ -267,7 +267,7 @@ class _Reach:
     writes: bool
 
 
-@dataclass(slots=True)
+@record
 class _Touching:
     """The transitions at a place, each with what it does there."""
 

@@ -15,11 +15,12 @@ import threading
 import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import IO, Any
 
 from pn2code.base.deadline import TimeIsOverError
+from pn2code.base.frozen import frozen
 from pn2code.base.os_reason import os_reason
 from pn2code.base.processor_time import Patience, processor_time
 from pn2code.diagnostics import Diagnostics, Origin
@@ -77,7 +78,7 @@ def _never() -> bool:
     return False
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class ExploreOptions:
     """What to do besides counting.
 

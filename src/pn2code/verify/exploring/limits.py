@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import os
 from contextlib import suppress
-from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
 
 from pn2code.base.deadline import NEVER, Deadline
+from pn2code.base.frozen import frozen
 
 REACHED = ("states", "seconds", "memory")
 """Why an exploration has ended, where it was for a limit."""
@@ -39,7 +39,7 @@ class Reduction(StrEnum):
     SYMMETRY = "symmetry"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Limits:
     """What an exploration may use.
 

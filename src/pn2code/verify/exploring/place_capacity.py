@@ -14,8 +14,9 @@ of a net that draws random numbers, reads files or asks for the number of steps:
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from pn2code.base.frozen import frozen
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.ir import nodes as ir
@@ -50,7 +51,7 @@ _STEPS = f"without a number of steps, all {{}} states: a run, which has one, may
 _ONE_OF_MANY = {"chance": _CHANCE, "steps": _STEPS}
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class PlaceCapacity:
     """Of a place.
 

@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 
 import pn2code
-from pn2code.base.frozen import frozen
+from pn2code.base.frozen import frozen, record
 from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission import c as emit_c
@@ -128,7 +128,7 @@ class Sizes:
         )
 
 
-@dataclass(slots=True)
+@record
 class Generated:
     """What was generated last for a net and its predicates; those who explore both again need not generate it again.
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Origin, Span
 from pn2code.net.flat import FlatNet
 from pn2code.net.predicate import Predicate
@@ -23,7 +23,7 @@ OF_ELEMENTS = (Reduction.PARTIAL_ORDER, Reduction.SYMMETRY)
 """Reductions that rest on the table of binding elements."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Chosen:
     """The reductions that are used.
 

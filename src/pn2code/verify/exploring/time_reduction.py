@@ -17,8 +17,8 @@ reason = obstacle(net)        # None: the reduction is possible
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Origin, Span
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Kind
@@ -51,7 +51,7 @@ _RANDOM = frozenset({"Ms.random", "Colset.ran"})
 _TIMED = "timed"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Obstacle:
     """Why the reduction is not possible, and where that stands."""
 

@@ -40,9 +40,9 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from enum import Enum
 
+from pn2code.base.frozen import frozen
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.reals import may_hold_reals
@@ -88,7 +88,7 @@ _AMOUNT = {
 _EITHER_SIDE = frozenset({"Int.+", "IntInf.+", "Int.max", "Int.min"})
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Access:
     """What is done with a component; `value` is the constant of `SETS`."""
 

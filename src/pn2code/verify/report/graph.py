@@ -10,10 +10,10 @@ from __future__ import annotations
 import json
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.frozen import frozen
 from pn2code.net.flat import FlatNet, FlatTransition
 from pn2code.semantics.game.marking import place_from_json, place_text, variable_text
 from pn2code.semantics.game.report import time_text
@@ -21,7 +21,7 @@ from pn2code.semantics.values.colour_json import from_json
 from pn2code.semantics.values.colours import TEXTS
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Node:
     """A marking.
 
@@ -47,7 +47,7 @@ class Node:
         return "\n".join(lines) or "empty"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Arc:
     """A binding element that occurs at a node; nodes by number.
 
@@ -73,7 +73,7 @@ class Arc:
         return f"{self.transition} {self.values}" if self.binding else self.transition
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class StateGraph:
     """A whole state space.
 

@@ -7,8 +7,8 @@ Labels of arcs stand in layers of their own, between those of the nodes, so that
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.drawing import text
 from pn2code.drawing.arrange import arrange
 from pn2code.drawing.geometry import Box, Point, around
@@ -27,7 +27,7 @@ _DROP = 3.0
 Edge = tuple[int, int]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Placed:
     """A node: its box, the lines in it; the first is its number."""
 
@@ -36,7 +36,7 @@ class Placed:
     lines: tuple[str, ...]
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Drawn:
     """Parallel arcs as one line.
 
@@ -58,7 +58,7 @@ class Drawn:
     goes_back: bool
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Layout:
     """Everything with its place."""
 

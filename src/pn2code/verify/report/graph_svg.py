@@ -8,8 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 
+from pn2code.base.frozen import frozen
 from pn2code.drawing import text
 from pn2code.drawing.geometry import Box, Point, of_points, union
 from pn2code.drawing.svg import MARGIN, svg_attributes
@@ -29,7 +29,7 @@ _ENTRY = 20.0
 _TIP_LINES, _TIP_WIDTH = 40, 200
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Links:
     """Where a click leads to, and how a node is reached: addresses by number of the node, or position of the arc.
 
@@ -233,7 +233,7 @@ def _side_head(tip: Point, ink: str) -> str:
     return f'<path d="M{_n(x)} {_n(y)}L{_n(x + _HEAD)} {_n(y - _HALF)}V{_n(y + _HALF)}z" fill="{ink}"/>'
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Item:
     """A line of the legend: what a node ("" for the fill: a line) of such colours means."""
 

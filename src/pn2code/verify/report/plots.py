@@ -8,18 +8,19 @@ plot(record, found, "net.cpn", Path("net.svg"))
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+from pn2code.base.frozen import frozen
 from pn2code.verify.exploring.result import Exploration
 
 _BLUE, _RED, _GREEN, _PURPLE = "#0072B2", "#D55E00", "#009E73", "#CC79A7"
 _MOST_POINTS, _FEW_POINTS = 200, 5
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Sample:
     """What the explorer said at a time; `rate` is of the time since the sample before, in states/s."""
 

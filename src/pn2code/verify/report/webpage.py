@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from datetime import datetime
 from typing import Any
 
 import pn2code
 from pn2code.base.deadline import NEVER, Deadline, TimeIsOverError
+from pn2code.base.frozen import frozen
 from pn2code.net.engine_names import EngineNames
 from pn2code.net.flat import FlatNet, FlatPlace
 from pn2code.semantics.game.token_game import GameError
@@ -28,7 +28,7 @@ MOST_STEPS = 200
 """Of a longer trace only the first steps are shown."""
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class _Player:
     """Plays runs once more, as long as there is time."""
 
