@@ -14,7 +14,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path, PurePath
 from typing import Any
 
-from pn2code.cell.config import CellConfig
+from pn2code.cell.config import CellConfig, ChannelConfig
 from pn2code.cell.partition import Partition
 from pn2code.cell.place_finder import PlaceFinder
 from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
@@ -82,12 +82,15 @@ def _differences(where: str, expected: Any, found: Any) -> Iterator[str]:
 def _cell(made: Generated, config: CellConfig, game: Game) -> dict[str, Any]:
     partition = made.partition
     find = PlaceFinder(partition.net, Diagnostics())
-    channels = sorted(config.channels, key=lambda c: c.kind.value != "data")  # I5
-    rows = []
-    between = []
-    for c in channels:
+    channels = []
+    for c in config.channels:
         place = find(c.place, c.origin, "channel")
         assert place is not None, "it was found when the net was divided"
+        channels.append((c, place, _kind(c, place)))
+    channels.sort(key=lambda item: item[2] != "data")  # I5
+    rows = []
+    between = []
+    for c, place, kind in channels:
         writer, reader = _ends(partition, place.index)
         if 0 in (writer, reader):
             rows.append(
@@ -97,7 +100,7 @@ def _cell(made: Generated, config: CellConfig, game: Game) -> dict[str, Any]:
                     "place": place.index,
                     "place_name": place.name,
                     "direction": "out" if writer == 0 else "in",
-                    "kind": c.kind.value,
+                    "kind": kind,
                     "peer": config.programs[max(writer, reader) - 1].name,
                     "scalars": _scalars(scalars_of(place.colset) or ()),
                 }
@@ -132,6 +135,14 @@ def _cell(made: Generated, config: CellConfig, game: Game) -> dict[str, Any]:
         "peers": [{"name": p.name, "owner": i} for i, p in enumerate(config.programs, 1)],
         "final": [place.index for place in final if place is not None],
     }
+
+
+def _kind(channel: ChannelConfig, place: FlatPlace) -> str:
+    """What cell.toml says, or else what the number of values in a message decides."""
+    if channel.is_kind_given:
+        return channel.kind.value
+    scalars = scalars_of(place.colset)
+    return "flag" if scalars is not None and len(scalars) == 1 else "data"
 
 
 def _checked(place: FlatPlace, game: Game) -> int:
