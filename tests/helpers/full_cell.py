@@ -243,3 +243,13 @@ def read(folder: Path, data: dict[str, Any], section: str) -> tuple[str, Diagnos
             for r in cell.robots
         ]
     return re.sub(r"Origin\([^()]*\)", "", repr(shown).replace(str(folder), "")), d
+
+
+def skeleton() -> dict[str, Any]:
+    """The least that a cell.toml must say."""
+    return {"net": {"file": "cell.cpn"}, "supervisor": {"instance": "Supervisor"}}
+
+
+def merged(data: dict[str, Any], over: dict[str, Any]) -> str:
+    """A file that says both; sections of the second replace those of the first."""
+    return as_toml({**data, **over})
