@@ -10,6 +10,7 @@ COPY pyproject.toml README.md LICENSE ./
 COPY src src
 COPY cnative cnative
 COPY templates templates
+COPY examples examples
 RUN python3 -m venv /opt/pn2code \
     && /opt/pn2code/bin/pip install --no-cache-dir '.[cell]'
 

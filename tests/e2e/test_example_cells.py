@@ -71,6 +71,10 @@ EXAMPLES = {
         "palletiser", ("Supervisor", "supervisor.svg"), 81, 1, {"boxes": 8}, {"n": 8},
         ("supervisor", "robot", "conveyor"),
     ),
+    "handover": Expected(
+        "cell", ("Supervisor", "supervisor.svg"), 95, 1, {"grips": 6, "stored": 3}, {"n": 4},
+        ("supervisor", "robot1", "robot2"),
+    ),
     "timed": Expected(
         "timed", ("Supervisor", "supervisor.svg"), 31014, 1668,
         {"beads": 3, "repairs": 2, "interruptions": 2, "answers": 2, "timeouts": 1, "late": 1},
@@ -239,7 +243,7 @@ def test_the_riveting_cell_has_its_properties(root: Path, tmp_path: Path) -> Non
 
 @pytest.mark.parametrize(
     "file",
-    ["sorting/cell.toml", "shared-zone/cell.toml", "timed/cell.toml", "riveting/cell.properties.toml"],
+    ["sorting/cell.toml", "handover/cell.toml", "palletiser/cell.toml", "shared-zone/cell.toml", "timed/cell.toml", "riveting/cell.properties.toml"],
 )  # fmt: skip
 def test_properties_are_told_in_plain_words(root: Path, file: str) -> None:
     path = root / "examples" / file

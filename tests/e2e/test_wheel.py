@@ -26,7 +26,7 @@ def unpacked(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     # Built from a copy: the build writes nothing into the source tree.
     source = folder / "source"
     source.mkdir()
-    for name in ("src", "cnative", "templates"):
+    for name in ("src", "cnative", "templates", "examples"):
         shutil.copytree(root / name, source / name, ignore=shutil.ignore_patterns("__pycache__"))
     for name in ("pyproject.toml", "README.md", "LICENSE", ".gitignore"):
         shutil.copy(root / name, source)

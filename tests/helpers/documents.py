@@ -206,3 +206,21 @@ class Desk:
             )  # fmt: skip
             assert done.returncode == 0, f"{text}\n{done.stdout[-3000:]}\n{done.stderr[-3000:]}"
             self.at = Path(place.read().strip() or self.at)
+
+
+BEGIN, END = "<!-- made by `./dev golden` from pn2code.cell_file -->\n\n", "<!-- end -->\n"
+
+
+def between(path: Path) -> str:
+    """The part of a document that is made from the code."""
+    _, _, rest = path.read_text(encoding="utf-8").partition(BEGIN)
+    return rest.partition(END)[0]
+
+
+def put_between(path: Path, text: str) -> None:
+    """Write it."""
+    whole = path.read_text(encoding="utf-8")
+    head, begin, rest = whole.partition(BEGIN)
+    _, end, tail = rest.partition(END)
+    assert begin and end, f"{path} has no place for what is made"
+    path.write_text(head + begin + text + end + tail, encoding="utf-8")

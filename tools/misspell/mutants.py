@@ -63,6 +63,11 @@ def mistakes(text: str) -> Iterator[Mistake]:
             yield Mistake(path, kind, change, made, renamed.get(kind, ""))
 
 
+def as_toml(data: dict[str, Any]) -> str:
+    """A file that says this."""
+    return written(_tree(data))
+
+
 def as_it_is(text: str) -> str:
     """The file as all mistakes are written."""
     return written(_tree(tomllib.loads(text)))

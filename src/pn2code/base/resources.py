@@ -1,4 +1,4 @@
-"""Where `templates/` and `cnative/` are: at the top level of the source tree, or inside the installed package."""
+"""Where `templates/`, `cnative/`, `examples/` are: at the top level of the source tree, or in the installed package."""
 
 from __future__ import annotations
 
@@ -24,3 +24,8 @@ def cnative_folder() -> Path:
 def templates_folder() -> Path:
     """The Jinja templates: `c/*.j2`, `tdl/*.j2`."""
     return _folder("templates")
+
+
+def examples_folder() -> Path:
+    """The example cells, each in a folder of its own."""
+    return _folder("examples")

@@ -11,18 +11,12 @@ from typing import Any, Literal
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import ChannelKind
 from pn2code.cell.toml_file import Locator
+from pn2code.cell_file.logic import PRIMITIVE
 from pn2code.diagnostics import Origin
 from pn2code.robot.commands import Handling
 
 CommandName = Literal["move_joint", "move_linear", "move_home", "measure", "tool", "wait"]
-COMMANDS: tuple[CommandName, ...] = (
-    "move_joint",
-    "move_linear",
-    "move_home",
-    "measure",
-    "tool",
-    "wait",
-)
+COMMANDS = PRIMITIVE["command"].words
 
 
 @frozen

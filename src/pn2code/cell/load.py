@@ -29,33 +29,25 @@ from pn2code.cell.files import check_files, one_name
 from pn2code.cell.partition import ChannelKind
 from pn2code.cell.tables import KeyPath, Tables
 from pn2code.cell.toml_file import Locator, read
+from pn2code.cell_file.geometry import ROBOT
+from pn2code.cell_file.keys import Key
+from pn2code.cell_file.logic import (
+    BOUND,
+    CHANNEL,
+    DEVICE,
+    INPUT,
+    NET,
+    PRIMITIVE,
+    REPORT,
+    SENSOR,
+    STORED,
+    SUPERVISOR,
+    VALUE,
+)
+from pn2code.cell_file.whole import FILE, LAYOUT, PLACED
 from pn2code.diagnostics import Diagnostics, Origin, PlacedText
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot.commands import EFFECTS, Effect, Handling
-
-_TOP = {
-    "net",
-    "supervisor",
-    "storage",
-    "values",
-    "capacity",
-    "input",
-    "channel",
-    "primitives",
-    "robots",
-    "devices",
-    "sensors",
-    "motion",
-    "scene",
-    "parts",
-    "places",
-    "report",
-    "layouts",
-    "property",
-}
-
-
-_IN_LAYOUTS = ("robots", "motion", "scene", "parts", "places")
 
 
 def load(path: Path, d: Diagnostics, *, layout: str | None = None) -> CellConfig | None:
@@ -92,10 +84,10 @@ def _config(
     path: Path, data: dict[str, Any], locator: Locator, d: Diagnostics, layout: str | None
 ) -> CellConfig:
     r = Tables(locator, d)
-    r.keys(data, (), _TOP)
-    net = r.table(data, "net", required=True)
-    r.keys(net, ("net",), {"file"})
-    net_file = r.get(net, ("net",), "file", str, "a file name", "", required=True)
+    r.keys(data, (), FILE.names())
+    net = r.table(data, "net")
+    r.keys(net, ("net",), NET.names())
+    net_file = r.get(net, ("net",), NET["file"], "")
 
     layouts = r.table(data, "layouts")
     chosen, merged = _apply_layout(data, layouts, layout, r)
@@ -119,7 +111,7 @@ def _config(
                 for name, table in _table(merged.get("robots")).items()
                 if isinstance(table, dict)
             },
-            **{key: merged.get(key, {}) for key in ("motion", "scene", "parts", "places")},
+            **{key: merged.get(key, {}) for key in PLACED if key != "robots"},
         },
         layouts={
             name: str(t.get("description", ""))
@@ -144,14 +136,15 @@ def _apply_layout(
             r.d.error(codes.CELL_VALUE, f"layout `{name}` must be a table", r.at("layouts", name))
             return "", data
         at: KeyPath = ("layouts", name)
-        r.keys(table, at, {"description", *_IN_LAYOUTS})
-        r.get(table, at, "description", str, "a text", "")
+        r.keys(table, at, LAYOUT.names())
+        r.get(table, at, LAYOUT["description"])
         known = _table(data.get("robots"))
-        for key in _IN_LAYOUTS:
-            r.get(table, at, key, dict, "a table", {})
+        for key in PLACED:
+            r.get(table, at, replace(LAYOUT[key], expected="a table"))
         robots = _table(table.get("robots"))
         for robot in robots:
-            changed = r.get(robots, (*at, "robots"), robot, dict, "a table", {})
+            one = Key(robot, "table", "", "a table", inner=LAYOUT["robots"].inner)
+            changed = r.get(robots, (*at, "robots"), one, {})
             if robot not in known:
                 r.d.error(
                     codes.CELL_KEY,
@@ -197,21 +190,15 @@ def _merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
 
 def _supervisor(r: Tables, data: dict[str, Any]) -> SupervisorConfig:
     at: KeyPath = ("supervisor",)
-    table = r.table(data, "supervisor", required=True)
-    r.keys(table, at, {"instance", "final", "reply_timeout_s", "order"})
-    final = r.texts(table, at, "final", "a list of places")
-    timeout = r.get(table, at, "reply_timeout_s", (int, float), "a number of seconds", 120.0)
-    if not 0 < timeout < 1e6:
-        r.d.error(
-            codes.CELL_VALUE,
-            f"`reply_timeout_s` is {timeout}, but must be above zero",
-            r.at("supervisor", "reply_timeout_s"),
-        )
-    order = r.choice(table, at, "order", ("any", "documented"), "any")
+    table = r.table(data, "supervisor")
+    r.keys(table, at, SUPERVISOR.names())
+    final = r.texts(table, at, SUPERVISOR["final"])
+    timeout = r.number(table, at, SUPERVISOR["reply_timeout_s"])
+    order = r.choice(table, at, SUPERVISOR["order"])
     return SupervisorConfig(
-        instance=r.get(table, at, "instance", str, "a substitution transition", "", required=True),
+        instance=r.get(table, at, SUPERVISOR["instance"], ""),
         final=tuple(name for name, _ in final),
-        reply_timeout_s=float(timeout),
+        reply_timeout_s=timeout,
         origin=r.at("supervisor", "instance"),
         final_origins=tuple(origin for _, origin in final),
         order_decides=order == "documented",
@@ -221,13 +208,13 @@ def _supervisor(r: Tables, data: dict[str, Any]) -> SupervisorConfig:
 def _storage(r: Tables, data: dict[str, Any]) -> dict[str, str]:
     out = {}
     for name, kind in r.table(data, "storage").items():
-        if kind not in ("float32", "float64"):
+        if kind not in STORED.words:
             r.d.error(
                 codes.CELL_VALUE,
-                f"storage of `{name}` is `{kind}`, but `float32` or `float64` is expected",
+                f"storage of `{name}` is `{kind}`, but {' or '.join(f'`{x}`' for x in STORED.words)} is expected",
                 r.at("storage", name),
             )
-        elif kind == "float32":
+        elif kind != STORED.default:
             out[name] = kind
     return out
 
@@ -239,7 +226,7 @@ def _values(r: Tables, data: dict[str, Any]) -> dict[str, str]:
         if text is None:
             r.d.error(
                 codes.CELL_VALUE,
-                f"`{name}` is `{value}`, but a boolean, number or string is expected",
+                f"`{name}` is `{value}`, but {VALUE.expected} is expected",
                 r.at("values", name),
             )
         else:
@@ -261,10 +248,10 @@ def ml_literal(value: object) -> str | None:
 def _capacity(r: Tables, data: dict[str, Any]) -> dict[str, int]:
     out = {}
     for name, bound in r.table(data, "capacity").items():
-        if not isinstance(bound, int) or isinstance(bound, bool) or not 1 <= bound <= 1_000_000:
+        if not isinstance(bound, int) or isinstance(bound, bool) or not BOUND.within(bound):
             r.d.error(
                 codes.CELL_VALUE,
-                f"capacity of `{name}` is `{bound}`, but a number from 1 to 1000000 is expected",
+                f"capacity of `{name}` is `{bound}`, but {BOUND.expected} is expected",
                 r.at("capacity", name),
             )
         else:
@@ -276,9 +263,9 @@ def _inputs(r: Tables, data: dict[str, Any]) -> Iterable[InputConfig]:
     files: dict[str, tuple[str, str]] = {}
     for i, table in enumerate(r.tables(data, "input")):
         at: KeyPath = ("input", i)
-        r.keys(table, at, {"place", "file"})
-        place = r.get(table, at, "place", str, "a place", "", required=True)
-        file = r.file_name(table, at)
+        r.keys(table, at, INPUT.names())
+        place = r.get(table, at, INPUT["place"], "")
+        file = r.file_name(table, at, INPUT["file"])
         _once(r, files, file, place, at, "inputs")
         yield InputConfig(place, file, r.at(*at, "place"))
 
@@ -323,10 +310,10 @@ def _channels(r: Tables, data: dict[str, Any]) -> Iterable[ChannelConfig]:
     files: dict[str, tuple[str, str]] = {}
     for i, table in enumerate(r.tables(data, "channel")):
         at: KeyPath = ("channel", i)
-        r.keys(table, at, {"place", "file", "kind"})
-        place = r.get(table, at, "place", str, "a place", "", required=True)
-        file = r.file_name(table, at)
-        kind = r.choice(table, at, "kind", ("data", "flag"), "flag")
+        r.keys(table, at, CHANNEL.names())
+        place = r.get(table, at, CHANNEL["place"], "")
+        file = r.file_name(table, at, CHANNEL["file"])
+        kind = r.choice(table, at, CHANNEL["kind"], "flag")
         _once(r, files, file, place, at, "channels")
         yield ChannelConfig(
             place, file, ChannelKind(kind), r.at(*at, "place"), is_kind_given="kind" in table
@@ -336,7 +323,9 @@ def _channels(r: Tables, data: dict[str, Any]) -> Iterable[ChannelConfig]:
 def _primitives(r: Tables, data: dict[str, Any]) -> dict[str, Primitive]:
     out = {}
     for name, at, table in r.named(data, "primitives"):
-        command = r.get(table, at, "command", str, "a robot command", "", required=True)
+        given = table.get("command")
+        r.keys(table, at, PRIMITIVE.names(given if given in COMMANDS else ""))
+        command = r.get(table, at, PRIMITIVE["command"], "")
         if command and command not in COMMANDS:
             r.d.error(
                 codes.CELL_VALUE,
@@ -346,43 +335,31 @@ def _primitives(r: Tables, data: dict[str, Any]) -> dict[str, Primitive]:
             )
         if command not in COMMANDS:
             continue
-        own = {
-            "move_joint": {"speed"},
-            "move_linear": {"frame", "speed"},
-            "move_home": {"speed"},
-            "tool": {"action", "duration_s", "at", *EFFECTS},
-            "wait": {"duration_s"},
-        }.get(command, set())
-        r.keys(table, at, {"command", *own})
+        own = PRIMITIVE.names(command)
         tool = command == "tool"
-        frame = r.choice(table, at, "frame", ("world", "tool"), "") if "frame" in own else ""
-        action = r.get(table, at, "action", str, "a name", "", required=tool)
+        frame = r.choice(table, at, PRIMITIVE["frame"]) if "frame" in own else ""
+        action = r.get(table, at, PRIMITIVE["action"], "") if tool else ""
         if tool and not action and "action" in table:
             r.d.error(codes.CELL_VALUE, "`action` is empty", r.at(*at, "action"))
+        timed = PRIMITIVE.key("duration_s", command) if "duration_s" in own else None
         out[name] = Primitive(
             name,
             cast(CommandName, command),
             cast(Literal["world", "tool"], frame) if frame else None,
             action,
-            r.number(table, at, "duration_s", 0.0, required=tool),
+            r.number(table, at, timed) if timed else 0.0,
             _handling(r, data, table, at) if tool else None,
-            _speed(r, table, at, is_line=command == "move_linear"),
+            _speed(r, table, at, command) if "speed" in own else None,
         )
     return out
 
 
-def _speed(r: Tables, table: dict[str, Any], at: KeyPath, *, is_line: bool) -> float | None:
+def _speed(r: Tables, table: dict[str, Any], at: KeyPath, command: str) -> float | None:
     """The speed of a move as in a script: mm/s, or percent of the speeds of the axes."""
     if "speed" not in table:
         return None
-    speed = r.number(table, at, "speed", 0.1, above=0.0)
-    if not is_line and speed > 1.0:
-        r.d.error(
-            codes.CELL_VALUE,
-            f"`speed` is {speed:g}, but a fraction of the speeds of the axes is expected, at most 1",
-            r.at(*at, "speed"),
-        )
-    return speed * (1000.0 if is_line else 100.0)
+    speed = r.number(table, at, PRIMITIVE.key("speed", command), 0.1)
+    return speed * (1000.0 if command == "move_linear" else 100.0)
 
 
 def _handling(
@@ -398,7 +375,7 @@ def _handling(
             hint="make two functions of it, which the net calls one after the other",
         )
     is_placed = bool(given) and given[0] in ("creates", "removes")
-    place = r.get(table, at, "at", str, "the name of a place of `[places]`", "", required=is_placed)
+    place = r.get(table, at, PRIMITIVE["at"], "", required=is_placed)
     if "at" in table and not is_placed:
         r.d.error(
             codes.CELL_KEY,
@@ -408,7 +385,7 @@ def _handling(
         )
     if not given:
         return None
-    part = r.get(table, at, given[0], str, "a kind of parts", "")
+    part = r.get(table, at, PRIMITIVE[given[0]], "")
     for name, key, section in ((part, given[0], "parts"), (place, "at", "places")):
         known = _table(data.get(section))
         if name and name not in known:
@@ -458,7 +435,9 @@ def _check_handling(r: Tables, data: dict[str, Any], primitives: Mapping[str, Pr
 def _robots(r: Tables, data: dict[str, Any]) -> Iterable[RobotConfig]:
     for name, at, table in r.named(data, "robots"):
         _name(r, name, at, "a robot name")
-        instance = r.get(table, at, "instance", str, "a substitution transition", "", required=True)
+        if "instance" not in table:  # else `robot.scene` reports unknown keys
+            r.keys(table, at, ROBOT.names())
+        instance = r.get(table, at, ROBOT["instance"], "")
         yield RobotConfig(name, instance, r.at(*at, "instance"))
 
 
@@ -474,7 +453,7 @@ def _name(r: Tables, name: str, at: KeyPath, what: str) -> None:
 
 def _devices(r: Tables, data: dict[str, Any]) -> Iterable[RobotConfig]:
     for name, at, table in r.named(data, "devices"):
-        r.keys(table, at, {"instance"})
+        r.keys(table, at, DEVICE.names())
         _name(r, name, at, "a device name")
         if name in _table(data.get("robots")):
             r.d.error(
@@ -483,16 +462,16 @@ def _devices(r: Tables, data: dict[str, Any]) -> Iterable[RobotConfig]:
                 r.at(*at),
                 hint="give the device another name",
             )
-        instance = r.get(table, at, "instance", str, "a substitution transition", "", required=True)
+        instance = r.get(table, at, DEVICE["instance"], "")
         yield RobotConfig(name, instance, r.at(*at, "instance"))
 
 
 def _sensors(r: Tables, data: dict[str, Any]) -> Iterable[SensorConfig]:
     variables: dict[str, str] = {}
     for name, at, table in r.named(data, "sensors"):
-        r.keys(table, at, {"variable", "file", "default", "seed"})
+        r.keys(table, at, SENSOR.names())
         _name(r, name, at, "a sensor name")
-        variable = r.get(table, at, "variable", str, "a variable of the net", name)
+        variable = r.get(table, at, SENSOR["variable"], name)
         if variable in variables:
             r.d.error(
                 codes.CELL_VALUE,
@@ -501,24 +480,24 @@ def _sensors(r: Tables, data: dict[str, Any]) -> Iterable[SensorConfig]:
                 hint="remove one of them",
             )
         variables.setdefault(variable, name)
-        file = r.file_name(table, at) if "file" in table else ""
+        file = r.file_name(table, at, SENSOR["file"]) if "file" in table else ""
         default = table.get("default")
         if default is not None and not isinstance(default, str | int | float):
             r.d.error(
                 codes.CELL_VALUE,
-                f"`default` is `{default}`, but a value of the variable is expected",
+                f"`default` is `{default}`, but {SENSOR['default'].expected} is expected",
                 r.at(*at, "default"),
             )
             default = None
-        seed = r.get(table, at, "seed", int, "a whole number", 1)
+        seed = r.get(table, at, SENSOR["seed"])
         yield SensorConfig(name, variable, file, default, seed, r.at(*at))
 
 
 def _report(r: Tables, data: dict[str, Any], config: CellConfig) -> ReportConfig:
     table = r.table(data, "report")
     at: KeyPath = ("report",)
-    r.keys(table, at, {"rows", "count", "occurrences", "warn_condition"})
-    rows = tuple(name for name, _ in r.texts(table, at, "rows", "a list of channels"))
+    r.keys(table, at, REPORT.names())
+    rows = tuple(name for name, _ in r.texts(table, at, REPORT["rows"]))
     known = [c.place for c in config.channels]
     for name in rows:
         if name not in known:
@@ -528,7 +507,7 @@ def _report(r: Tables, data: dict[str, Any], config: CellConfig) -> ReportConfig
                 r.at("report", "rows"),
                 hint=did_you_mean(name, known),
             )
-    count = r.get(table, at, "count", dict, "a table label = action", {})
+    count = r.get(table, at, REPORT["count"], {})
     actions = [p.action for p in config.primitives.values() if p.command == "tool"]
     for label, action in count.items():
         if action not in actions:
@@ -538,7 +517,7 @@ def _report(r: Tables, data: dict[str, Any], config: CellConfig) -> ReportConfig
                 r.at("report", "count"),
                 hint=did_you_mean(str(action), actions),
             )
-    occurrences = r.get(table, at, "occurrences", dict, "a table label = transition", {})
+    occurrences = r.get(table, at, REPORT["occurrences"], {})
     for label, transition in occurrences.items():
         if not isinstance(transition, str):
             r.d.error(
@@ -550,5 +529,5 @@ def _report(r: Tables, data: dict[str, Any], config: CellConfig) -> ReportConfig
         rows,
         tuple((str(k), str(v)) for k, v in count.items()),
         tuple((str(k), str(v)) for k, v in occurrences.items()),
-        r.number(table, at, "warn_condition", 50.0, above=0.0),
+        r.number(table, at, REPORT["warn_condition"]),
     )

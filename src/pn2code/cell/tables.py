@@ -10,6 +10,8 @@ from typing import Any, cast
 
 from pn2code.cell import codes
 from pn2code.cell.toml_file import Locator
+from pn2code.cell_file.keys import Key
+from pn2code.cell_file.whole import FILE
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.suggestions import did_you_mean, nearest
 
@@ -44,62 +46,59 @@ class Tables:
         self,
         table: Mapping[str, Any],
         path: KeyPath,
-        key: str,
-        kind: type | tuple[type, ...],
-        words: str,
+        key: Key,
         default: Any = None,
         *,
         required: bool = False,
     ) -> Any:
-        """The value of a key of the table at a path; the default if it is missing, or is not what `words` says."""
-        if key not in table:
-            if required and (path, key) not in self._meant:
+        """The value of a key of the table at a path; a default if it is missing, or is not what is expected.
+
+        Args:
+            default: where the key has none of its own.
+            required: whether it must be there, though not always.
+        """
+        name, fallback = key.name, default if key.default is None else key.default
+        if name not in table:
+            if (required or key.required is True) and (path, name) not in self._meant:
                 self.d.error(
                     codes.CELL_KEY,
-                    f"{self._words(*path, key)} is missing",
+                    f"{self._words(*path, name)} is missing",
                     self.at(*path),
-                    hint=f"add `{key} = ...`: {words}",
+                    hint=f"add `{name} = ...`: {key.expected or _any_of(key)}",
                 )
-            return default
-        value = table[key]
+            return fallback
+        value, kind = table[name], _TYPES[key.kind]
         if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
             self.d.error(
                 codes.CELL_VALUE,
-                f"`{key}` is `{value}`, but {words} is expected",
-                self.at(*path, key),
+                f"`{name}` is `{value}`, but {key.expected or _any_of(key)} is expected",
+                self.at(*path, name),
             )
-            return default
+            return fallback
         return value
 
-    def choice(
-        self,
-        table: Mapping[str, Any],
-        path: KeyPath,
-        key: str,
-        words: tuple[str, ...],
-        default: str,
-    ) -> str:
-        """One of some words; the default if it is missing or another one."""
-        shown = " or ".join(f"`{word}`" for word in words)
-        value = self.get(table, path, key, str, shown, default)
-        if value in words or value == default:
+    def choice(self, table: Mapping[str, Any], path: KeyPath, key: Key, default: str = "") -> str:
+        """One of the words of a key; the default if it is missing or another one."""
+        fallback = default if key.default is None else str(key.default)
+        value = self.get(table, path, key, fallback)
+        if value in key.words or key.name not in table:
             return str(value)
-        self.d.error(
-            codes.CELL_VALUE,
-            f"`{key}` is `{value}`, but {shown} is expected",
-            self.at(*path, key),
-            hint=did_you_mean(value, words),
-        )
-        return default
+        if value != fallback:  # else it has been said that it is no text
+            self.d.error(
+                codes.CELL_VALUE,
+                f"`{key.name}` is `{value}`, but {_any_of(key)} is expected",
+                self.at(*path, key.name),
+                hint=did_you_mean(value, key.words),
+            )
+        return fallback
 
-    def table(self, data: Mapping[str, Any], key: str, *, required: bool = False) -> dict[str, Any]:
+    def table(self, data: Mapping[str, Any], key: str) -> dict[str, Any]:
         """A section of the file; empty if it is missing."""
-        found = self.get(data, (), key, dict, "a table", {}, required=required)
-        return cast(dict[str, Any], found)
+        return cast(dict[str, Any], self.get(data, (), _section(key), {}))
 
     def tables(self, data: Mapping[str, Any], key: str) -> list[dict[str, Any]]:
         """An array of tables of the file."""
-        found = self.get(data, (), key, list, f"an array of tables `[[{key}]]`", [])
+        found = self.get(data, (), _section(key), [])
         good = [t for t in found if isinstance(t, dict)]
         if len(good) != len(found):
             self.d.error(
@@ -119,9 +118,9 @@ class Tables:
                     codes.CELL_VALUE, f"`{key}.{name}` must be a table", self.at(key, name)
                 )
 
-    def file_name(self, table: Mapping[str, Any], path: KeyPath) -> str:
+    def file_name(self, table: Mapping[str, Any], path: KeyPath, key: Key) -> str:
         """The key `file` of a table: a name in the shared directory."""
-        name = self.get(table, path, "file", str, "a file name", "", required=True)
+        name = self.get(table, path, key, "")
         if name and (Path(name).name != name or name.startswith(".") or name.endswith(".tmp")):
             self.d.error(
                 codes.CELL_VALUE,
@@ -132,25 +131,25 @@ class Tables:
             )
         return str(name)
 
-    def texts(
-        self, table: Mapping[str, Any], path: KeyPath, key: str, words: str
-    ) -> list[tuple[str, Origin]]:
+    def texts(self, table: Mapping[str, Any], path: KeyPath, key: Key) -> list[tuple[str, Origin]]:
         """The texts of a list, each with where it stands; none twice."""
-        found = self.get(table, path, key, list, words, [])
-        at = self.strings(*path, key)
+        name, found = key.name, self.get(table, path, key, [])
+        at = self.strings(*path, name)
         out: dict[str, Origin] = {}
         for i, value in enumerate(found):
-            origin = self.at(*path, key)
+            origin = self.at(*path, name)
             if len(at) == len(found):
                 origin = replace(at[i].origin, part=origin.part)
             if not isinstance(value, str) or not value:
                 self.d.error(
-                    codes.CELL_VALUE, f"`{key}` holds `{value}`, but {words} is expected", origin
+                    codes.CELL_VALUE,
+                    f"`{name}` holds `{value}`, but {key.expected} is expected",
+                    origin,
                 )
             elif value in out:
                 self.d.error(
                     codes.CELL_VALUE,
-                    f"`{key}` names `{value}` twice",
+                    f"`{name}` names `{value}` twice",
                     origin,
                     hint="remove one of them",
                 )
@@ -159,25 +158,42 @@ class Tables:
         return list(out.items())
 
     def number(
-        self,
-        table: Mapping[str, Any],
-        path: KeyPath,
-        key: str,
-        default: float,
-        *,
-        above: float | None = None,
-        required: bool = False,
+        self, table: Mapping[str, Any], path: KeyPath, key: Key, default: float = 0.0
     ) -> float:
-        """A finite number, not negative; or above a bound."""
-        words = "a number of seconds" if key.endswith("_s") else "a number"
-        value = self.get(table, path, key, (int, float), words, default, required=required)
-        bound = 0.0 if above is None else above
-        if math.isfinite(value) and (value > bound if above is not None else value >= bound):
+        """A finite number within the bounds of its key; the default where there is none, or another one."""
+        value = self.get(table, path, key, default)
+        if key.within(value):
             return float(value)
-        least = "above zero" if above is not None else "zero or more"
+        least = "above zero" if key.above else "zero or more"
+        most = f", at most {key.high:.10g}" if math.isfinite(key.high) else ""
         self.d.error(
             codes.CELL_VALUE,
-            f"`{key}` is {value}, but must be {least}, and finite",
-            self.at(*path, key),
+            f"`{key.name}` is {value}, but must be {least}{most}, and finite",
+            self.at(*path, key.name),
         )
-        return default
+        return default if key.default is None else float(cast(float, key.default))
+
+
+_TYPES: dict[str, type | tuple[type, ...]] = {
+    "text": str,
+    "whole": int,
+    "number": (int, float),
+    "flag": bool,
+    "texts": list,
+    "table": dict,
+    "tables": list,
+    "named": dict,
+    "entries": dict,
+}
+
+
+def _any_of(key: Key) -> str:
+    """The words that are expected, as messages have them."""
+    return " or ".join(f"`{word}`" for word in key.words)
+
+
+def _section(name: str) -> Key:
+    """A section as a key of the file, with what is expected of it."""
+    found = FILE[name]
+    words = f"an array of tables `[[{name}]]`" if found.kind == "tables" else "a table"
+    return replace(found, expected=words)

@@ -23,6 +23,7 @@ import pn2code
 from pn2code.cli.options import Exit
 
 VERBS = {
+    "init": "Make a folder with a cell that runs at once, to begin with.",
     "check": "Check the syntax, types, bindings and hierarchy of a net, and the cell beside it.",
     "marking": "Print the initial marking of each place in the form of CPN Tools.",
     "enabled": "Print the binding elements that are enabled in the initial marking.",
@@ -37,6 +38,7 @@ VERBS = {
     "draw": "Draw the pages of a net. Elements with errors are red.",
     "convert": "Convert a net to PNML or to a Promela model for SPIN, or a PNML net to a net of CPN Tools.",
     "contest": "Answer an examination of the Model Checking Contest, in its own words.",
+    "cell": "Print what a cell.toml may say: all sections and keys, or a JSON Schema of them.",
     "dump": "Print the net as it is after a stage of the pipeline.",
     "explain": "Explain a diagnostic code.",
 }

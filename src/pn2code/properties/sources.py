@@ -11,6 +11,7 @@ from typing import Any
 
 from pn2code.cell.config import CellConfig
 from pn2code.cell.toml_file import Locator, read
+from pn2code.cell_file.logic import PROPERTY
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.ml.elaborate import Elaborator
@@ -21,8 +22,8 @@ from pn2code.properties.meaning import Properties
 
 ENDING = ".properties.toml"
 """A file of properties beside `net.cpn` is called `net.properties.toml`."""
-_KEYS = ("name", "says", "holds", "expect", "fair", "about")
-_SUBJECTS = ("cell", "net")
+_KEYS = tuple(key.name for key in PROPERTY)
+_SUBJECTS = PROPERTY["about"].words
 
 
 def beside(net: Path) -> Path:

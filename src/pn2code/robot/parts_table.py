@@ -14,6 +14,7 @@ import re
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
+from pn2code.cell_file.geometry import PART, POSE
 from pn2code.robot import codes
 from pn2code.robot.commands import Pose
 from pn2code.robot.scene_objects import SceneObject, read_shape
@@ -43,14 +44,13 @@ class PartKind:
 def read_kinds(t: Table, folder: Path) -> dict[str, PartKind]:
     """The kinds of parts, by name; what is wrong is reported."""
     out = {}
-    for name in t.data:
-        table = t.table(name)
+    for name, table in t.named(PART):
         _check_name(t, name)
         shape = read_shape(table, name, NO_POSE, folder)
         at = tuple(map(read_own_pose, table.tables("at")))
         grips = tuple(map(read_own_pose, table.tables("grips")))
-        tolerance = table.positive("grip_tolerance", 0.005)
-        angle = math.radians(table.positive("grip_angle_deg", 5.0, high=180.0))
+        tolerance = table.number("grip_tolerance")
+        angle = math.radians(table.number("grip_angle_deg"))
         if shape is not None:
             table.done()
             out[name] = PartKind(name, shape, at, grips, tolerance, angle)
@@ -60,9 +60,9 @@ def read_kinds(t: Table, folder: Path) -> dict[str, PartKind]:
 def read_places(t: Table) -> dict[str, Pose]:
     """The poses that have a name, in the world."""
     out = {}
-    for name in t.data:
+    for name, table in t.named(POSE):
         _check_name(t, name)
-        out[name] = read_own_pose(t.table(name))
+        out[name] = read_own_pose(table)
     return out
 
 

@@ -15,11 +15,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from pn2code.cell_file.geometry import MOTION, ROBOT, SCENE
+from pn2code.cell_file.keys import Section
 from pn2code.diagnostics import Diagnostics
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes
 from pn2code.robot.kinematics import BRANCH_NAMES, Kinematics
-from pn2code.robot.model import AXES, find_arm, find_tool
+from pn2code.robot.model import find_arm, find_tool
 from pn2code.robot.parts_table import PartKind, read_kinds, read_places
 from pn2code.robot.robot_cell import (
     PART_CONTACT,
@@ -51,54 +53,48 @@ def load(
         partial: robots of which nothing is said are left out; without, it is an error.
     """
     before = len(d.errors)
-    motion = _motion(Table(geometry.get("motion", {}), ("motion",), at, d, geometry))
+
+    def table(name: str, keys: Section | None) -> Table:
+        return Table(geometry.get(name, {}), (name,), at, d, geometry, keys)
+
+    motion = _motion(table("motion", MOTION))
     robots = tuple(
         robot
-        for name, table in geometry.get("robots", {}).items()
-        if (table or not partial)
-        and (robot := _robot(Table(table, ("robots", name), at, d, geometry), name, folder))
-        is not None
+        for name, robot_table in table("robots", None).named(ROBOT)
+        if (robot_table.data or not partial)
+        and (robot := _robot(robot_table, name, folder)) is not None
     )
     names = tuple(geometry.get("robots", {}))
-    kinds = read_kinds(Table(geometry.get("parts", {}), ("parts",), at, d, geometry), folder)
-    places = read_places(Table(geometry.get("places", {}), ("places",), at, d, geometry))
-    scene = _scene(
-        Table(geometry.get("scene", {}), ("scene",), at, d, geometry),
-        robots,
-        names,
-        kinds,
-        folder,
-    )
+    kinds = read_kinds(table("parts", None), folder)
+    places = read_places(table("places", None))
+    scene = _scene(table("scene", SCENE), robots, names, kinds, folder)
     return RobotCell(robots, motion, scene, kinds, places) if len(d.errors) == before else None
 
 
 def _motion(t: Table) -> MotionConfig:
     out = MotionConfig(
-        joint_speed=t.positive("joint_speed", 0.5, high=1.0),
-        joint_acceleration=math.radians(t.positive("joint_acceleration_deg_s2", 200.0)),
-        joint_jerk=math.radians(t.positive("joint_jerk_deg_s3", 1000.0)),
-        linear_speed=t.positive("linear_speed", 0.05),
-        linear_acceleration=t.positive("linear_acceleration", 0.5),
-        linear_jerk=t.positive("linear_jerk", 5.0),
-        angular_speed=math.radians(t.positive("angular_speed_deg_s", 30.0)),
-        measure_duration=t.number("measure_s", 1.0, low=0.0),
-        sample=t.positive("sample_s", 0.02, high=1.0),
+        joint_speed=t.number("joint_speed"),
+        joint_acceleration=math.radians(t.number("joint_acceleration_deg_s2")),
+        joint_jerk=math.radians(t.number("joint_jerk_deg_s3")),
+        linear_speed=t.number("linear_speed"),
+        linear_acceleration=t.number("linear_acceleration"),
+        linear_jerk=t.number("linear_jerk"),
+        angular_speed=math.radians(t.number("angular_speed_deg_s")),
+        measure_duration=t.number("measure_s"),
+        sample=t.number("sample_s"),
     )
     t.done()
     return out
 
 
 def _robot(t: Table, name: str, folder: Path) -> CellRobot | None:
-    t.has("instance", False, "")  # the pages of the net are not our business
-    model = t.text("model", None, "the name of a robot model, or a .urdf file")
+    model = t.text("model")
     arm = find_arm(model, folder, t.at("model"), t.d) if model else None
-    tool_name = t.text("tool", "none", "the name of an end effector, or a .urdf file")
+    tool_name = t.text("tool")
     tool = None if tool_name == "none" else find_tool(tool_name, folder, t.at("tool"), t.d)
-    base = read_pose(t, "base", required=True)
-    home_deg = t.numbers("home", AXES, (0.0, -90.0, 90.0, 0.0, 0.0, 0.0))
-    branch_name = t.text("branch", "any")
-    if branch_name != "any" and branch_name not in BRANCH_NAMES:
-        t.wrong("branch", f"one of {', '.join(BRANCH_NAMES)}")
+    base = read_pose(t, "base")
+    home_deg = t.numbers("home")
+    branch_name = t.text("branch")
     t.done()
     if arm is None or (tool is None and tool_name != "none"):
         return None
@@ -125,8 +121,8 @@ def _scene(
     kinds: Mapping[str, PartKind],
     folder: Path,
 ) -> SceneConfig:
-    panel = _panel(t.table("panel")) if t.has("panel", False, "") else None
-    depth = t.number("tool_contact_depth", 0.0, low=0.0)
+    panel = _panel(t.table("panel")) if t.has("panel") else None
+    depth = t.number("tool_contact_depth")
     contacts = _default_contacts(robots, depth) if depth > 0.0 else []
     objects = tuple(o for e in t.tables("objects") if (o := read_object(e, folder)) is not None)
     contacts += _gripping(robots, kinds, objects)
@@ -137,9 +133,9 @@ def _scene(
     out = SceneConfig(
         panel=panel,
         objects=objects,
-        floor=t.flag("floor", True),
+        floor=t.flag("floor"),
         contacts=tuple(contacts),
-        warning_clearance=t.number("warning_clearance", 0.02, low=0.0),
+        warning_clearance=t.number("warning_clearance"),
     )
     t.done()
     return out
@@ -147,7 +143,7 @@ def _scene(
 
 def _contact(t: Table, things: list[str]) -> ContactRule:
     """A rule for parts of things that are there."""
-    rule = ContactRule(t.text("a"), t.text("b"), t.number("depth", 0.0, low=0.0))
+    rule = ContactRule(t.text("a"), t.text("b"), t.number("depth"))
     t.done()
     for key, name in (("a", rule.a), ("b", rule.b)):
         thing = name.split("/")[0]
@@ -195,22 +191,22 @@ def _gripping(
 
 def _panel(t: Table) -> PanelConfig:
     out = PanelConfig(
-        radius=t.positive("radius"),
+        radius=t.number("radius"),
         axis_y=t.number("axis_y"),
         axis_z=t.number("axis_z"),
         x_from=t.number("x_from"),
         x_to=t.number("x_to"),
-        arc_from=math.radians(t.number("arc_from", None, low=-180.0, high=180.0)),
-        arc_to=math.radians(t.number("arc_to", None, low=-180.0, high=180.0)),
-        facing=math.radians(t.number("facing", 0.0)),
-        skin=t.positive("skin", 0.003),
-        ribs=t.numbers("ribs", None, ()),
-        rib_height=t.positive("rib_height", 0.07),
-        rib_thickness=t.positive("rib_thickness", 0.006),
-        stringer_pitch=math.radians(t.number("stringer_pitch", 0.0, low=0.0, high=90.0)),
-        stringer_height=t.positive("stringer_height", 0.025),
-        stands=t.flag("stands", True),
-        joint=t.flag("joint", False),
+        arc_from=math.radians(t.number("arc_from")),
+        arc_to=math.radians(t.number("arc_to")),
+        facing=math.radians(t.number("facing")),
+        skin=t.number("skin"),
+        ribs=t.numbers("ribs"),
+        rib_height=t.number("rib_height"),
+        rib_thickness=t.number("rib_thickness"),
+        stringer_pitch=math.radians(t.number("stringer_pitch")),
+        stringer_height=t.number("stringer_height"),
+        stands=t.flag("stands"),
+        joint=t.flag("joint"),
     )
     t.done()
     for low, high in (("x_from", "x_to"), ("arc_from", "arc_to")):

@@ -37,13 +37,8 @@ class SceneObject:
 
 def read_colour(t: Table) -> Colour:
     """Red, green, blue, and how opaque."""
-    grey = (0.6, 0.6, 0.62)
-    found = t.numbers("colour", None, grey)
-    if len(found) not in (3, 4) or not all(0.0 <= v <= 1.0 for v in found):
-        t.wrong("colour", "a list of three or four numbers from 0 to 1")
-        found = grey
-    r, g, b = found[:3]
-    return (r, g, b, found[3] if len(found) == 4 else 1.0)
+    r, g, b, *opaque = t.numbers("colour")
+    return (r, g, b, opaque[0] if opaque else 1.0)
 
 
 def read_object(t: Table, folder: Path) -> SceneObject | None:
@@ -57,24 +52,17 @@ def read_object(t: Table, folder: Path) -> SceneObject | None:
 
 def read_shape(t: Table, name: str, pose: Pose, folder: Path) -> SceneObject | None:
     """What a table says of shape and colour; None if its kind is unknown, which is reported."""
-    kind = t.text("kind", "box", "`box`, `cylinder` or `mesh`")
+    kind = t.text("kind")
+    if kind != t.data.get("kind", kind):
+        return None  # what else there may be is not known
     colour = read_colour(t)
-    out: SceneObject | None = None
     if kind == "box":
-        t.has("size", True, "three numbers: full lengths, m")
-        x, y, z = t.numbers("size", 3, (1.0, 1.0, 1.0))
-        if min(x, y, z) <= 0.0:
-            t.wrong("size", "three numbers above 0")
-        out = SceneObject(name, "box", pose, colour, size=(x, y, z))
-    elif kind == "cylinder":
-        radius, length = t.positive("radius"), t.positive("length")
-        out = SceneObject(name, "cylinder", pose, colour, radius=radius, length=length)
-    elif kind == "mesh":
-        file = folder / t.text("file", None, "an OBJ or STL file, relative to cell.toml")
-        if "file" in t.data and not (file.is_file() and file.suffix.lower() in (".obj", ".stl")):
-            t.wrong("file", "the path of an OBJ or STL file that exists")
-        scale = t.positive("scale", 1.0)
-        out = SceneObject(name, "mesh", pose, colour, mesh=file, scale=scale)
-    else:
-        t.wrong("kind", "`box`, `cylinder` or `mesh`")
-    return out
+        x, y, z = t.numbers("size")
+        return SceneObject(name, "box", pose, colour, size=(x, y, z))
+    if kind == "cylinder":
+        radius, length = t.number("radius"), t.number("length")
+        return SceneObject(name, "cylinder", pose, colour, radius=radius, length=length)
+    file = folder / t.text("file")
+    if "file" in t.data and not (file.is_file() and file.suffix.lower() in (".obj", ".stl")):
+        t.wrong("file", "the path of an OBJ or STL file that exists")
+    return SceneObject(name, "mesh", pose, colour, mesh=file, scale=t.number("scale"))

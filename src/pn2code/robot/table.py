@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, cast
 
+from pn2code.cell_file.keys import Key, Section
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.keys import in_words
 from pn2code.diagnostics.suggestions import did_you_mean
@@ -26,13 +27,20 @@ class Table:
         at: gives the origin of a key.
         d: where errors go.
         whole: the whole file, to say in words which table it is.
+        keys: what there may be in it; None: tables with names that are chosen, or nothing that is asked for by name.
     """
 
     def __init__(
-        self, data: Any, path: tuple[str | int, ...], at: Locate, d: Diagnostics, whole: object
+        self,
+        data: Any,
+        path: tuple[str | int, ...],
+        at: Locate,
+        d: Diagnostics,
+        whole: object,
+        keys: Section | None,
     ) -> None:
         self.path, self._at, self.d, self._whole = path, at, d, whole
-        self._used: list[str] = []
+        self._keys = keys
         self.data: Mapping[str, Any] = data if isinstance(data, Mapping) else {}
         if not isinstance(data, Mapping):
             d.error(codes.ROBOT_VALUE, f"{self._words()} must be a table", at(*path))
@@ -53,110 +61,133 @@ class Table:
             hint=hint,
         )
 
-    def has(self, key: str, required: bool, expected: str) -> bool:
-        """Whether there is a key, which is known then; without a required one there is an error."""
-        self._used.append(key)
-        if key not in self.data and required:
+    @property
+    def _word(self) -> str:
+        """That of the key which decides what others there are; "" where there is none."""
+        if self._keys is None or not self._keys.by:
+            return ""
+        return str(self.data.get(self._keys.by, self._keys[self._keys.by].default))
+
+    def _key(self, name: str) -> Key:
+        assert self._keys is not None, "tables with chosen names have no keys"
+        return self._keys.key(name, self._word)
+
+    def has(self, name: str) -> bool:
+        """Whether there is a key; without a required one there is an error."""
+        key = self._key(name)
+        if name not in self.data and key.required:
             self.d.error(
                 codes.ROBOT_KEY,
-                f"{self._words(key)} is missing",
+                f"{self._words(name)} is missing",
                 self.at(),
-                hint=f"add `{key} = ...`: {expected}",
+                hint=f"add `{name} = ...`: {key.expected or _expected(key)}",
             )
-        return key in self.data
+        return name in self.data
 
-    def number(
-        self,
-        key: str,
-        default: float | None = None,
-        *,
-        low: float = -math.inf,
-        high: float = math.inf,
-        open_low: bool = False,
-    ) -> float:
-        """A finite number from `low` (above it, if `open_low`) to `high`; required without a default.
-
-        Lengths are in m and angles in degrees, as in the file.
-        """
-        bounds = f" {'above' if open_low else 'from'} {low:g}" if low > -math.inf else ""
-        bounds += f" to {high:g}" if high < math.inf else ""
-        expected = f"a number{bounds}"
-        fallback = 1.0 if default is None else default
-        if not self.has(key, default is None, expected):
+    def number(self, name: str) -> float:
+        """A finite number within its bounds; lengths are in m and angles in degrees, as in the file."""
+        key = self._key(name)
+        fallback = 1.0 if key.default is None else float(cast(float, key.default))
+        if not self.has(name):
             return fallback
-        value = self.data[key]
-        if not is_number(value) or not (low < value if open_low else low <= value) or value > high:
-            self.wrong(key, expected)
+        value = self.data[name]
+        if not is_number(value) or not key.within(value):
+            self.wrong(name, _expected(key))
             return fallback
         return float(value)
 
-    def positive(self, key: str, default: float | None = None, *, high: float = math.inf) -> float:
-        """A number above 0."""
-        return self.number(key, default, low=0.0, high=high, open_low=True)
-
-    def numbers(self, key: str, count: int | None, default: tuple[float, ...]) -> tuple[float, ...]:
-        """A list of `count` finite numbers; None: of any length."""
-        expected = "a list of numbers" if count is None else f"a list of {count} numbers"
-        if not self.has(key, False, expected):
+    def numbers(self, name: str) -> tuple[float, ...]:
+        """A list of finite numbers, as many as its key says; the default where there is none."""
+        key = self._key(name)
+        default = cast(
+            tuple[float, ...], key.default or tuple(1.0 for _ in range(min(key.counts or (0,))))
+        )
+        if not self.has(name):
             return default
-        value = self.data[key]
+        value = self.data[name]
         if (
             not isinstance(value, list)
             or not all(map(is_number, value))
-            or len(value) != (len(value) if count is None else count)
+            or (key.counts and len(value) not in key.counts)
+            or not all(map(key.within, value))
         ):
-            self.wrong(key, expected)
+            self.wrong(name, _expected(key))
             return default
         return tuple(map(float, value))
 
-    def text(self, key: str, default: str | None = None, expected: str = "a name") -> str:
-        """A text that is not empty; required without a default, and "" after an error."""
-        if not self.has(key, default is None, expected):
-            return default or ""
-        value = self.data[key]
-        if not isinstance(value, str) or not value:
-            self.wrong(key, expected)
-            return default or ""
+    def text(self, name: str) -> str:
+        """A text that is not empty, one of the words of its key; the default or "" where there is none."""
+        key = self._key(name)
+        default = str(key.default or "")
+        if not self.has(name):
+            return default
+        value = self.data[name]
+        if not isinstance(value, str) or not value or (key.words and value not in key.words):
+            self.wrong(name, key.expected or _expected(key))
+            return default
         return value
 
-    def flag(self, key: str, default: bool) -> bool:
+    def flag(self, name: str) -> bool:
         """A truth value."""
-        if not self.has(key, False, "true or false"):
+        default = bool(self._key(name).default)
+        if not self.has(name):
             return default
-        if not isinstance(self.data[key], bool):
-            self.wrong(key, "`true` or `false`")
+        if not isinstance(self.data[name], bool):
+            self.wrong(name, "`true` or `false`")
             return default
-        return bool(self.data[key])
+        return bool(self.data[name])
 
-    def table(self, key: str) -> Table:
+    def table(self, name: str) -> Table:
         """A table within this one; KeyError if it is not there."""
-        self._used.append(key)
-        return Table(self.data[key], (*self.path, key), self._at, self.d, self._whole)
+        return self._inner(self.data[name], (name,), self._key(name).inner)
 
-    def tables(self, key: str) -> list[Table]:
+    def named(self, inner: Section) -> list[tuple[str, Table]]:
+        """The tables within this one, each with its name."""
+        return [(name, self._inner(self.data[name], (name,), inner)) for name in self.data]
+
+    def tables(self, name: str) -> list[Table]:
         """The tables of a list; none if it is not there."""
-        self._used.append(key)
-        value = self.data.get(key, [])
+        inner = self._key(name).inner
+        value = self.data.get(name, [])
         if not isinstance(value, list):
-            self.wrong(key, "a list of tables")
+            self.wrong(name, "a list of tables")
             return []
-        return [
-            Table(v, (*self.path, key, i), self._at, self.d, self._whole)
-            for i, v in enumerate(value)
-        ]
+        return [self._inner(v, (name, i), inner) for i, v in enumerate(value)]
+
+    def _inner(self, data: Any, path: tuple[str | int, ...], keys: Section | None) -> Table:
+        return Table(data, (*self.path, *path), self._at, self.d, self._whole, keys)
 
     def done(self) -> None:
-        """Report the keys that nobody has asked for."""
+        """Report the keys that there may not be."""
+        assert self._keys is not None, "tables with chosen names have no keys"
+        known = self._keys.names(self._word)
         for key in self.data:
-            if key not in self._used:
+            if key not in known:
                 self.d.error(
                     codes.ROBOT_KEY,
                     f"unknown key `{key}` in {self._words()}",
                     self.at(key),
-                    hint=did_you_mean(
-                        key, self._used, f"known keys: {', '.join(sorted(set(self._used)))}"
-                    ),
+                    hint=did_you_mean(key, known, f"known keys: {', '.join(sorted(known))}"),
                 )
+
+
+def _expected(key: Key) -> str:
+    """What the value of a key may be, in words."""
+    if key.words:
+        return f"one of {', '.join(key.words)}"
+    if key.kind == "numbers":
+        count = " or ".join(_COUNTS[n] for n in key.counts)
+        bounds = _bounds(key)
+        return f"a list of {count} numbers{bounds}" if count else f"a list of numbers{bounds}"
+    return f"a number{_bounds(key)}" if key.kind == "number" else "a name"
+
+
+_COUNTS = {3: "three", 4: "four", 6: "6"}
+
+
+def _bounds(key: Key) -> str:
+    low = f" {'above' if key.above else 'from'} {key.low:g}" if key.low > -math.inf else ""
+    return low + (f" to {key.high:g}" if key.high < math.inf else "")
 
 
 def is_number(value: object) -> bool:

@@ -124,7 +124,7 @@ def put(*path: str, value: object) -> Callable[[dict[str, Any]], None]:
     ("change", "message"),
     [
         (put("parts", "box", "kind", value="ball"), "`parts.box.kind` is `ball`"),
-        (put("parts", "box", "size", value=[1, 2]), "a list of 3 numbers"),
+        (put("parts", "box", "size", value=[1, 2]), "a list of three numbers"),
         (put("parts", "box", "grip_tolerance", value=0), "a number above 0"),
         (put("parts", "box", "grip_angle_deg", value=200), "a number above 0 to 180"),
         (put("parts", "box", "weight", value=1), "unknown key `weight`"),

@@ -81,7 +81,7 @@ MISTAKES = [
         "robot-value",
         "HOME of `robot1` puts axis 2 at -150 degrees, outside -140 .. -5",
     ),
-    (put("robots", "robot1", "branch", value="up"), "robot-value", "one of front/up/plus"),
+    (put("robots", "robot1", "branch", value="up"), "robot-value", "one of any, front/up/plus"),
     (
         put("robots", "robot1", "base", "x", value="6"),
         "robot-value",

@@ -1,0 +1,414 @@
+"""The sections on which a run depends: arms, motion, scene, parts. Lengths are in m, angles in degrees."""
+
+from __future__ import annotations
+
+from pn2code.cell_file.keys import Key, Section
+
+_DEGREES = "degrees"
+POSE = Section(
+    tuple(
+        Key(name, "number", meaning, default=0.0, unit=unit)
+        for name, meaning, unit in (
+            ("x", "Position along x.", "m"),
+            ("y", "Position along y.", "m"),
+            ("z", "Position along z.", "m"),
+            ("roll", "Rotation about x, the first of three about fixed axes.", _DEGREES),
+            ("pitch", "Rotation about y, the second.", _DEGREES),
+            ("yaw", "Rotation about z, the third.", _DEGREES),
+        )
+    )
+)
+_POSE = "a table { x, y, z, roll, pitch, yaw }: m, degrees"
+BRANCHES = tuple(
+    f"{s}/{e}/{w}" for s in ("front", "back") for e in ("up", "down") for w in ("plus", "minus")
+)
+ROBOT = Section(
+    (
+        Key(
+            "instance",
+            "text",
+            "The substitution transition whose page instance is this robot's program.",
+            "a substitution transition",
+            required=True,
+        ),
+        Key(
+            "model",
+            "text",
+            "A robot that comes with pn2code, or a `.urdf` file ([robots.md](robots.md)). A run needs it.",
+            "the name of a robot model, or a .urdf file",
+            required="together",
+        ),
+        Key(
+            "tool",
+            "text",
+            'An end effector that comes with pn2code, a `.urdf` file, or `"none"`.',
+            "the name of an end effector, or a .urdf file",
+            default="none",
+        ),
+        Key(
+            "base",
+            "table",
+            "Where its base is in the world. A run needs it.",
+            _POSE,
+            required="together",
+            inner=POSE,
+        ),
+        Key(
+            "home",
+            "numbers",
+            "Its joint angles at HOME.",
+            default=(0.0, -90.0, 90.0, 0.0, 0.0, 0.0),
+            unit=_DEGREES,
+            counts=(6,),
+        ),
+        Key(
+            "branch",
+            "text",
+            "The only branch in which joint moves end: shoulder, elbow, sign of axis 5; `any`: the one that is reached "
+            "first.",
+            default="any",
+            words=("any", *BRANCHES),
+        ),
+    )
+)
+MOTION = Section(
+    (
+        Key(
+            "joint_speed",
+            "number",
+            "Fraction of the axis speeds for joint moves.",
+            default=0.5,
+            low=0.0,
+            above=True,
+            high=1.0,
+        ),
+        Key(
+            "joint_acceleration_deg_s2",
+            "number",
+            "Acceleration of every axis.",
+            default=200.0,
+            unit="degrees/s²",
+            low=0.0,
+            above=True,
+        ),
+        Key(
+            "joint_jerk_deg_s3",
+            "number",
+            "Jerk of every axis.",
+            default=1000.0,
+            unit="degrees/s³",
+            low=0.0,
+            above=True,
+        ),
+        Key(
+            "linear_speed",
+            "number",
+            "Speed of the TCP on linear moves.",
+            default=0.05,
+            unit="m/s",
+            low=0.0,
+            above=True,
+        ),
+        Key(
+            "linear_acceleration",
+            "number",
+            "Acceleration of the TCP on linear moves.",
+            default=0.5,
+            unit="m/s²",
+            low=0.0,
+            above=True,
+        ),
+        Key(
+            "linear_jerk",
+            "number",
+            "Jerk of the TCP on linear moves.",
+            default=5.0,
+            unit="m/s³",
+            low=0.0,
+            above=True,
+        ),
+        Key(
+            "angular_speed_deg_s",
+            "number",
+            "Angular speed of the tool on linear moves.",
+            default=30.0,
+            unit="degrees/s",
+            low=0.0,
+            above=True,
+        ),
+        Key(
+            "measure_s",
+            "number",
+            "How long a measurement takes.",
+            default=1.0,
+            unit="s",
+            low=0.0,
+        ),
+        Key(
+            "sample_s",
+            "number",
+            "Spacing of the checks on joint moves; on lines there is one every 5 mm.",
+            default=0.02,
+            unit="s",
+            low=0.0,
+            above=True,
+            high=1.0,
+        ),
+    )
+)
+
+
+def _shape() -> tuple[Key, ...]:
+    """The keys of what has a shape."""
+    box, cylinder, mesh = ("box",), ("cylinder",), ("mesh",)
+    return (
+        Key(
+            "kind",
+            "text",
+            "Its shape.",
+            "`box`, `cylinder` or `mesh`",
+            default="box",
+            words=("box", "cylinder", "mesh"),
+        ),
+        Key(
+            "size",
+            "numbers",
+            "Full lengths.",
+            "three numbers: full lengths, m",
+            required=True,
+            unit="m",
+            counts=(3,),
+            low=0.0,
+            above=True,
+            only=box,
+        ),
+        Key(
+            "radius",
+            "number",
+            "Radius of the cylinder, which lies along z.",
+            required=True,
+            unit="m",
+            low=0.0,
+            above=True,
+            only=cylinder,
+        ),
+        Key(
+            "length",
+            "number",
+            "Length of the cylinder.",
+            required=True,
+            unit="m",
+            low=0.0,
+            above=True,
+            only=cylinder,
+        ),
+        Key(
+            "file",
+            "text",
+            "An OBJ or STL file, relative to cell.toml; its collision shape is its convex hull.",
+            "an OBJ or STL file, relative to cell.toml",
+            required=True,
+            only=mesh,
+        ),
+        Key(
+            "scale",
+            "number",
+            "Of the lengths in the file.",
+            default=1.0,
+            low=0.0,
+            above=True,
+            only=mesh,
+        ),
+        Key(
+            "colour",
+            "numbers",
+            "Red, green, blue, and how opaque; each from 0 to 1.",
+            default=(0.6, 0.6, 0.62),
+            counts=(3, 4),
+            low=0.0,
+            high=1.0,
+        ),
+    )
+
+
+PANEL = Section(
+    (
+        Key(
+            "radius",
+            "number",
+            "Of the middle of the skin, about the line (`axis_y`, `axis_z`).",
+            required=True,
+            unit="m",
+            low=0.0,
+            above=True,
+        ),
+        Key("axis_y", "number", "Where its axis is.", required=True, unit="m"),
+        Key("axis_z", "number", "Where its axis is.", required=True, unit="m"),
+        Key("x_from", "number", "Where it begins along x.", required=True, unit="m"),
+        Key("x_to", "number", "Where it ends along x, above `x_from`.", required=True, unit="m"),
+        Key(
+            "arc_from",
+            "number",
+            "Where it begins around its axis.",
+            required=True,
+            unit=_DEGREES,
+            low=-180.0,
+            high=180.0,
+        ),
+        Key(
+            "arc_to",
+            "number",
+            "Where it ends around its axis, above `arc_from`.",
+            required=True,
+            unit=_DEGREES,
+            low=-180.0,
+            high=180.0,
+        ),
+        Key(
+            "facing",
+            "number",
+            "Direction of arc angle 0, from +y towards +z.",
+            default=0.0,
+            unit=_DEGREES,
+        ),
+        Key(
+            "skin",
+            "number",
+            "Thickness of the skin.",
+            default=0.003,
+            unit="m",
+            low=0.0,
+            above=True,
+        ),
+        Key("ribs", "numbers", "Where its ribs are along x.", default=(), unit="m"),
+        Key(
+            "rib_height",
+            "number",
+            "How far ribs stand inwards.",
+            default=0.07,
+            unit="m",
+            low=0.0,
+            above=True,
+        ),
+        Key(
+            "rib_thickness",
+            "number",
+            "Thickness of ribs.",
+            default=0.006,
+            unit="m",
+            low=0.0,
+            above=True,
+        ),
+        Key(
+            "stringer_pitch",
+            "number",
+            "Arc between stringers; 0: there are none.",
+            default=0.0,
+            unit=_DEGREES,
+            low=0.0,
+            high=90.0,
+        ),
+        Key(
+            "stringer_height",
+            "number",
+            "How far stringers stand inwards.",
+            default=0.025,
+            unit="m",
+            low=0.0,
+            above=True,
+        ),
+        Key("stands", "flag", "Whether it rests on stands.", default=True),
+        Key(
+            "joint",
+            "flag",
+            "Whether two skins meet at arc angle 0, which is drawn as a line.",
+            default=False,
+        ),
+    )
+)
+OBJECT = Section(
+    (
+        Key("name", "text", "How it is called, once in a scene.", "a name", required=True),
+        Key("pose", "table", "Where it is in the world.", _POSE, inner=POSE),
+        *_shape(),
+    ),
+    by="kind",
+)
+CONTACT = Section(
+    (
+        Key(
+            "a",
+            "text",
+            "A part of a robot or of the scene, such as `robot1/link_6` or `panel/ribs`; `*` is a wildcard.",
+            "a name",
+            required=True,
+        ),
+        Key("b", "text", "Another one, which may touch it.", "a name", required=True),
+        Key("depth", "number", "How deep they may overlap.", default=0.0, unit="m", low=0.0),
+    )
+)
+SCENE = Section(
+    (
+        Key("panel", "table", "A piece of a cylindrical shell along x.", inner=PANEL),
+        Key("objects", "tables", "Things in the cell; their names must differ.", inner=OBJECT),
+        Key(
+            "floor", "flag", "Whether there is a floor, which robots must not touch.", default=True
+        ),
+        Key(
+            "tool_contact_depth",
+            "number",
+            "How deep the contact links of tools may enter `panel/skin`; they may also touch each other. 0: not at "
+            "all.",
+            default=0.0,
+            unit="m",
+            low=0.0,
+        ),
+        Key("contacts", "tables", "Further contacts that are permitted.", inner=CONTACT),
+        Key(
+            "warning_clearance",
+            "number",
+            "Clearances below this are reported.",
+            default=0.02,
+            unit="m",
+            low=0.0,
+        ),
+    )
+)
+PART = Section(
+    (
+        *_shape(),
+        Key(
+            "at",
+            "tables",
+            "Poses in the world: a part for each is there at the start.",
+            inner=POSE,
+        ),
+        Key(
+            "grips",
+            "tables",
+            "Poses of the TCP in the frame of the part in which it can be gripped; without it, with the TCP in its "
+            "middle, however turned.",
+            inner=POSE,
+        ),
+        Key(
+            "grip_tolerance",
+            "number",
+            "How far the TCP may be from there.",
+            default=0.005,
+            unit="m",
+            low=0.0,
+            above=True,
+        ),
+        Key(
+            "grip_angle_deg",
+            "number",
+            "How far it may be turned from there.",
+            default=5.0,
+            unit=_DEGREES,
+            low=0.0,
+            above=True,
+            high=180.0,
+        ),
+    ),
+    by="kind",
+)

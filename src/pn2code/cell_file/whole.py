@@ -1,0 +1,124 @@
+"""The whole file: its sections."""
+
+from __future__ import annotations
+
+from pn2code.cell_file.geometry import MOTION, PART, POSE, ROBOT, SCENE
+from pn2code.cell_file.keys import Key, Section
+from pn2code.cell_file.logic import (
+    BOUND,
+    CHANNEL,
+    DEVICE,
+    INPUT,
+    NET,
+    PRIMITIVE,
+    PROPERTY,
+    REPORT,
+    SENSOR,
+    STORED,
+    SUPERVISOR,
+    VALUE,
+)
+
+_PLACED = (
+    Key(
+        "robots",
+        "named",
+        "A robot, by its name: a letter, then letters, digits and `_`; not `supervisor`.",
+        inner=ROBOT,
+        entry="NAME",
+        is_word=True,
+    ),
+    Key("motion", "table", "How arms move.", inner=MOTION),
+    Key("scene", "table", "What is around the arms.", inner=SCENE),
+    Key(
+        "parts",
+        "named",
+        "A kind of parts that are carried; its frame is in its middle.",
+        inner=PART,
+        entry="KIND",
+        is_word=True,
+    ),
+    Key(
+        "places",
+        "named",
+        "A pose in the world with a name.",
+        inner=POSE,
+        entry="NAME",
+        is_word=True,
+    ),
+)
+PLACED = tuple(key.name for key in _PLACED)
+"""The sections that a layout can change."""
+
+
+def _in_layout(key: Key) -> Key:
+    assert key.inner is not None
+    inner = key.inner.without("instance")
+    return Key(key.name, key.kind, key.meaning, inner=inner, entry=key.entry, is_word=key.is_word)
+
+
+LAYOUT = Section(
+    (
+        Key("description", "text", "What is special about it.", "a text", default=""),
+        *map(_in_layout, _PLACED),
+    ),
+    is_partial=True,
+)
+FILE = Section(
+    (
+        Key("net", "table", "The net.", "a table", required=True, inner=NET),
+        Key(
+            "supervisor",
+            "table",
+            "The program that commands the others.",
+            "a table",
+            required=True,
+            inner=SUPERVISOR,
+        ),
+        Key("storage", "entries", "How numbers are kept.", of=STORED, entry="COLSET"),
+        Key("values", "entries", "Constants of the net.", of=VALUE, entry="NAME"),
+        Key("capacity", "entries", "How many tokens a place may hold.", of=BOUND, entry="PLACE"),
+        Key("input", "tables", "What is read when the supervisor starts.", inner=INPUT),
+        Key("channel", "tables", "The messages.", inner=CHANNEL),
+        Key(
+            "primitives",
+            "named",
+            "A function of the net that is a command of the robots.",
+            inner=PRIMITIVE,
+            entry="FUNCTION",
+        ),
+        _PLACED[0],
+        Key(
+            "devices",
+            "named",
+            "A device, by its name, as of a robot.",
+            inner=DEVICE,
+            entry="NAME",
+            is_word=True,
+        ),
+        Key(
+            "sensors",
+            "named",
+            "Who decides what the net leaves open.",
+            inner=SENSOR,
+            entry="NAME",
+            is_word=True,
+        ),
+        *_PLACED[1:],
+        Key("report", "table", "What the summary of a run contains.", inner=REPORT),
+        Key(
+            "layouts",
+            "named",
+            "What is different in a run with `--layout NAME`; the first layout is the default. The generated programs "
+            "are the same in all.",
+            inner=LAYOUT,
+            entry="NAME",
+        ),
+        Key(
+            "property",
+            "tables",
+            "What the cell must do, and must not do ([properties.md](properties.md)).",
+            inner=PROPERTY,
+        ),
+    )
+)

@@ -1,0 +1,1 @@
+"""Cells to begin with: templates, and the files of a new cell."""

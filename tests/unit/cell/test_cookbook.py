@@ -1,0 +1,103 @@
+"""docs/cookbook.md: each net is explored by the token game, and ends as it says; each table is read, by editors, too."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+import jsonschema
+import pytest
+
+from helpers.full_cell import merged, skeleton
+from helpers.netbuilder import write
+from pn2code.cell.load import load
+from pn2code.cell_file import json_schema
+from pn2code.diagnostics import Diagnostics, render
+from pn2code.division import divided
+from pn2code.net.front import examine
+from pn2code.net.front import load as load_net
+from pn2code.properties.sources import bind, from_cell
+from pn2code.robot import scene
+from pn2code.robot_scripts.translate import lower_robots
+from pn2code.semantics.evaluation.constants import compute
+from pn2code.semantics.game.graph import state_space
+from pn2code.semantics.game.token_game import Game
+
+BOOK = Path(__file__).parents[3] / "docs" / "cookbook.md"
+MOST = 500
+"""Markings of a recipe."""
+
+
+@dataclass(frozen=True)
+class Recipe:
+    title: str
+    net: str
+    toml: str
+    ends: tuple[str, ...]
+
+
+def recipes() -> list[Recipe]:
+    found = []
+    for part in re.split(r"^## \d+\. ", BOOK.read_text(), flags=re.MULTILINE)[1:]:
+        net = re.search(r"^```net\n(.*?)^```$", part, re.MULTILINE | re.DOTALL)
+        toml = re.search(r"^```toml\n(.*?)^```$", part, re.MULTILINE | re.DOTALL)
+        ends = re.search(r"^Ends in (.*)\.$", part, re.MULTILINE)
+        assert bool(net) == bool(ends), part
+        found.append(
+            Recipe(
+                part.splitlines()[0],
+                "net Recipe\n  standard\n" + "".join(f"  {x}\n" for x in net[1].splitlines()) if net else "",
+                toml[1] if toml else "",
+                tuple(re.findall(r"`(\w+)`", ends[1])) if ends else (),
+            )
+        )
+    return found
+
+
+RECIPES = recipes()
+
+
+def test_there_are_enough() -> None:
+    assert len(RECIPES) >= 20
+    assert sum(bool(r.net) for r in RECIPES) >= 12 and sum(bool(r.toml) for r in RECIPES) >= 10
+
+
+@pytest.mark.parametrize("recipe", [r for r in RECIPES if r.net], ids=lambda r: r.title)
+def test_the_net_ends_as_it_says(recipe: Recipe, tmp_path: Path) -> None:
+    d = Diagnostics()
+    net = load_net(write(recipe.net, tmp_path / "cell.cpn"), d, compute=compute)
+    assert net is not None and not d.items, render.report(d)
+    space = state_space(Game(net), max_nodes=MOST)
+    assert space.complete
+    at = {p.short: i for i, p in enumerate(net.places)}
+    marked = [{end for end in recipe.ends if space.nodes[i].places[at[end]]} for i in space.dead]
+    assert all(marked), "it ends elsewhere, too"
+    assert set().union(*marked) == set(recipe.ends), "it never ends there"
+    occurred = {arc.element.transition for arc in space.arcs}
+    assert occurred == {*range(len(net.transitions))}, "something can never happen"
+
+
+@pytest.mark.parametrize("recipe", [r for r in RECIPES if r.toml], ids=lambda r: r.title)
+def test_the_table_is_read(recipe: Recipe, tmp_path: Path) -> None:
+    """With the net it is a cell; without, what it names need not be there."""
+    text = merged(skeleton(), tomllib.loads(recipe.toml))
+    (tmp_path / "cell.toml").write_text(text)
+    assert not [*jsonschema.Draft202012Validator(json_schema.schema()).iter_errors(tomllib.loads(text))]
+    d = Diagnostics()
+    config = load(tmp_path, d)
+    assert config is not None, render.report(d)
+    assert scene.load(config.geometry, tmp_path, config.locator.origin, d, partial=True) is not None
+    properties = from_cell(config, d)
+    assert not d.items, render.report(d)
+    if recipe.net:
+        examined = examine(write(recipe.net, tmp_path / "cell.cpn"), d, compute=compute)
+        net = examined.flat
+        assert net is not None and examined.typed is not None
+        if config.channels:
+            partition = divided(net, config, d)
+            assert partition is not None, render.report(d)
+            assert lower_robots(partition, config, d) is not None, render.report(d)
+        bind(properties, net, examined.typed.elaborator, d)
+        assert not d.items, render.report(d)
