@@ -109,6 +109,15 @@ def test_few_transitions_are_compiled_once(compiled: list[bool]) -> None:
     assert compiled == [False]
 
 
+@pytest.mark.parametrize(("first", "ways"), [(100, [True]), (4, [True, False])])
+def test_few_transitions_for_those_who_expect_few_states(
+    compiled: list[bool], monkeypatch: pytest.MonkeyPatch, first: int, ways: list[bool]
+) -> None:
+    monkeypatch.setattr(programs, "FIRST_STATES", first)
+    found = explore(ring(3), {}, Limits(), Diagnostics(), ExploreOptions(quick=True))
+    assert found is not None and (found.why, found.nodes, compiled) == ("complete", 6, ways)
+
+
 def test_a_stack_that_is_full(compiled: list[bool]) -> None:
     """What needs a deep stack is tried once more with a program that needs less of it."""
     found = explored(ring(TRANSITIONS, LOOP, "down 900000000"))

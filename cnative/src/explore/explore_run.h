@@ -106,6 +106,9 @@ typedef struct ex_run {
     const uint32_t
         *owner_of; /* by transition: whose it is; priorities count among those of one owner. NULL: among all */
     struct ex_programs *programs; /* how programs choose among what is enabled; NULL: nobody chooses */
+    bool seeks_choice;            /* now it is looked whether programs ever do the first of several (`first`) */
+    _Atomic bool has_choice;      /* they do, or it is not known */
+    bool is_choiceless;           /* it has been looked in all states, and they never do: all orders are one */
     struct ex_graph *graph;       /* of explore_graph.c; NULL: none */
     bool is_seen_whole;           /* all states have been expanded, and none was taken for another one */
     bool has_arcs;                /* the graph of them has been made, with all arcs */

@@ -6,6 +6,7 @@
  * numbers, in the order of the nodes and of their arcs.
  */
 #include "explore_blocks.h"
+#include "../query/explore_query.h"
 #include "../search/explore_successors.h"
 
 #include <inttypes.h>
@@ -202,7 +203,11 @@ bool ex_graph(ex_run_t *run)
                    && (graph->dead != NULL) && ((graph->late != NULL) || !pn_net.timed)
                    && reserve_arcs(run, graph, is_whole ? run->arcs : nodes);
     ex_phase(run, "graph");
+    run->seeks_choice = is_whole && (run->queries != NULL) && run->queries->asks_orders && (run->owner_of != NULL)
+                        && (run->programs != NULL) && (pn_net.root_count == 0U);
     is_fine = is_fine && build(run, graph) && (!is_whole || (graph->nodes == nodes));
+    run->is_choiceless = is_fine && run->seeks_choice && !atomic_load(&run->has_choice);
+    run->seeks_choice = false;
     if (run->options.write_graph == NULL) {
         ex_free(&run->memory, graph->number, ex_store_slots(&run->store) * sizeof *graph->number);
         graph->number = NULL;

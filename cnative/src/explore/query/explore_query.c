@@ -456,6 +456,10 @@ static void answer(ex_queries_t *queries, ex_question_t *question)
         question->why = "reduction";
         return;
     }
+    if (question->is_of_orders && !queries->run->is_choiceless) {
+        question->why = "orders";
+        return;
+    }
     switch (question->kind) {
     case EX_ASK_LASSO:
         if (is_automaton_ready(queries, question)) {

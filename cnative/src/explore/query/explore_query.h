@@ -130,6 +130,7 @@ typedef struct ex_question {
     uint64_t low; /* of a bound */
     uint64_t high;
     ex_automaton_t *automaton;
+    bool is_of_orders; /* asked of the graph in which programs choose anything: answered where they never choose */
     _Atomic bool is_decided; /* during the exploration: a state has been seen that decides it */
     _Atomic bool is_raised;  /* by an exception, as far as is known */
     char message[EX_RAISED_SIZE];
@@ -149,6 +150,7 @@ typedef struct ex_queries {
     ex_item_t *item;
     uint32_t questions;
     ex_question_t *question;
+    bool asks_orders;      /* there are questions that are answered only where programs never choose */
     bool is_part;          /* the graph is a part of the whole one: a run in it is certain, that there is none is not */
     bool needs_enabled;    /* what is enabled in a state may decide a question */
     _Atomic uint32_t open; /* questions that no state has decided; those that no single state can decide count */

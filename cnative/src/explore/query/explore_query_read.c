@@ -34,6 +34,8 @@
  *     ? bounded-response 100
  *     ? confluence 0                  0: with a run of the documented order, 1: with one that comes to another end
  *     ? non-blocking 3                nodes of item 3 are final; `-`: none is
+ *     orders                          what is asked from here on is about all orders in which `first` transitions can
+ *                                     occur: it is answered only if in no state there is more than one to choose from
  */
 #define _POSIX_C_SOURCE 200809L /* strtok_r */
 
@@ -347,6 +349,7 @@ static bool read_question(ex_reader_t *r)
     question->kind = asking->kind;
     question->node = EX_NO_NODE;
     question->steps = -1;
+    question->is_of_orders = r->is_of_orders;
     queries->questions += 1U;
     switch (asking->kind) {
     case EX_ASK_INVARIANT:
@@ -557,6 +560,9 @@ static bool read_lines(ex_reader_t *r)
             is_fine = read_question(r);
         } else if (strcmp(r->word[0], "owner") == 0) {
             is_fine = read_owner(r);
+        } else if ((strcmp(r->word[0], "orders") == 0) && (r->words == 1U)) {
+            r->is_of_orders = true;
+            r->queries->asks_orders = true;
         } else if (strcmp(r->word[0], "first") == 0) {
             is_fine = read_group(r, EX_FIRST_BINDING);
         } else if (strcmp(r->word[0], "choose") == 0) {

@@ -15,6 +15,7 @@ typedef struct ex_reader {
     uint64_t line;
     uint64_t item_room;
     uint64_t question_room;
+    bool is_of_orders; /* the questions that follow */
     const char *word[EX_MOST_WORDS];
     uint32_t words;
     ex_automaton_t *automaton; /* being read */

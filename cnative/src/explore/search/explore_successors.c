@@ -23,6 +23,8 @@ typedef struct hunt {
     bool is_local;         /* explore_local.c is asked first; other places than packed ones may not be loaded */
     bool is_single;        /* one successor of the transition at hand is enough */
     bool is_probe;         /* it is enough that there is one */
+    bool seeks_choice;     /* it is looked whether there is more than what is taken */
+    bool is_second;        /* what is enough has been found, and there may be more */
     bool has_aged;         /* worker->marking is later than the cells of the codec */
     const bool *is_chosen; /* by transition: what the reductions look at; NULL: all */
 } hunt_t;
@@ -87,13 +89,34 @@ static bool pass_on(const hunt_t *hunt, uint32_t transition, const void *binding
                                  : hunt->sink(hunt->user, transition, binding, key);
 }
 
+static bool is_seeking(const ex_run_t *run)
+{
+    return run->seeks_choice && !atomic_load_explicit(&run->has_choice, memory_order_relaxed);
+}
+
+/* A successor that is not taken: it is seen that there is one. */
+static bool is_seen_only(hunt_t *hunt)
+{
+    if (hunt->is_second) {
+        atomic_store_explicit(&hunt->worker->run->has_choice, true, memory_order_relaxed);
+    }
+    hunt->is_found = true;
+    return hunt->is_second || hunt->is_probe;
+}
+
+/* Whether more successors of the transition are wanted after one that was taken. */
+static bool wants_more(hunt_t *hunt)
+{
+    hunt->is_second = !hunt->is_stopped && hunt->is_single && hunt->seeks_choice;
+    return !hunt->is_stopped && (!hunt->is_single || hunt->is_second);
+}
+
 static bool on_successor(void *user, uint32_t transition, const void *binding, const void *next)
 {
     hunt_t *hunt = user;
     const ex_reduction_t *reduction = hunt->worker->run->reduction;
     ex_key_t key;
-    hunt->is_found = true;
-    if (hunt->is_probe) {
+    if (is_seen_only(hunt)) {
         return false;
     }
     if (hunt->all != NULL) {
@@ -114,7 +137,7 @@ static bool on_successor(void *user, uint32_t transition, const void *binding, c
         return false;
     }
     hunt->is_stopped = !pass_on(hunt, transition, binding, &key);
-    return !hunt->is_stopped && !hunt->is_single;
+    return wants_more(hunt);
 }
 
 /* The same where nothing is reduced and the packed part of the marking is the key. */
@@ -122,13 +145,12 @@ static bool on_plain(void *user, uint32_t transition, const void *binding, const
 {
     hunt_t *hunt = user;
     ex_key_t key;
-    hunt->is_found = true;
-    if (hunt->is_probe) {
+    if (is_seen_only(hunt)) {
         return false;
     }
     ex_plain_key(hunt->worker->run->codec, next, &key);
     hunt->is_stopped = !pass_on(hunt, transition, binding, &key);
-    return !hunt->is_stopped && !hunt->is_single;
+    return wants_more(hunt);
 }
 
 /* The same where occurrences may change references: they are as before afterwards. */
@@ -197,13 +219,22 @@ static void look_ahead(const hunt_t *hunt, uint32_t k)
     }
 }
 
+/* What is looked at only to see whether there is a choice may raise an exception that nothing else comes to. */
+static void forget_error(const hunt_t *hunt)
+{
+    if (hunt->worker->cx.error != PN_OK) {
+        hunt->worker->cx.error = PN_OK;
+        atomic_store_explicit(&hunt->worker->run->has_choice, true, memory_order_relaxed);
+    }
+}
+
 /* All bindings of a transition; false when it is to go no further. */
 static bool hunt_transition(hunt_t *hunt, uint32_t t)
 {
     ex_worker_t *worker = hunt->worker;
     bool goes_on = true;
     if (hunt->is_local) {
-        if (!hunt->is_single && !hunt->is_probe && hunt_local(hunt, t, &goes_on)) {
+        if (!hunt->is_single && !hunt->is_probe && !hunt->is_second && hunt_local(hunt, t, &goes_on)) {
             return goes_on;
         }
         if (!load_places_of(worker, t)) {
@@ -218,6 +249,9 @@ static bool hunt_transition(hunt_t *hunt, uint32_t t)
         (void)transition->enumerate(&worker->cx, worker->marking, t, on_binding, hunt);
     }
     ex_arena_end(worker, mark);
+    if (hunt->is_second) {
+        forget_error(hunt);
+    }
     if (worker->cx.error != PN_OK) {
         ex_fail(worker, (int64_t)t);
         return false;
@@ -247,15 +281,35 @@ static bool hunt_choice(hunt_t *hunt, uint32_t t, uint32_t *chosen, bool *is_ena
     hunt->is_found = false;
     hunt->is_single = (group != 0U) && (programs->choice[group] == EX_FIRST_BINDING);
     hunt->is_probe = (programs != NULL) && programs->is_probe[t];
+    hunt->seeks_choice = hunt->is_single && is_seeking(hunt->worker->run);
     const bool goes_on = hunt_transition(hunt, t);
     *is_enabled = hunt->is_found;
     hunt->is_found = hunt->is_found && !hunt->is_probe;
     hunt->is_single = false;
     hunt->is_probe = false;
+    hunt->is_second = false;
     if ((group != 0U) && hunt->is_found && !programs->is_meek[t]) {
         chosen[group] = programs->kin[t] + 1U;
     }
     hunt->is_found = hunt->is_found || was_found;
+    return goes_on;
+}
+
+/* Whether a transition that is passed over, since one before it in its group has been chosen, is enabled, too. Nothing
+ * comes of it but run->has_choice. */
+static bool seek_choice(hunt_t *hunt, uint32_t t)
+{
+    const ex_programs_t *const programs = hunt->worker->run->programs;
+    if (!is_seeking(hunt->worker->run) || (programs->choice[programs->group[t]] != EX_FIRST_BINDING)) {
+        return true;
+    }
+    const bool was_found = hunt->is_found;
+    const bool was_stopped = hunt->is_stopped;
+    hunt->is_second = true;
+    const bool goes_on = hunt_transition(hunt, t);
+    hunt->is_second = false;
+    hunt->is_found = was_found;
+    hunt->is_stopped = was_stopped;
     return goes_on;
 }
 
@@ -277,8 +331,11 @@ static bool hunt_by_owner(hunt_t *hunt)
         const int32_t own = pn_net.transition[t].priority;
         const bool is_step = (programs != NULL) && programs->is_silent[t];
         bool is_enabled = false;
-        if (!is_tried(hunt, t, chosen) || (has_found[owner] && (own != priority[owner]))
-            || (is_step && has_any[owner] && (own != last[owner]))) {
+        if ((has_found[owner] && (own != priority[owner])) || (is_step && has_any[owner] && (own != last[owner]))) {
+            continue;
+        }
+        if (!is_tried(hunt, t, chosen)) {
+            goes_on = seek_choice(hunt, t);
             continue;
         }
         goes_on = hunt_choice(hunt, t, chosen, &is_enabled);

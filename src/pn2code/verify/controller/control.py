@@ -4,11 +4,11 @@
     [(c.name, c.answer) for c in control.checks]     # ("finite-response", "yes"), ...
 
 Two spaces are gone through, both of the net that `verify.controller.running` makes of a cell. In that of the *cell*
-the supervisor
-takes the first of its binding elements: there it is looked what the cell can come to, and there properties are asked.
-In that of all *orders* it takes any: there it is looked whether the order matters. Which questions are asked, and what
-the answers mean, is here; the graphs are gone through by cnative/src/explore/query/explore_control.c and
-explore_running.c. That no owner touches what is not its own is seen in the net itself.
+the supervisor takes the first of its binding elements: there it is looked what the cell can come to, and there
+properties are asked. In that of all *orders* it takes any: there it is looked whether the order matters. Where the
+supervisor never has more than one to choose from the two are one, and it is gone through once. Which questions are
+asked, and what the answers mean, is here; the graphs are gone through by cnative/src/explore/query/explore_control.c
+and explore_running.c. That no owner touches what is not its own is seen in the net itself.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ from pn2code.net.flat import ArcKind
 from pn2code.properties import meaning as m
 from pn2code.properties.questions import Questions
 from pn2code.verify.controller.control_answers import (
+    ORDERS,
     STILL,
     Keeper,
     can_more,
@@ -140,14 +141,13 @@ def _flat(marked: Callable[[int], int], messages: Sequence[Sequence[int]]) -> li
 
 def of_orders(running: Running, firings: int = MAX_FIRINGS) -> str:
     """The lines for the explorer about all orders, which `order_answers` understands."""
-    lines = [
-        *running.lines(first=False),
-        "? finite-response",
-        f"? bounded-response {firings}",
-        "? confluence 0",
-        "? confluence 1",
-    ]
-    return "".join(f"{line}\n" for line in lines)
+    return "".join(f"{line}\n" for line in running.lines(first=False)) + _asked_of_orders(firings)
+
+
+def _asked_of_orders(firings: int) -> str:
+    """`ORDERS` questions."""
+    asked = ["finite-response", f"bounded-response {firings}", "confluence 0", "confluence 1"]
+    return "".join(f"? {question}\n" for question in asked)
 
 
 def examine(
@@ -183,6 +183,9 @@ def examine(
         reductions=(Reduction.TIME,) if partition.net.timed else (),
     )
     made = Generated()
+    # To look for a choice in a state that draws random numbers would draw others.
+    is_asked_at_once = not nondeterminism.draws(running.net)
+    at_once = f"orders\n{_asked_of_orders(plan.firings)}" if is_asked_at_once else ""
     with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
         wishes = replace(
             plan.wishes,
@@ -191,7 +194,7 @@ def examine(
             traces=Path(name),
             whole=(*(c.place for c in partition.channels), *(poses.places if poses else ())),
             graph=None,
-            questions=of_cell(running, plan),
+            questions=of_cell(running, plan) + at_once,
             predicates=plan.properties.predicates,
             evidence=plan.evidence or Path(name),
             stem="cell",
@@ -226,6 +229,9 @@ def examine(
 
         told = tell(poses, found, limits.deadline)
         orders: Exploration | None = found
+        said, asked = _parted(found.answers[count:], ORDERS if is_asked_at_once else 0)
+        # Of a whole graph in which the supervisor never chooses the first question has an answer, and only of that.
+        is_choiceless = found.complete and bool(asked) and asked[0]["answer"] != "unknown"
         ruled_out = False
         if found.complete or found.why == "decided":
             moves = suspects(told, found)
@@ -234,14 +240,16 @@ def examine(
                 with suppress(NoPatternError):
                     orders = again(moves, first=False)
                     ruled_out = orders is not None and orders.seen.markings
-            if not ruled_out:
+            if is_choiceless:
+                orders = found
+            elif not ruled_out:
                 own = replace(wishes, questions=of_orders(running, plan.firings), stem="orders")
                 orders = explore(running.net, plan.storage, limits, d, own)
         if orders is None:
             return None
         keep = Keeper(plan, running)
-        asked = orders.answers if orders is not found else ()
-        said = found.answers[count:]
+        if not is_choiceless:
+            asked = orders.answers if orders is not found else ()
         doubt = ""
         if running.unsure is not None and said:
             said, last = said[:-1], said[-1]
@@ -266,6 +274,13 @@ def examine(
         premises = replace(premises, moving=not is_short(said, STILL))
         control = Control(checks, found, running, answers=found.answers[:count], closed=closed)
         return settled(replace(control, late=late, doubt=doubt, premises=premises))
+
+
+def _parted(
+    rows: Sequence[Mapping[str, Any]], last: int
+) -> tuple[Sequence[Mapping[str, Any]], Sequence[Mapping[str, Any]]]:
+    """The answers about the cell, and so many about all orders, if there are any."""
+    return (rows[: len(rows) - last], rows[len(rows) - last :]) if len(rows) >= last else (rows, ())
 
 
 def _cut(answer: Mapping[str, Any], why: str) -> Mapping[str, Any]:

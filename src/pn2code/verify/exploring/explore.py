@@ -93,7 +93,7 @@ class ExploreOptions:
             that they mention. `evidence`: a folder for the runs that show the answers.
         sizes: what the places of the compiled net hold at first; None: what their structure and initial marking say.
         generated: what an exploration of the same net with the same predicates has generated; gets what this one has.
-        quick: rather compile quickly than explore quickly.
+        quick: the space is likely to be small: it is compiled quickly, and better if it turns out to be large.
         heaps: places that need not be explored with more than `MOST_HEAPED` tokens: what is wrong has been seen then.
         covering: look for a run that shows that a place grows without bound, and end when there is one.
         pace: seconds between two tellings of progress.
@@ -187,7 +187,7 @@ def _explored(
         return wishes.interrupted() or deadline.is_over()
 
     # Most spaces of large nets are small: it does not pay to have the compiler work for long before that is known.
-    is_first = len(net.transitions) > programs.MANY and not wishes.quick
+    is_first = wishes.quick or len(net.transitions) > programs.MANY
     first: Mapping[str, Any] | None = None
     compiling = 0.0
     while True:
@@ -200,7 +200,7 @@ def _explored(
                 d,
                 wishes.predicates,
                 interrupted=interrupted,
-                quick=wishes.quick or is_first,
+                quick=is_first,
                 made=made,
             )
             program = None
@@ -218,17 +218,18 @@ def _explored(
                     return _too_late(net, limits, compiling, d)
                 return Exploration.of(net, nothing(net, limits), compiling)
             own = limits
-            is_first = is_first and made.is_quick
-            if is_first:
+            is_limited = is_first and made.is_quick
+            is_first = is_limited or (is_first and wishes.quick)
+            if is_limited:
                 most = limits.max_states or programs.FIRST_STATES
                 own = replace(limits, max_states=min(most, programs.FIRST_STATES))
             options = _options(own, chosen, sizes, wishes)
             options += ["--still"] if nondeterminism.draws(net) else []
-            telling = replace(wishes, progress=_nothing) if is_first else wishes
+            telling = replace(wishes, progress=_nothing) if is_limited else wishes
             found = _run_with_tables(net, program, options, chosen, telling, limits, d, search)
         if found is None:
             return None
-        if is_first and _is_too_much(found, own, limits):
+        if is_limited and _is_too_much(found, own, limits):
             is_first = False
             first = found if found["why"] == "states" else None
             continue
