@@ -243,7 +243,10 @@ def test_the_riveting_cell_has_its_properties(root: Path, tmp_path: Path) -> Non
 
 @pytest.mark.parametrize(
     "file",
-    ["sorting/cell.toml", "handover/cell.toml", "palletiser/cell.toml", "shared-zone/cell.toml", "timed/cell.toml", "riveting/cell.properties.toml"],
+    [
+        "sorting/cell.toml", "handover/cell.toml", "palletiser/cell.toml", "shared-zone/cell.toml",
+        "timed/cell.toml", "riveting/cell.properties.toml",
+    ],
 )  # fmt: skip
 def test_properties_are_told_in_plain_words(root: Path, file: str) -> None:
     path = root / "examples" / file

@@ -92,6 +92,13 @@ def test_a_net_elsewhere_is_checked_simulated_and_verified(
     assert "20 steps" in told
 
 
+def test_a_cell_is_begun(installed: Path, tmp_path: Path) -> None:
+    """Examples and templates are inside, too."""
+    for name in ("handover", "empty"):
+        verb(installed, tmp_path, "init", name, "--template", name)
+        assert "no errors" in verb(installed, tmp_path, "check", name)
+
+
 @pytest.mark.cc
 def test_its_state_space_is_explored(installed: Path, root: Path, tmp_path: Path) -> None:
     net = shutil.copy(root / "examples" / "philosophers" / "philosophers.cpn", tmp_path)

@@ -1,4 +1,4 @@
-"""docs/cookbook.md: each net is explored by the token game, and ends as it says; each table is read, by editors, too."""
+"""docs/cookbook.md: each net is explored by the token game, and ends as it says; each table is read."""
 
 from __future__ import annotations
 
@@ -48,7 +48,9 @@ def recipes() -> list[Recipe]:
         found.append(
             Recipe(
                 part.splitlines()[0],
-                "net Recipe\n  standard\n" + "".join(f"  {x}\n" for x in net[1].splitlines()) if net else "",
+                "net Recipe\n  standard\n" + "".join(f"  {x}\n" for x in net[1].splitlines())
+                if net
+                else "",
                 toml[1] if toml else "",
                 tuple(re.findall(r"`(\w+)`", ends[1])) if ends else (),
             )
@@ -84,7 +86,9 @@ def test_the_table_is_read(recipe: Recipe, tmp_path: Path) -> None:
     """With the net it is a cell; without, what it names need not be there."""
     text = merged(skeleton(), tomllib.loads(recipe.toml))
     (tmp_path / "cell.toml").write_text(text)
-    assert not [*jsonschema.Draft202012Validator(json_schema.schema()).iter_errors(tomllib.loads(text))]
+    assert not [
+        *jsonschema.Draft202012Validator(json_schema.schema()).iter_errors(tomllib.loads(text))
+    ]
     d = Diagnostics()
     config = load(tmp_path, d)
     assert config is not None, render.report(d)
