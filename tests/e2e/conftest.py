@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from helpers import explorations
 from helpers.compiled import DELIVERED
 from helpers.explored import SANITIZERS, Explorers
 from helpers.generated import Remembered
@@ -17,6 +18,7 @@ from pn2code.diagnostics import Diagnostics, render
 from pn2code.emission.write import write
 from pn2code.pipeline import Generated
 from pn2code.toolchain import build, programs
+from pn2code.verify.exploring import explore
 
 LARGE = ("timed",)
 """Examples with so many states, as they run, that to explore them takes longer than to compile the explorer well."""
@@ -29,6 +31,16 @@ def objects(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     folder.mkdir(exist_ok=True)
     with pytest.MonkeyPatch.context() as changed:
         changed.setattr(build, "build", Objects(build.build, folder))
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def large_explorations(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+    """A million markings are explored once for all who ask the same about them."""
+    folder = common(tmp_path_factory) / "explorations"
+    folder.mkdir(exist_ok=True)
+    with pytest.MonkeyPatch.context() as changed:
+        changed.setattr(explore, "_run", explorations.Remembered(explore._run, folder))
         yield
 
 

@@ -1,0 +1,130 @@
+"""Large explorations, done once for all tests of all workers that ask the same explorer the same.
+
+`generate` and `verify` of an example with a million markings explore the same program with the same questions. It is
+the process of the explorer that is not started a second time; all before and after it is done by each test.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from helpers.session import alone
+from pn2code.diagnostics import Diagnostics
+from pn2code.net.flat import FlatNet
+from pn2code.verify.exploring.explore import ExploreOptions
+from pn2code.verify.exploring.limits import Limits
+from pn2code.verify.exploring.meanwhile import Meanwhile
+
+Run = Callable[..., dict[str, Any] | None]
+LARGE = 100_000
+"""Markings of an exploration that is remembered. Smaller ones are done each time."""
+TABLES = ("--elements", "--dependency", "--queries")
+"""Files whose contents count."""
+WITHOUT_EFFECT = ("--memory", "--parent", "--progress-every")
+"""On an exploration that has come to its end."""
+LIMITS = ("--max-states", "--multiset-limit")
+"""Without effect where they are not reached."""
+RUNS = ("--trace-to", "--error-trace-to", "--query-trace-to")
+"""Where files are written. An exploration that has written one is not remembered."""
+OUTSIDE = ("--max-seconds", "--late-seconds", "--spill", "--write-graph", "--approximate")
+"""With one of these it is always explored."""
+
+
+class Remembered:
+    """`explore._run`, which starts no process for a large exploration that has been done before.
+
+    Args:
+        run: what is remembered.
+        folder: where it is kept, for other workers as well.
+    """
+
+    def __init__(self, run: Run, folder: Path) -> None:
+        self._run = run
+        self._folder = folder
+
+    def __call__(
+        self,
+        net: FlatNet,
+        program: Path,
+        options: Sequence[str],
+        wishes: ExploreOptions,
+        limits: Limits,
+        d: Diagnostics,
+        search: Meanwhile | None,
+    ) -> dict[str, Any] | None:
+        def explored() -> dict[str, Any] | None:
+            return self._run(net, program, options, wishes, limits, d, search)
+
+        own = search is not None or limits.memory is not None or limits.processor_seconds is not None
+        if own or any(option in OUTSIDE for option in options):
+            return explored()
+        key = key_of(program, options)
+        with alone(self._folder, key) as kept:  # whoever wants the same waits for it
+            if kept.exists():
+                known: dict[str, Any] = json.loads(kept.read_text(encoding="utf-8"))
+                return known if is_answered(known, options) else explored()
+            before = written(options)
+            found = explored()
+            if found is not None and is_worth_it(found) and written(options) == before:
+                part = kept.with_suffix(".part")  # whoever is killed leaves nothing half
+                part.write_text(json.dumps(found), encoding="utf-8")
+                part.replace(kept)
+            return found
+
+
+def key_of(program: Path, options: Sequence[str]) -> str:
+    """Of all that a complete exploration depends on; the name of a program has the digest of what it was made from."""
+    parts = [program.name]
+    passed = iter(options)
+    for option in passed:
+        if option in TABLES:
+            parts += [option, Path(next(passed)).read_text(encoding="ascii")]
+        elif option in WITHOUT_EFFECT + LIMITS + RUNS:
+            next(passed)
+        else:
+            parts.append(option)
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+
+
+def is_worth_it(found: Mapping[str, Any]) -> bool:
+    """Whether it is large, has come to its end, and left nothing out."""
+    is_whole = found["complete"] and found["error"] is None and found["nodes"] >= LARGE
+    return bool(is_whole) and all(
+        len(bound[f"{side}_multiset"]) == bound[f"{side}_colours"]
+        for bound in found["bounds"] or ()
+        for side in ("lower", "upper")
+        if bound[f"{side}_multiset"] is not None
+    )
+
+
+def is_answered(known: Mapping[str, Any], options: Sequence[str]) -> bool:
+    """Whether this exploration would not have come to a limit either."""
+    most = _limits(options)
+    colours = [
+        bound[f"{side}_colours"]
+        for bound in known["bounds"] or ()
+        for side in ("lower", "upper")
+        if bound[f"{side}_multiset"] is not None
+    ]
+    states, largest = most["--max-states"], most["--multiset-limit"]
+    return (states is None or known["nodes"] < states) and (
+        largest is None or max(colours, default=0) <= largest
+    )
+
+
+def written(options: Sequence[str]) -> set[Path]:
+    """The files of runs that are there."""
+    found: set[Path] = set()
+    for option in RUNS:
+        if option in options:
+            prefix = Path(options[options.index(option) + 1])
+            found.update(prefix.parent.glob(f"{prefix.name}*"))
+    return found
+
+
+def _limits(options: Sequence[str]) -> dict[str, int | None]:
+    return {x: int(options[options.index(x) + 1]) if x in options else None for x in LIMITS}
