@@ -33,6 +33,8 @@ export class NetView {
     /** @type {Map<number, {version: number, node: any}>} */
     this.tokenNodes = new Map();
     this.flights = new Set();
+    /** @type {Map<number, PointerEvent>} */
+    this.fingers = new Map();
     this.selectedPlace = -1;
     this.selectedTransition = -1;
     this.index();
@@ -153,16 +155,14 @@ export class NetView {
     const made = this.draw(page);
     this.over = svg("g", { class: "tokens", "font-family": this.net.style.family, "font-size": this.net.style.size });
     this.under = svg("g", { class: "flights" });
-    const [x, y, w, h] = made.view;
-    const paper = svg("rect", { class: "paper", x, y, width: w, height: h });
-    this.sheet.replaceChildren(paper, made.root, this.under, this.over);
+    this.sheet.replaceChildren(made.root, this.under, this.over);
     this.sheet.setAttribute("aria-label", `Page ${this.net.pages[page].name}`);
     this.tokenNodes.clear();
     this.flights.clear();
     this.up.disabled = !this.net.instances[instance].path.includes("/");
     this.prepare(made);
-    this.fit();
     this.tokens();
+    this.fit();
     this.light(this.lastStep, this.lastTime ?? 0);
     this.mark();
   }
@@ -208,9 +208,16 @@ export class NetView {
     if (below.length) this.pin(below[0].i);
   }
 
+  /** The whole page with its tokens; a window that has shown more of it stays as large. */
   fit() {
-    const [x, y, w, h] = this.draw(this.net.instances[this.current].page).view;
-    this.view = [x - 4, y - 4, w + 8, h + 8];
+    const made = this.draw(this.net.instances[this.current].page);
+    const over = this.over.getBBox();
+    const [x, y, w, h] = made.view;
+    const [left, top] = over.width ? [Math.min(x, over.x - 6), Math.min(y, over.y - 6)] : [x, y];
+    const right = Math.max(x + w, over.x + over.width + 6);
+    const bottom = Math.max(y + h, over.y + over.height + 6);
+    made.view = [left, top, right - left, bottom - top];
+    this.view = made.view;
     this.isFitted = true;
     this.zoomed();
   }
@@ -253,9 +260,15 @@ export class NetView {
 
   /** @param {PointerEvent} e */
   press(e) {
+    this.fingers.set(e.pointerId, e);
     const start = this.point(e);
     this.moved = false;
     const move = (/** @type {PointerEvent} */ to) => {
+      if (!this.fingers.has(to.pointerId)) return;
+      if (this.fingers.size > 1) {
+        if (to.pointerId === e.pointerId) this.pinch(to);
+        return;
+      }
       const at = this.point(to);
       if (Math.hypot(to.clientX - e.clientX, to.clientY - e.clientY) > 4) this.moved = true;
       if (!this.moved || !this.view) return;
@@ -263,12 +276,31 @@ export class NetView {
       this.isFitted = false;
       this.zoomed();
     };
-    const end = () => {
+    const end = (/** @type {PointerEvent} */ up) => {
+      if (up.pointerId !== e.pointerId) return;
+      this.fingers.delete(e.pointerId);
       removeEventListener("pointermove", move);
       removeEventListener("pointerup", end);
+      removeEventListener("pointercancel", end);
     };
     addEventListener("pointermove", move);
     addEventListener("pointerup", end);
+    addEventListener("pointercancel", end);
+  }
+
+  /**
+   * Two fingers: what is between them grows as their distance does.
+   * @param {PointerEvent} to
+   */
+  pinch(to) {
+    const other = [...this.fingers].find(([id]) => id !== to.pointerId)?.[1];
+    const before = this.fingers.get(to.pointerId);
+    this.fingers.set(to.pointerId, to);
+    this.moved = true;
+    if (!other || !before) return;
+    const gap = (/** @type {PointerEvent} */ e) => Math.max(Math.hypot(e.clientX - other.clientX, e.clientY - other.clientY), 10);
+    const middle = this.point({ clientX: (to.clientX + other.clientX) / 2, clientY: (to.clientY + other.clientY) / 2 });
+    this.zoom(gap(before) / gap(to), middle);
   }
 
   /**
@@ -278,7 +310,7 @@ export class NetView {
    * @param {{isPlaying: boolean, speed: number}} how
    */
   update(k, t, how) {
-    const came = k - this.lastStep;
+    const came = this.lastStep < 0 ? 0 : k - this.lastStep;
     this.course.seek(k);
     this.speed = how.isPlaying ? how.speed : 1;
     this.lastTime = t;

@@ -4,10 +4,13 @@
 import { upperBound } from "./course.js";
 import { colour, shorten } from "./dom.js";
 
-const LANE = 22;
 const HEAD = 20;
 const LEFT = 108;
-const CURVE = 58;
+const GAP = 8;
+const LOWEST_LANE = 20;
+const HIGHEST_LANE = 32;
+const LOWEST_CURVE = 52;
+const HIGHEST_CURVE = 150;
 const MOST_LANES = 14;
 
 /** Colour-blind safe (Okabe and Ito), one colour a kind, as in gantt.png. */
@@ -40,6 +43,8 @@ export class Timeline {
     host.append(this.canvas);
     this.from = 0;
     this.to = clock.end;
+    this.lane = LOWEST_LANE;
+    this.curve = LOWEST_CURVE;
     this.hover = null;
     /** @type {Lane[]} */
     this.lanes = run.happenings ? this.partyLanes() : this.pageLanes();
@@ -54,7 +59,17 @@ export class Timeline {
   }
 
   height() {
-    return HEAD + this.lanes.length * LANE + this.curves.length * (CURVE + 8) + 6;
+    return HEAD + this.lanes.length * LOWEST_LANE + this.curves.length * (LOWEST_CURVE + GAP) + 6;
+  }
+
+  /** Lanes and curves share the height that there is. */
+  divide() {
+    const free = Math.max(this.host.clientHeight - 4, this.height()) - HEAD - 6;
+    const lanes = Math.max(this.lanes.length, 1);
+    const wanted = this.curves.length ? (0.5 * free) / lanes : free / lanes;
+    this.lane = Math.min(Math.max(wanted, LOWEST_LANE), HIGHEST_LANE);
+    const rest = free - this.lanes.length * this.lane;
+    this.curve = Math.min(Math.max(rest / Math.max(this.curves.length, 1) - GAP, LOWEST_CURVE), HIGHEST_CURVE);
   }
 
   /** A lane for the activities, one for each party. */
@@ -200,9 +215,12 @@ export class Timeline {
    * @param {number} y
    */
   barAt(x, y) {
-    const lane = this.lanes[Math.floor((y - HEAD) / LANE)];
+    const lane = this.lanes[Math.floor((y - HEAD) / this.lane)];
     if (!lane || y < HEAD) return null;
     const t = this.time(x);
+    const inside = lane.bars.find((b) => b.start <= t && t < b.end);
+    if (inside) return inside;
+    // What takes little time is a few pixels wide at most, but can still be hit.
     const slack = ((this.to - this.from) / this.width()) * 3;
     return lane.bars.find((b) => b.start - slack <= t && t <= b.end + slack) ?? null;
   }
@@ -263,9 +281,10 @@ export class Timeline {
     c.textBaseline = "middle";
     this.ink = { text: colour("text"), faint: colour("faint"), line: colour("line"), accent: colour("accent"), bar: colour("bar") };
     this.axis(c, w, h);
-    this.lanes.forEach((lane, i) => this.lane(c, lane, HEAD + i * LANE, w));
+    this.divide();
+    this.lanes.forEach((lane, i) => this.drawLane(c, lane, HEAD + i * this.lane, w));
     this.messages(c);
-    this.curves.forEach((chart, i) => this.chart(c, chart, HEAD + this.lanes.length * LANE + 8 + i * (CURVE + 8), w));
+    this.curves.forEach((chart, i) => this.chart(c, chart, HEAD + this.lanes.length * this.lane + GAP + i * (this.curve + GAP), w));
     this.events(c, h);
     this.cursor(c, h);
   }
@@ -303,7 +322,8 @@ export class Timeline {
    * @param {number} y
    * @param {number} w
    */
-  lane(c, lane, y, w) {
+  drawLane(c, lane, y, w) {
+    const LANE = this.lane;
     c.fillStyle = this.ink?.text ?? "";
     c.textAlign = "left";
     c.fillText(shorten(lane.name, 15), 8, y + LANE / 2);
@@ -341,6 +361,7 @@ export class Timeline {
    * @param {number} y
    */
   ticks(c, lane, y) {
+    const LANE = this.lane;
     c.fillStyle = this.ink?.text ?? "";
     const first = Math.max(upperBound(lane.ticks, this.from) - 1, 0);
     const last = upperBound(lane.ticks, this.to);
@@ -356,8 +377,11 @@ export class Timeline {
 
   /** @param {CanvasRenderingContext2D} c */
   messages(c) {
+    const LANE = this.lane;
     const messages = this.run.happenings?.messages ?? [];
     c.lineWidth = 1;
+    const seen = messages.filter((/** @type {any} */ m) => m.t >= this.from && m.t <= this.to).length;
+    const isCrowded = seen > this.width() / 14;
     for (const m of messages) {
       if (m.t < this.from || m.t > this.to) continue;
       const x = Math.round(this.x(m.t)) + 0.5;
@@ -365,11 +389,12 @@ export class Timeline {
       const isNow = Math.abs(m.t - this.clock.t) < 1e-6;
       const down = b > a ? 1 : -1;
       c.strokeStyle = c.fillStyle = isNow ? (this.ink?.accent ?? "") : (this.ink?.faint ?? "");
-      c.globalAlpha = isNow ? 1 : 0.55;
+      c.globalAlpha = isNow ? 1 : isCrowded ? 0.3 : 0.6;
       c.beginPath();
       c.moveTo(x, a + down * 7);
       c.lineTo(x, b - down * 8);
       c.stroke();
+      if (isCrowded && !isNow) continue;
       c.beginPath();
       c.moveTo(x, b - down * 6);
       c.lineTo(x - 3, b - down * 11);
@@ -386,6 +411,7 @@ export class Timeline {
    * @param {number} w
    */
   chart(c, chart, y, w) {
+    const CURVE = this.curve;
     const [low, high] = [Math.log(chart.low), Math.log(chart.high)];
     const at = (/** @type {number} */ v) => y + CURVE - ((Math.log(Math.max(v, chart.low)) - low) / (high - low)) * CURVE;
     c.fillStyle = this.ink?.text ?? "";

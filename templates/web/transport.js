@@ -52,7 +52,7 @@ export class Transport {
     this.speedText = el("output", { class: "of" });
     const group = (/** @type {string} */ label, /** @type {any[]} */ ...buttons) =>
       el("span", { class: "group", role: "group", "aria-label": label }, ...buttons);
-    host.append(
+    const parts = [
       button("|◁", "To the beginning (Home)", () => clock.seek(0)),
       group("By transition", button("◁", "One transition back (←)", () => clock.step(clock.k - 1)), this.play,
         button("▷", "One transition on (→)", () => clock.step(clock.k + 1))),
@@ -63,7 +63,8 @@ export class Transport {
       this.slider,
       el("label", { class: "clock" }, this.time, this.of), this.step,
       el("label", { class: "pace" }, "Speed", this.speed, this.speedText),
-    );
+    ];
+    host.append(...parts.filter((part) => part));
     this.update();
   }
 

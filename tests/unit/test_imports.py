@@ -53,11 +53,12 @@ ALLOWED: dict[str, set[str]] = {
     "report": {"cell", "channels", "robot", "run"},
     "run": {"cell", "channels", "diagnostics", "emission", "input_files", "net", "pipeline", "report", "robot", "tdl",
         "toolchain", "trace"},
+    "replay": {"cell", "channels", "drawing", "emission", "net", "reading", "robot", "run", "semantics", "trace"},
     "verdict": {"arms", "cell", "channel_model", "channels", "diagnostics", "division", "input_files", "ml", "net",
         "pipeline", "properties", "robot", "robot_scripts", "run", "semantics", "tdl", "trace", "verify"},
     "cli": {"cell", "channels", "conform", "contest", "convert", "diagnostics", "division", "drawing", "emission",
-        "input_files", "ir", "lowering", "ml", "net", "pipeline", "reading", "report", "robot", "robot_scripts", "run",
-        "semantics", "simulate", "structure", "tdl", "trace", "unfold", "verdict", "verify"},
+        "input_files", "ir", "lowering", "ml", "net", "pipeline", "reading", "replay", "report", "robot",
+        "robot_scripts", "run", "semantics", "simulate", "structure", "tdl", "trace", "unfold", "verdict", "verify"},
     "start": {"cli"},
 }  # fmt: skip
 EVERYWHERE = {"base"}

@@ -67,7 +67,8 @@ def run(
     replay: Annotated[
         bool,
         typer.Option(
-            "--replay/--no-replay", help="Write replay.html, a page that shows the run, and run.json."
+            "--replay/--no-replay",
+            help="Write replay.html, a page that shows the run, and run.json.",
         ),
     ] = True,
     video: Annotated[bool, typer.Option("--video", help="Also record cell.mp4.")] = False,
@@ -102,8 +103,8 @@ def run(
     # PyBullet, SciPy and the like take half a second to load: only this verb needs them.
     from rich.console import Console
 
-    from pn2code.report import summary as summaries
     from pn2code.replay.motion import Motion
+    from pn2code.report import summary as summaries
     from pn2code.report.album import Album
     from pn2code.robot.backend import BackendUnavailableError
     from pn2code.run.cell import RunOptions, run_cell

@@ -114,7 +114,12 @@ def _sentence(shown: Json, text: str) -> str:
 
 
 def _described(
-    run: Path, net: Path | None, values: dict[str, str], steps: int, files: Path | None, form: Format
+    run: Path,
+    net: Path | None,
+    values: dict[str, str],
+    steps: int,
+    files: Path | None,
+    form: Format,
 ) -> Json:
     from pn2code.replay.description import NoDescription, read
 
@@ -123,7 +128,9 @@ def _described(
     try:
         return read(run)
     except NoDescription as problem:
-        _refuse(str(problem), "give the folder that `pn2code run` wrote, or a trace and its net", form)
+        _refuse(
+            str(problem), "give the folder that `pn2code run` wrote, or a trace and its net", form
+        )
 
 
 def _trace(
@@ -166,7 +173,9 @@ def _trace(
                 trace, examined.document, examined.flat, storage, most=steps, files=Files(files)
             )
     except OSError as problem:
-        _refuse(f"cannot read `{trace}`: {os_reason(problem)}", "give a file that can be read", form)
+        _refuse(
+            f"cannot read `{trace}`: {os_reason(problem)}", "give a file that can be read", form
+        )
 
 
 def _is_trace(trace: Path, form: Format) -> bool:
@@ -174,7 +183,9 @@ def _is_trace(trace: Path, form: Format) -> bool:
         with trace.open(encoding="utf-8", errors="replace") as lines:
             head = json.loads(lines.readline(10_000_000))
     except OSError as problem:
-        _refuse(f"cannot read `{trace}`: {os_reason(problem)}", "give a file that can be read", form)
+        _refuse(
+            f"cannot read `{trace}`: {os_reason(problem)}", "give a file that can be read", form
+        )
     except (ValueError, RecursionError):
         return False
     return isinstance(head, dict) and head.get("trace") == 1

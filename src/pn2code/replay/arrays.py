@@ -3,8 +3,8 @@
     packed([1, 2, 300])        # {"type": "u16", "length": 3, "deflate": "eJxj..."}
     unpacked(...)              # array([1, 2, 300], dtype=uint16)
 
-A packed array holds little-endian numbers, compressed by deflate (RFC 1950) and written in base64. Whole numbers get the
-narrowest type that holds them all, so that the size grows with what there is to say.
+A packed array holds little-endian numbers, compressed by deflate (RFC 1950) and written in base64. Whole numbers get
+the narrowest type that holds them all, so that the size grows with what there is to say.
 """
 
 from __future__ import annotations

@@ -51,7 +51,9 @@ def _order(sources: Mapping[str, str], main: str) -> list[str]:
         if name in open_:
             raise BadModule(f"modules need themselves: {' -> '.join([*open_, name])}")
         if name not in sources:
-            raise BadModule(f"{open_[-1] if open_ else 'the page'} imports {name}, which is not there")
+            raise BadModule(
+                f"{open_[-1] if open_ else 'the page'} imports {name}, which is not there"
+            )
         open_.append(name)
         for found in _IMPORT.finditer(sources[name]):
             visit(found[2])
@@ -67,7 +69,9 @@ def _wrapped(name: str, text: str, sources: Mapping[str, str]) -> str:
         names = [n.strip() for n in found[1].split(",") if n.strip()]
         missing = set(names) - set(_NAME.findall(sources[found[2]]))
         if missing:
-            raise BadModule(f"{name} imports {sorted(missing)[0]}, which {found[2]} does not export")
+            raise BadModule(
+                f"{name} imports {sorted(missing)[0]}, which {found[2]} does not export"
+            )
         return f'const {{ {", ".join(names)} }} = modules["{found[2]}"];'
 
     exported = _NAME.findall(text)

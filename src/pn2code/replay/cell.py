@@ -108,7 +108,9 @@ def _children(tree: Urdf) -> list[str]:
 def _visuals(tree: Urdf, link: str, store: Meshes) -> list[list[Any]]:
     """What is seen of a link: [mesh, frame in the link, colour, scale]."""
     colours = {
-        m.get("name"): _colour(m.find("color")) for m in tree.xml.findall("material") if m.get("name")
+        m.get("name"): _colour(m.find("color"))
+        for m in tree.xml.findall("material")
+        if m.get("name")
     }
     out = []
     for element in tree.xml.findall("link"):

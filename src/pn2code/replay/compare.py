@@ -31,7 +31,11 @@ def first_difference(a: Json, b: Json) -> Json | None:
         if one.start() == two.start():
             return None
         at = 0
-        return {"step": 0, "what": ["another initial marking", "another initial marking"], "t": [0.0, 0.0]}
+        return {
+            "step": 0,
+            "what": ["another initial marking", "another initial marking"],
+            "t": [0.0, 0.0],
+        }
     return {
         "step": at + 1,
         "what": [one.text(at), two.text(at)],
@@ -70,7 +74,9 @@ class _Steps:
 
     def time(self, step: int) -> float:
         """When; the end of the axis where the run has ended."""
-        return float(self._t[step]) if step < self.count else float(self._t[-1] if self.count else 0.0)
+        return (
+            float(self._t[step]) if step < self.count else float(self._t[-1] if self.count else 0.0)
+        )
 
     def start(self) -> Any:
         """The initial marking, by place."""
@@ -78,5 +84,9 @@ class _Steps:
         keys, tokens = course["keys"], course["tokens"]
         last = int(unpacked(keys["offset"])[1])
         place, text = unpacked(tokens["place"]), unpacked(tokens["text"])
-        rows = zip(unpacked(keys["token"])[:last].tolist(), unpacked(keys["count"])[:last].tolist(), strict=True)
+        rows = zip(
+            unpacked(keys["token"])[:last].tolist(),
+            unpacked(keys["count"])[:last].tolist(),
+            strict=True,
+        )
         return sorted((int(place[i]), self._texts[int(text[i])], n) for i, n in rows)

@@ -18,12 +18,12 @@ from typing import Any
 
 from pn2code.base.readable import readable
 from pn2code.net.flat import FlatNet
+from pn2code.replay.arrays import packed, packed_reals
 from pn2code.semantics.game.marking import BindingElement, PlaceMarking, variable_text
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.colours import TEXTS
 from pn2code.semantics.values.data import Timed, Value
 from pn2code.semantics.values.multiset import MultiSet
-from pn2code.replay.arrays import packed, packed_reals
 
 LONGEST = 4000
 """Characters of a value that are shown; the rest is cut off, and the text says so."""
@@ -78,7 +78,9 @@ class Course:
         self._clock.append(game.marking.time)
         bound = dict(occurred.values)
         for s in t.variables:
-            self._binding.append(self._value(t.index, s, bound[s]) if s in bound else self._text("?"))
+            self._binding.append(
+                self._value(t.index, s, bound[s]) if s in bound else self._text("?")
+            )
         after = game.marking.places
         for place in dict.fromkeys(a.place for a in t.arcs):
             if after[place] is not self._before[place]:
@@ -172,7 +174,9 @@ class Course:
                 value, stamp = token
                 place_of.append(place.index)
                 text_of.append(self._text(readable(TEXTS.text(place.colset, value))))
-                shown = None if stamp is None else TEXTS.token_text(place.colset, Timed(value, stamp))
+                shown = (
+                    None if stamp is None else TEXTS.token_text(place.colset, Timed(value, stamp))
+                )
                 stamp_of.append(0 if shown is None else 1 + self._text(shown.rpartition("@")[2]))
         return order, {
             "place": packed(_numbers(place_of)),

@@ -56,9 +56,9 @@ def read(path: Path) -> Json:
         raise NoDescription(f"cannot read `{file}`: {os_reason(problem)}") from None
     except (ValueError, RecursionError) as problem:
         raise NoDescription(f"`{file}` is not JSON: {problem}") from None
-    problem = problem_of(data)
-    if problem is not None:
-        raise NoDescription(f"`{file}` {problem}")
+    why = problem_of(data)
+    if why is not None:
+        raise NoDescription(f"`{file}` {why}")
     return dict(data)
 
 

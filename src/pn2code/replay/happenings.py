@@ -1,6 +1,6 @@
 """What happened in a run beside the net: who did what when, messages, curves, and moments to look at.
 
-    described = describe(record, partition, config, limit)
+described = describe(record, partition, config, limit)
 """
 
 from __future__ import annotations
@@ -32,9 +32,7 @@ def describe(record: RunRecord, partition: Partition, config: CellConfig, near: 
         "parties": [{"name": o.name, "kind": o.kind.value} for o in partition.owners],
         "owners": list(partition.transition_owner),
         "bars": _bars(record, partition),
-        "activities": [
-            {"name": a.name, "start": a.start, "end": a.end} for a in record.activities
-        ],
+        "activities": [{"name": a.name, "start": a.start, "end": a.end} for a in record.activities],
         "messages": _messages(record, partition),
         "events": _events(record),
         "curves": _curves(record, config, near),
@@ -88,9 +86,7 @@ def _events(record: RunRecord) -> list[Json]:
         match line.get("event"):
             case "sense":
                 text = f"sensor {line['sensor']}: {line['value']}"
-                rows.append(
-                    {"t": line["t"], "kind": "sense", "party": line["robot"], "text": text}
-                )
+                rows.append({"t": line["t"], "kind": "sense", "party": line["robot"], "text": text})
             case "part":
                 text = f"{line['effect']} {line['part']}"
                 rows.append({"t": line["t"], "kind": "part", "party": line["robot"], "text": text})

@@ -47,7 +47,9 @@ class Meshes:
         """A box around the origin."""
         x, y, z = (v / 2 for v in size)
         edge = min(0.004, *(v / 4 for v in (x, y, z)))
-        return self._once(("box", size), lambda: _of(block((-x, -y, -z), (x, y, z), edge, edge / 2)))
+        return self._once(
+            ("box", size), lambda: _of(block((-x, -y, -z), (x, y, z), edge, edge / 2))
+        )
 
     def cylinder(self, radius: float, length: float) -> int:
         """A cylinder along z around the origin."""

@@ -25,6 +25,7 @@ from pn2code.robot.transforms import Array
 if TYPE_CHECKING:
     from pn2code.run.engine import Engine
 
+
 @dataclass(slots=True)
 class _Path:
     t: list[float] = field(default_factory=list)

@@ -115,7 +115,9 @@ class _Instances:
         for t in net.transitions:
             self.of(t.id, t.instance_number, t.instance)
         shown = {row["page"] for row in self.rows}
-        for i, page in enumerate(document.pages):  # with nothing but notes or substitution transitions
+        for i, page in enumerate(
+            document.pages
+        ):  # with nothing but notes or substitution transitions
             if i not in shown:
                 self.rows.append({"page": i, "number": 1, "path": page.name})
 

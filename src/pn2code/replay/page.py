@@ -3,8 +3,8 @@
     page(described)                       # of one run
     page(described, other)                # two runs, side by side
 
-Nothing in a description becomes code: it travels as JSON in which `<`, `>` and `&` are escaped, the page writes texts as
-texts, and its content security policy names the hashes of the only scripts and the only style that may be used.
+Nothing in a description becomes code: it travels as JSON in which `<`, `>` and `&` are escaped, the page writes texts
+as texts, and its content security policy names the hashes of the only scripts and the only style that may be used.
 """
 
 from __future__ import annotations
@@ -27,7 +27,9 @@ NAME = "replay.html"
 _MARK = re.compile(r"\{\{(\w+)\}\}")
 
 
-def page(described: Json, other: Json | None = None, library: three.Three | str | None = None) -> str:
+def page(
+    described: Json, other: Json | None = None, library: three.Three | str | None = None
+) -> str:
     """The HTML file.
 
     Args:

@@ -1,18 +1,17 @@
 """The description of a cell that has run (`pn2code run`).
 
-    described = describe(result, motion, document)
+described = describe(result, motion, document)
 """
 
 from __future__ import annotations
 
 import json
-from typing import Any
 
+from pn2code.reading.document import Document
 from pn2code.replay import cell, happenings, net, programs
 from pn2code.replay.description import VERSION, Json, facts
 from pn2code.replay.motion import Motion
 from pn2code.replay.trace import follow
-from pn2code.reading.document import Document
 from pn2code.robot.parts import Parts
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import inverse, matrix_of
@@ -91,7 +90,7 @@ def _parts(record: RunRecord, robot_cell: RobotCell, motion: Motion) -> list[Jso
 def _marks(
     record: RunRecord, robot_cell: RobotCell, motion: Motion, count: dict[str, str]
 ) -> list[Json]:
-    """What tools leave behind: a mark where the TCP was whenever an action ended that the cell counts (`[report] count`)."""
+    """A mark where the TCP was whenever a tool action ended that the cell counts (`[report] count`)."""
     labels = {action: label for label, action in count.items()}
     arms = {r.name: r for r in robot_cell.robots}
     rows = []

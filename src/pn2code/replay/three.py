@@ -37,7 +37,9 @@ def find() -> Three | str:
     try:
         data = path.read_bytes()
     except OSError:
-        return f"three.js is not in the package {PACKAGE}: pip install --force-reinstall '{PROJECT}'"
+        return (
+            f"three.js is not in the package {PACKAGE}: pip install --force-reinstall '{PROJECT}'"
+        )
     if hashlib.sha256(data).hexdigest() != SHA256:
         return f"the package {PACKAGE} has another three.js than {VERSION}: pip install --force-reinstall '{PROJECT}'"
     return Three(data.decode("utf-8"))

@@ -1,6 +1,6 @@
 """The description of any trace: simulations, counterexamples and lassos, and runs of a cell without its geometry.
 
-    described = describe(Path("net.dead-40.trace.jsonl"), document, net, storage)
+described = describe(Path("net.dead-40.trace.jsonl"), document, net, storage)
 """
 
 from __future__ import annotations

@@ -346,7 +346,7 @@ def _step(
     by: str,
     notes: Notes | None,
 ) -> BindingElement:
-    """Repeats one occurrence, and gives it with the outputs of its code segment; raises _Wrong when that is not possible."""
+    """Repeats one occurrence, and gives it with all its outputs; raises _Wrong when that is not possible."""
     t = names.get(str(line.get("transition")))
     if t is None:
         raise _Wrong("the net has no such transition")
