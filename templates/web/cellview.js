@@ -6,6 +6,8 @@ import { colour, el } from "./dom.js";
 import { Path, frames, valueAt } from "./kinematics.js";
 import { CellScene, place } from "./scene3d.js";
 
+import { Gaps } from "./gaps.js";
+
 const THREE = /** @type {any} */ (globalThis).THREE;
 
 /** Seconds of a path that are bright behind the tool. */
@@ -76,6 +78,7 @@ export class CellView {
     this.slow = 0;
     this.mounted = -1;
     this.makePaths();
+    this.gaps = new Gaps(this.cell, this.run.cell);
     this.makeViews();
     this.theme();
     new ResizeObserver(() => this.resize()).observe(this.host);
@@ -287,6 +290,12 @@ export class CellView {
     this.moveParts(t);
     if (this.cell) this.cell.marks.count = this.run.cell.marks.filter((/** @type {any} */ m) => m.t <= t + 1e-9).length;
     if (this.mounted >= 0) this.mount();
+    const near = this.gaps?.update(t) ?? [];
+    if (near.length) {
+      const [{ pair, distance }] = near;
+      const text = `${(distance * 1000).toFixed(1)} mm between ${pair[0]} and ${pair[1]}`;
+      this.legend.append(el("span", { class: distance < this.run.cell.warningClearance ? "arm near" : "arm", text }));
+    }
     this.request();
   }
 
@@ -356,6 +365,7 @@ export class CellView {
       trail.ahead.geometry.setDrawRange(Math.max(n - 1, 0), trail.count);
       trail.material.resolution.set(w, h);
     }
+    this.gaps?.size(w, h);
     this.renderer.render(this.cell?.scene, this.camera);
     this.spare(performance.now() - start);
   }

@@ -1,4 +1,4 @@
-"""The replay page in a browser: what it shows is what the token game and the kinematics say, and everything is connected."""
+"""The replay page in a browser: it shows what token game and kinematics say, and everything is connected."""
 
 from __future__ import annotations
 

@@ -9,6 +9,7 @@ import json
 
 from pn2code.reading.document import Document
 from pn2code.replay import cell, happenings, net, programs
+from pn2code.replay.arrays import packed, packed_reals
 from pn2code.replay.description import VERSION, Json, facts
 from pn2code.replay.motion import Motion
 from pn2code.replay.trace import follow
@@ -16,7 +17,7 @@ from pn2code.robot.parts import Parts
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import inverse, matrix_of
 from pn2code.run.cell import RunResult
-from pn2code.run.record import RunRecord
+from pn2code.run.record import GAP_S, RunRecord
 
 
 def describe(result: RunResult, motion: Motion, document: Document) -> Json:
@@ -58,6 +59,7 @@ def describe(result: RunResult, motion: Motion, document: Document) -> Json:
         described["cell"] = {
             **cell.describe(robot_cell),
             "parts": _parts(record, robot_cell, motion),
+            "gaps": _gaps(record),
             "marks": _marks(record, robot_cell, motion, dict(config.report.count)),
         }
         described["motion"] = motion.described()
@@ -85,6 +87,20 @@ def _parts(record: RunRecord, robot_cell: RobotCell, motion: Motion) -> list[Jso
     return [
         {"name": name, "kind": name.split(".")[0], "states": rows} for name, rows in states.items()
     ]
+
+
+def _gaps(record: RunRecord) -> Json:
+    """What was near to what, when: the pair, the distance (m), and the nearest points of both."""
+    pairs = {(g.a, g.b): 0 for _, g in record.gaps}
+    number = {pair: i for i, pair in enumerate(pairs)}
+    return {
+        "pairs": [list(pair) for pair in pairs],
+        "lasts": GAP_S,
+        "t": packed_reals((t for t, _ in record.gaps), double=True),
+        "pair": packed(number[g.a, g.b] for _, g in record.gaps),
+        "distance": packed_reals(g.distance for _, g in record.gaps),
+        "points": packed_reals(v for _, g in record.gaps for v in (*g.point, *g.other)),
+    }
 
 
 def _marks(
