@@ -179,8 +179,8 @@ export class CellView {
 
   /** The camera rides on a robot's tool, and looks along it. */
   mount() {
-    const { robot } = this.cell?.robots[this.mounted];
-    const tcp = this.frames?.[this.mounted]?.[robot.tcp];
+    const at = this.mounted ?? -1;
+    const tcp = this.frames?.[at]?.[this.run.cell.robots[at].tcp];
     if (!tcp) return;
     const z = new THREE.Vector3(tcp[2], tcp[6], tcp[10]);
     const x = new THREE.Vector3(tcp[0], tcp[4], tcp[8]);
@@ -289,7 +289,7 @@ export class CellView {
     });
     this.moveParts(t);
     if (this.cell) this.cell.marks.count = this.run.cell.marks.filter((/** @type {any} */ m) => m.t <= t + 1e-9).length;
-    if (this.mounted >= 0) this.mount();
+    if ((this.mounted ?? -1) >= 0) this.mount();
     const near = this.gaps?.update(t) ?? [];
     if (near.length) {
       const [{ pair, distance }] = near;

@@ -21,6 +21,10 @@ export class Code {
     /** @type {Map<number, number[][]>} */
     this.elements = new Map(Object.entries(run.programs.elements).map(([t, rows]) => [Number(t), /** @type {any} */ (rows)]));
     this.isFollowing = true;
+    /** The file that is shown. */
+    this.shown = -1;
+    /** What was lit last. */
+    this.key = "";
     this.choice = el(
       "select", { "aria-label": "Program", onchange: () => { this.setFollowing(false); this.show(Number(this.choice.value)); } },
       ...this.files.map((/** @type {any} */ f, /** @type {number} */ i) => el("option", { value: i, text: f.name })),
@@ -35,7 +39,7 @@ export class Code {
     this.view = el("div", { class: "program" }, this.marks, this.numbers, this.text);
     this.text.addEventListener("click", (/** @type {MouseEvent} */ e) => {
       const line = Math.floor((e.clientY - this.text.getBoundingClientRect().top) / LINE) + 1;
-      const found = this.transitionAt(this.shown ?? -1, line);
+      const found = this.transitionAt(this.shown, line);
       if (found >= 0 && getSelection()?.isCollapsed) onTransition(found);
     });
     host.append(el("header", {}, this.choice, this.follow), this.view);

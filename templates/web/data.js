@@ -9,7 +9,7 @@ const ARRAYS = {
 
 /**
  * @param {string} text base64
- * @returns {Uint8Array}
+ * @returns {Uint8Array<ArrayBuffer>}
  */
 function bytes(text) {
   const raw = atob(text);

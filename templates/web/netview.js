@@ -227,7 +227,7 @@ export class NetView {
   }
 
   zoomed() {
-    this.sheet.setAttribute("viewBox", this.view?.map((v) => v.toFixed(2)).join(" "));
+    this.sheet.setAttribute("viewBox", this.view?.map((/** @type {number} */ v) => v.toFixed(2)).join(" "));
   }
 
   /** @param {WheelEvent} e */

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, NoReturn
 
 import typer
 
 from pn2code.base.os_reason import os_reason
+from pn2code.base.progress_line import Line
 from pn2code.base.writable import file_obstacle
 from pn2code.cli.options import (
     OUTPUT_FLAGS,
@@ -168,14 +170,34 @@ def _trace(
         stop(d, form)
     storage = config.storage if config else {}
     try:
-        with playing(form):
+        with playing(form), _Progress() as progress:
             return traces.describe(
-                trace, examined.document, examined.flat, storage, most=steps, files=Files(files)
+                trace,
+                examined.document,
+                examined.flat,
+                storage,
+                most=steps,
+                files=Files(files),
+                tell=progress.tell,
             )
     except OSError as problem:
         _refuse(
             f"cannot read `{trace}`: {os_reason(problem)}", "give a file that can be read", form
         )
+
+
+class _Progress(Line):
+    """How far the trace is: steps, how many a second, and how long it still takes."""
+
+    def __init__(self) -> None:
+        super().__init__(first="repeating the trace ...", plain=True)
+        self._began = time.monotonic()
+
+    def tell(self, steps: int, share: float) -> None:
+        """So many steps have been repeated, which is about this share of them."""
+        passed = max(time.monotonic() - self._began, 1e-9)
+        left = passed * (1.0 - share) / max(share, 1e-9)
+        self.say(f"{steps:,} steps, {steps / passed:,.0f} a second, about {left:.0f} s left")
 
 
 def _is_trace(trace: Path, form: Format) -> bool:

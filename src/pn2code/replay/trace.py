@@ -6,7 +6,7 @@ described = describe(Path("net.dead-40.trace.jsonl"), document, net, storage)
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +22,14 @@ from pn2code.trace.parties import RUN, SIMULATORS, VERIFY
 from pn2code.trace.replay import ReplayResult, replay_lines
 
 MOST_STEPS = 1_000_000
+_TOLD_STEPS = 500
+
+Tell = Callable[[int, float], None]
+"""Is told now and then how many steps have been read, and which share of the file."""
+
+
+def _nothing(steps: int, share: float) -> None:
+    return None
 
 
 def describe(
@@ -32,6 +40,7 @@ def describe(
     *,
     most: int = MOST_STEPS,
     files: Files | None = None,
+    tell: Tell = _nothing,
 ) -> Json:
     """The description of a trace file.
 
@@ -41,12 +50,13 @@ def describe(
         storage: as for `Game`.
         most: how many steps are shown; the rest is left out, and the page says so.
         files: what the net can do with files.
+        tell: how far it is.
 
     Raises:
         OSError: it cannot be read.
     """
     with trace.open(encoding="utf-8", errors="replace") as lines:
-        reader = _Lines(lines, most)
+        reader = _Lines(lines, most, max(trace.stat().st_size, 1), tell)
         by = reader.by
         counts = by in SIMULATORS or by == VERIFY or by == ""
         course, refused = follow(reader, net, storage, by_steps=counts, files=files)
@@ -121,7 +131,8 @@ class _Lines:
         is_cut: whether steps were left out.
     """
 
-    def __init__(self, lines: Iterable[str], most: int) -> None:
+    def __init__(self, lines: Iterable[str], most: int, size: int, tell: Tell) -> None:
+        self._size, self._tell = size, tell
         self._lines = iter(lines)
         self._first = next(self._lines, "")
         self._most = most
@@ -132,8 +143,9 @@ class _Lines:
 
     def __iter__(self) -> Iterator[str]:
         yield self._first
-        steps = 0
+        steps, read = 0, len(self._first)
         for text in self._lines:
+            read += len(text)
             if '"event"' in text:
                 line = _object(text)
                 self._note(line)
@@ -143,6 +155,8 @@ class _Lines:
                     continue
             elif text.strip():
                 steps += 1
+                if steps % _TOLD_STEPS == 0:
+                    self._tell(steps, max(read / self._size, steps / self._most))
                 if steps > self._most:
                     self.is_cut = True
                     return
