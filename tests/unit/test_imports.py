@@ -55,10 +55,12 @@ ALLOWED: dict[str, set[str]] = {
     "report": {"cell", "channels", "robot", "run"},
     "run": {"cell", "channels", "diagnostics", "emission", "input_files", "net", "pipeline", "report", "robot", "tdl",
         "toolchain", "trace"},
+    "replay": {"cell", "channels", "drawing", "emission", "net", "reading", "robot", "run", "semantics", "trace"},
     "verdict": {"arms", "cell", "channel_model", "channels", "diagnostics", "division", "input_files", "ml", "net",
         "pipeline", "properties", "robot", "robot_scripts", "run", "semantics", "tdl", "trace", "verify"},
     "cli": {"cell", "cell_file", "channels", "conform", "contest", "convert", "diagnostics", "division", "drawing",
-        "emission", "input_files", "ir", "lowering", "ml", "net", "new_cell", "pipeline", "reading", "report", "robot",
+        "emission", "input_files", "ir", "lowering", "ml", "net", "new_cell", "pipeline", "reading", "replay", "report",
+        "robot",
         "robot_scripts", "run", "semantics", "simulate", "structure", "tdl", "trace", "unfold", "verdict", "verify"},
     "start": {"cli"},
 }  # fmt: skip

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from enum import StrEnum
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
@@ -24,6 +24,10 @@ from pn2code.cli.options import (
 )
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.write import OutputFolderError
+
+if TYPE_CHECKING:
+    from pn2code.replay.motion import Motion
+    from pn2code.run.cell import RunResult
 
 EPILOG = """Examples:
 
@@ -60,6 +64,13 @@ def run(
     pictures: Annotated[
         bool, typer.Option("--pictures/--no-pictures", help="Make pictures and charts.")
     ] = True,
+    replay: Annotated[
+        bool,
+        typer.Option(
+            "--replay/--no-replay",
+            help="Write replay.html, a page that shows the run, and run.json.",
+        ),
+    ] = True,
     video: Annotated[bool, typer.Option("--video", help="Also record cell.mp4.")] = False,
     gui: Annotated[bool, typer.Option("--gui", help="Show PyBullet's window.")] = False,
     realtime: Annotated[
@@ -92,6 +103,7 @@ def run(
     # PyBullet, SciPy and the like take half a second to load: only this verb needs them.
     from rich.console import Console
 
+    from pn2code.replay.motion import Motion
     from pn2code.report import summary as summaries
     from pn2code.report.album import Album
     from pn2code.robot.backend import BackendUnavailableError
@@ -117,9 +129,10 @@ def run(
         checked=not unchecked,
     )
     album = Album(out, pictures=pictures, video=video)
+    motion = Motion()
     with Progress(console) as progress:
         progress.say("generating and building")
-        observers: list[Observer] = [progress]
+        observers: list[Observer] = [progress, motion]
         if backend is BackendChoice.BULLET:
             observers.append(album)
         try:
@@ -141,6 +154,9 @@ def run(
             )
             names = tuple(r.name for r in prepared.config.programs)
             charts.draw(result.record, names, limits, out)
+        if result is not None and replay:
+            progress.say("writing the replay page")
+            _write_replay(result, motion, out)
     if result is None:
         stop(d, form)
     print_but_known(d, cell, form)
@@ -150,3 +166,19 @@ def run(
     console.print(f"results in {out}/", style="dim")
     if result.record.verdict != "finished":
         raise typer.Exit(Exit.MODEL)
+
+
+def _write_replay(result: RunResult, motion: Motion, out: Path) -> None:
+    """`run.json` and `replay.html`, from what is in memory."""
+    from pn2code.net.source import read
+    from pn2code.replay import run as described
+    from pn2code.replay.description import NAME, text_of
+    from pn2code.replay.page import NAME as PAGE
+    from pn2code.replay.page import page
+
+    document = read(Path(result.prepared.generated.partition.net.file), Diagnostics(), drawn=True)
+    if document is None:
+        return
+    data = described.describe(result, motion, document)
+    for name, text in ((NAME, text_of(data)), (PAGE, page(data))):
+        (out / name).write_text(text, encoding="utf-8")

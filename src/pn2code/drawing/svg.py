@@ -37,8 +37,8 @@ CURVE = 15.0
 """CPN Tools rounds bends by this radius."""
 _HEAD, _HALF_HEAD = 9.0, 3.5
 _CIRCLE = 4.0
-_BUBBLE = 8.0
-_MARKING_LINES, _MARKING_WIDTH = 20, 60
+BUBBLE = 8.0
+MARKING_LINES, MARKING_WIDTH = 20, 60
 _HEADING = 26.0
 
 
@@ -345,11 +345,11 @@ class _Painter:
     def tokens(self, tokens: Tokens, at: Point, offset: Point, hidden: bool) -> None:
         """The green bubble with the number of tokens, and beside it the marking unless it is hidden."""
         number = str(tokens.count)
-        radius = max(_BUBBLE, text.width(number) / 2 + 2)
+        radius = max(BUBBLE, text.width(number) / 2 + 2)
         at = (at[0] + radius, at[1])
         rows = [self.title(text.shorten(tokens.marking, 60, 300), "")]
         if not hidden:
-            shown = text.shorten(tokens.marking, _MARKING_LINES, _MARKING_WIDTH)
+            shown = text.shorten(tokens.marking, MARKING_LINES, MARKING_WIDTH)
             block = text.lines(shown)
             w, h = text.extent(block)
             left = at[0] + radius + offset[0]

@@ -31,7 +31,7 @@ class Clearance:
         a: name of the part, "robot1/link_4"; b: of the other, "panel/skin".
         distance: m; negative when they overlap.
         allowed: overlap that is permitted between these two, m; None: they must keep apart.
-        point: where, on `a`, in the world.
+        point: where, on `a`, in the world; other: the nearest point on `b`.
     """
 
     kind: ClearanceKind
@@ -41,6 +41,7 @@ class Clearance:
     distance: float
     allowed: float | None = None
     point: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    other: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
 
 @frozen

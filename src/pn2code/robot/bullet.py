@@ -381,12 +381,12 @@ class BulletBackend:
                 if allowed is not None:
                     old = touching.get((name_a, name_b))
                 elif best is None or c[8] < best.distance:
-                    best = Clearance(kind, a.robot, name_a, name_b, c[8], None, c[5])
+                    best = Clearance(kind, a.robot, name_a, name_b, c[8], None, c[5], c[6])
                     continue
                 else:
                     continue
                 if old is None or c[8] < old.distance:
-                    item = Clearance(kind, a.robot, name_a, name_b, c[8], allowed, c[5])
+                    item = Clearance(kind, a.robot, name_a, name_b, c[8], allowed, c[5], c[6])
                     touching[name_a, name_b] = item
             if best is not None or reach >= limit:
                 break
@@ -411,7 +411,7 @@ class BulletBackend:
                 ):
                     if best is None or c[8] < best.distance:
                         other = f"{name}/{a.links[i]}"
-                        best = Clearance("self", name, side.whole, other, c[8], None, c[5])
+                        best = Clearance("self", name, side.whole, other, c[8], None, c[5], c[6])
         return [] if best is None else [best]
 
     def _self(self, a: _Loaded, limit: float) -> list[Clearance]:
@@ -427,7 +427,7 @@ class BulletBackend:
                 for c in found:
                     if best is None or c[8] < best.distance:
                         one, two = (f"{a.robot.name}/{a.links[k]}" for k in (i, j))
-                        best = Clearance("self", a.robot.name, one, two, c[8], None, c[5])
+                        best = Clearance("self", a.robot.name, one, two, c[8], None, c[5], c[6])
                         reach = min(reach, max(c[8], 1e-3))
             if best is not None or reach >= limit:
                 break

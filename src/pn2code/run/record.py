@@ -11,10 +11,15 @@ import numpy as np
 import numpy.typing as npt
 
 from pn2code.base.frozen import frozen, record
+from pn2code.robot.backend import Clearance
 from pn2code.robot.monitor import Verdict
 from pn2code.robot.parts import PartChange
 
 FloatArray = npt.NDArray[np.float64]
+
+NEAR = 0.12
+"""m: clearances below this are kept with their points, to be shown."""
+GAP_S = 0.08
 
 
 @frozen
@@ -118,6 +123,9 @@ class RunRecord:
     """of each picture that was taken, by the name of its file: the moments that look like it"""
     near: dict[tuple[str, str], tuple[float, float]] = field(default_factory=dict)
     """pairs of parts that came closer than the scene's warning distance: least distance (m) and when"""
+    gaps: list[tuple[float, Clearance]] = field(default_factory=list)
+    """when which parts were closer than `NEAR`, at most once in `GAP_S` for each pair"""
+    _last_gap: dict[tuple[str, str], float] = field(default_factory=dict)
 
     def sample(self, verdict: Verdict) -> None:
         """Adds one instant to the series."""
@@ -141,10 +149,21 @@ class RunRecord:
             )
             self.series.setdefault(f"elbow.{seen.robot}", []).append(seen.conditioning.elbow)
             self.series.setdefault(f"margin.{seen.robot}", []).append(seen.limit_margin)
+        for gap in verdict.clearances or ():
+            self._note_gap(verdict.t, gap)
         for gap in verdict.warnings:
             key = (gap.a, gap.b)
             if gap.distance < self.near.get(key, (np.inf, 0.0))[0]:
                 self.near[key] = (gap.distance, verdict.t)
+
+    def _note_gap(self, t: float, gap: Clearance) -> None:
+        """Keeps what is near, and what is in the way, once in a while."""
+        is_wrong = gap.distance < -(gap.allowed or 0.0)
+        if (gap.allowed is not None or gap.distance > NEAR) and not is_wrong:
+            return
+        if is_wrong or t - self._last_gap.get((gap.a, gap.b), -np.inf) >= GAP_S:
+            self._last_gap[gap.a, gap.b] = t
+            self.gaps.append((t, gap))
 
     def note_error(self, what: str, metres: float) -> None:
         """Keeps the greatest deviation of a kind, in mm."""

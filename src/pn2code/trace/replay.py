@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, nullcontext
 from dataclasses import replace
 from pathlib import Path
@@ -125,6 +125,9 @@ class Notes(Protocol):
         """The last line."""
 
 
+Watch = Callable[[Game, BindingElement | None, Mapping[str, Any]], None]
+
+
 class _Wrong(Exception):  # noqa: N818
     """A line cannot be repeated; the message says why."""
 
@@ -207,8 +210,13 @@ def replay_lines(
     is_whole: bool = False,
     limits: Limits | None = None,
     files: Files | None = None,
+    watch: Watch | None = None,
 ) -> ReplayResult:
-    """Replays the lines of a trace; see `replay`."""
+    """Replays the lines of a trace; see `replay`.
+
+    Args:
+        watch: sees the game at its start (with no element) and after each step, with the line.
+    """
     game: Game | None = None
     who = parties or Parties.unknown(net)
     steps, at, ended, transition, source, by = 0, 0, None, "", net.name, ""
@@ -237,6 +245,8 @@ def replay_lines(
                 rules = rules or _rules_for(by, time_unit)
                 if notes is not None:
                     notes.begin(game, by)
+                if watch is not None:
+                    watch(game, None, line)
                 markings.append(game.marking)
             elif ended is not None and (is_whole or "event" not in line):
                 raise _Wrong("it comes after the end of the run")
@@ -248,7 +258,9 @@ def replay_lines(
                 _refuse(notes.end(game, ended) if notes is not None else None)
             elif "event" not in line:
                 assert rules is not None
-                _step(game, line, rules, names, who, by, notes)
+                occurred = _step(game, line, rules, names, who, by, notes)
+                if watch is not None:
+                    watch(game, occurred, line)
                 _refuse(order_problem(line, steps + 1, latest))
                 latest = max(latest, _time_of(line))
                 markings.append(game.marking)
@@ -334,8 +346,8 @@ def _step(
     parties: Parties,
     by: str,
     notes: Notes | None,
-) -> None:
-    """Repeats one occurrence; raises _Wrong when that is not possible."""
+) -> BindingElement:
+    """Repeats one occurrence, and gives it with all its outputs; raises _Wrong when that is not possible."""
     t = names.get(str(line.get("transition")))
     if t is None:
         raise _Wrong("the net has no such transition")
@@ -359,6 +371,7 @@ def _step(
         _refuse(notes.step(line, t))
     game.marking = marking
     game.steps += 1
+    return occurred
 
 
 def _moment(game: Game, line: dict[str, Any], rules: Rules) -> Marking:

@@ -1,0 +1,220 @@
+"""`pn2code show`: a run as one HTML page that shows net, arms, messages and time together."""
+
+from __future__ import annotations
+
+import json
+import time
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, NoReturn
+
+import typer
+
+from pn2code.base.os_reason import os_reason
+from pn2code.base.progress_line import Line
+from pn2code.base.writable import file_obstacle
+from pn2code.cli.options import (
+    OUTPUT_FLAGS,
+    Exit,
+    FilesOption,
+    Format,
+    FormatOption,
+    SetOption,
+    parse_values,
+    print_diagnostics,
+    stop,
+)
+from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.diagnostics.codes import register
+
+if TYPE_CHECKING:
+    from pn2code.replay.description import Json
+
+SHOW_RUN = register(
+    "show-run",
+    "there is no run to show",
+    "`pn2code show` takes the folder of a run (with the `run.json` that `pn2code run` writes), or a trace "
+    "(`*.trace.jsonl`) and its net.",
+)
+
+EPILOG = """Examples:
+
+  pn2code show run -o replay.html
+
+  pn2code show net.dead-40.trace.jsonl net.cpn -o replay.html
+
+  pn2code show run --compare other-run -o both.html
+"""
+
+
+def show(
+    run: Annotated[
+        Path, typer.Argument(help="The folder of a run, its run.json, or a trace (*.trace.jsonl).")
+    ],
+    net: Annotated[
+        Path | None,
+        typer.Argument(help="Of a trace: its net (.cpn or .pnml), a cell.toml, or a folder."),
+    ] = None,
+    output: Annotated[
+        Path, typer.Option(*OUTPUT_FLAGS, metavar="FILE", help="The HTML file to write.")
+    ] = Path("replay.html"),
+    compare: Annotated[
+        Path | None,
+        typer.Option("--compare", metavar="RUN", help="A second run or trace, shown beside it."),
+    ] = None,
+    steps: Annotated[
+        int,
+        typer.Option("--steps", metavar="N", min=1, help="Show at most so many steps of a trace."),
+    ] = 1_000_000,
+    description: Annotated[
+        Path | None,
+        typer.Option(
+            "--description", metavar="FILE", help="Also write the description of the run as JSON."
+        ),
+    ] = None,
+    settings: SetOption = [],  # noqa: B006 - typer reads the default only
+    files: FilesOption = None,
+    form: FormatOption = Format.FULL,
+) -> None:
+    """Write a run as one HTML page that shows the net, the arms, the messages and the time together.
+
+    The page needs no server and no network.
+    """
+    from pn2code.replay.description import text_of
+    from pn2code.replay.page import page
+
+    for path in (output, *([description] if description else [])):
+        if why := file_obstacle(path, makes_folders=True):
+            _refuse(f"cannot write `{path}`: {why}", "give another file with -o", form)
+    values = parse_values(settings)
+    shown = _described(run, net, values, steps, files, form)
+    other = None if compare is None else _described(compare, net, values, steps, files, form)
+    texts = {output: page(shown, other)}
+    if description is not None:
+        texts[description] = text_of(shown)
+    for path, text in texts.items():
+        try:
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text, encoding="utf-8")
+        except OSError as problem:
+            _refuse(f"cannot write `{path}`: {os_reason(problem)}", "give another file", form)
+    typer.echo(f"{output}: {_sentence(shown, texts[output])}")
+    if refused := shown["course"].get("refused"):
+        typer.echo(
+            f"pn2code: the trace is shown to step {refused['step'] - 1}: the next is not possible in this net "
+            f"({refused['transition']}: {refused['why']})",
+            err=True,
+        )
+        raise typer.Exit(Exit.MODEL)
+
+
+def _sentence(shown: Json, text: str) -> str:
+    steps = shown["course"]["steps"]
+    arms = len((shown.get("cell") or {}).get("robots", ()))
+    size = len(text.encode("utf-8")) / 1e6
+    with_arms = f", {arms} arm{'s' * (arms != 1)}" if arms else ""
+    return f"{steps:,} step{'s' * (steps != 1)}{with_arms}, {size:.1f} MB"
+
+
+def _described(
+    run: Path,
+    net: Path | None,
+    values: dict[str, str],
+    steps: int,
+    files: Path | None,
+    form: Format,
+) -> Json:
+    from pn2code.replay.description import NoDescription, read
+
+    if not run.is_dir() and run.suffix != ".json":
+        return _trace(run, net, values, steps, files, form)
+    try:
+        return read(run)
+    except NoDescription as problem:
+        _refuse(
+            str(problem), "give the folder that `pn2code run` wrote, or a trace and its net", form
+        )
+
+
+def _trace(
+    trace: Path,
+    net: Path | None,
+    values: dict[str, Any],
+    steps: int,
+    files: Path | None,
+    form: Format,
+) -> Json:
+    """A trace and its net."""
+    from pn2code.cell.locate import locate
+    from pn2code.cli.nets import playing
+    from pn2code.net import front
+    from pn2code.replay import trace as traces
+    from pn2code.semantics.evaluation.constants import compute
+    from pn2code.semantics.evaluation.files import Files
+
+    if net is None:
+        _refuse(f"`{trace}` is a trace, but no net is named", "pn2code show TRACE NET", form)
+    if not _is_trace(trace, form):
+        _refuse(
+            f"`{trace}` is neither the folder of a run nor a trace: its first line is not the head of one",
+            "traces come from `run`, `simulate --trace` and `verify`",
+            form,
+        )
+    d = Diagnostics()
+    found = locate(net, d)
+    if found is None:
+        stop(d, form)
+    path, config = found
+    replaced = {**(config.values if config else {}), **values}
+    examined = front.examine(path, d, replaced, drawn=True, compute=compute)
+    if examined.flat is None or examined.document is None or d.has_errors:
+        stop(d, form)
+    storage = config.storage if config else {}
+    try:
+        with playing(form), _Progress() as progress:
+            return traces.describe(
+                trace,
+                examined.document,
+                examined.flat,
+                storage,
+                most=steps,
+                files=Files(files),
+                tell=progress.tell,
+            )
+    except OSError as problem:
+        _refuse(
+            f"cannot read `{trace}`: {os_reason(problem)}", "give a file that can be read", form
+        )
+
+
+class _Progress(Line):
+    """How far the trace is: steps, how many a second, and how long it still takes."""
+
+    def __init__(self) -> None:
+        super().__init__(first="repeating the trace ...", plain=True)
+        self._began = time.monotonic()
+
+    def tell(self, steps: int, share: float) -> None:
+        """So many steps have been repeated, which is about this share of them."""
+        passed = max(time.monotonic() - self._began, 1e-9)
+        left = passed * (1.0 - share) / max(share, 1e-9)
+        self.say(f"{steps:,} steps, {steps / passed:,.0f} a second, about {left:.0f} s left")
+
+
+def _is_trace(trace: Path, form: Format) -> bool:
+    try:
+        with trace.open(encoding="utf-8", errors="replace") as lines:
+            head = json.loads(lines.readline(10_000_000))
+    except OSError as problem:
+        _refuse(
+            f"cannot read `{trace}`: {os_reason(problem)}", "give a file that can be read", form
+        )
+    except (ValueError, RecursionError):
+        return False
+    return isinstance(head, dict) and head.get("trace") == 1
+
+
+def _refuse(message: str, hint: str, form: Format) -> NoReturn:
+    d = Diagnostics()
+    d.error(SHOW_RUN, message, Origin("command line"), hint=hint)
+    print_diagnostics(d.sorted(), form)
+    raise typer.Exit(Exit.USAGE)

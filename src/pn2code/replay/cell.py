@@ -1,0 +1,179 @@
+"""The cell of a description: arms, tools, scene and parts, as geometry and frames.
+
+    described = describe(robot_cell)      # {"robots": [...], "meshes": [...], "bodies": [...], "kinds": {...}, ...}
+
+Frames are 4x4 matrices by rows, lengths in m, angles in rad. What is fixed in a robot hangs on a link; the page turns
+the joints. Nothing here depends on what happens in a run.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from pn2code.replay.meshes import Meshes
+from pn2code.robot.geometry import bodies, body_of
+from pn2code.robot.looks import Look
+from pn2code.robot.robot_cell import CellRobot, RobotCell
+from pn2code.robot.transforms import Array, matrix_of, rotation_xyz
+from pn2code.robot.urdf import Urdf
+
+Json = dict[str, Any]
+
+_GREY = (0.6, 0.6, 0.62, 1.0)
+_TOOL = "tool_"
+
+
+def describe(cell: RobotCell) -> Json:
+    """Everything that is to be seen, and how the arms move."""
+    store = Meshes()
+    found: Json = {
+        "robots": [_robot(r, store) for r in cell.robots],
+        "bodies": [{"name": b.name, "visuals": _looks(b.looks, store)} for b in bodies(cell)],
+        "kinds": {
+            name: _looks(body_of(kind.shape).looks, store) for name, kind in cell.parts.items()
+        },
+        "warningClearance": cell.scene.warning_clearance,
+    }
+    return {**found, "meshes": store.rows, "notes": store.simplified}
+
+
+def frame(matrix: Array) -> list[float]:
+    """A frame by rows."""
+    return [round(float(v), 9) for v in np.asarray(matrix).reshape(-1)]
+
+
+def _robot(robot: CellRobot, store: Meshes) -> Json:
+    """Links are numbered, the base first; each joint says between which links it is, and which axis turns it."""
+    trees = [("", robot.arm.urdf)] + ([(_TOOL, robot.tool.urdf)] if robot.tool else [])
+    links = [prefix + name for prefix, tree in trees for name in (tree.root, *_children(tree))]
+    number = {name: i for i, name in enumerate(links)}
+    axes = {name: i for i, name in enumerate(robot.arm.axes)}
+    joints = [
+        {
+            "parent": number[prefix + j.parent],
+            "child": number[prefix + j.child],
+            "frame": frame(j.T_parent_joint),
+            "axis": list(j.axis),
+            "moves": axes.get(j.name, -1) if prefix == "" else -1,
+        }
+        for prefix, tree in trees
+        for j in _from_root(tree)
+    ]
+    if robot.tool:
+        mount = {
+            "parent": number[robot.arm.flange],
+            "child": number[_TOOL + robot.tool.urdf.root],
+            "frame": frame(np.eye(4)),
+            "axis": [0.0, 0.0, 1.0],
+            "moves": -1,
+        }
+        at = len(_from_root(robot.arm.urdf))
+        joints.insert(at, mount)
+    return {
+        "name": robot.name,
+        "base": frame(robot.T_world_base),
+        "home": [float(v) for v in robot.home],
+        "links": [
+            {"name": prefix + name, "visuals": _visuals(tree, name, store)}
+            for prefix, tree in trees
+            for name in (tree.root, *_children(tree))
+        ],
+        "joints": joints,
+        "tcp": number[f"{_TOOL}tcp"] if robot.tool else number[robot.arm.flange],
+        "lower": [float(v) for v in robot.arm.lower],
+        "upper": [float(v) for v in robot.arm.upper],
+    }
+
+
+def _from_root(tree: Urdf) -> list[Any]:
+    """The joints, each after the one that its parent hangs on."""
+    known, left, out = {tree.root}, list(tree.joints), []
+    while left:
+        ready = [j for j in left if j.parent in known]
+        if not ready:  # a loop apart from the tree cannot be: each link has one parent
+            break
+        out += ready
+        known |= {j.child for j in ready}
+        left = [j for j in left if j not in ready]
+    return out
+
+
+def _children(tree: Urdf) -> list[str]:
+    return [j.child for j in _from_root(tree)]
+
+
+def _visuals(tree: Urdf, link: str, store: Meshes) -> list[list[Any]]:
+    """What is seen of a link: [mesh, frame in the link, colour, scale]."""
+    colours = {
+        m.get("name"): _colour(m.find("color"))
+        for m in tree.xml.findall("material")
+        if m.get("name")
+    }
+    out = []
+    for element in tree.xml.findall("link"):
+        if element.get("name") != link:
+            continue
+        for visual in element.findall("visual"):
+            mesh, scale = _shape(visual.find("geometry"), tree.path.parent, store)
+            if mesh < 0:
+                continue
+            material = visual.find("material")
+            own = _colour(material.find("color")) if material is not None else None
+            named = colours.get(material.get("name")) if material is not None else None
+            out.append([mesh, _origin(visual.find("origin")), list(own or named or _GREY), scale])
+    return out
+
+
+def _shape(geometry: Any, folder: Path, store: Meshes) -> tuple[int, list[float]]:
+    """A mesh and its scale; -1: none."""
+    ones = [1.0, 1.0, 1.0]
+    for shape in geometry if geometry is not None else ():
+        match shape.tag:
+            case "mesh":
+                name = shape.get("filename", "").removeprefix("package://").removeprefix("file://")
+                return store.file(folder / name), _numbers(shape.get("scale", "1 1 1"), 3) or ones
+            case "box":
+                size = _numbers(shape.get("size", ""), 3)
+                return (store.box((size[0], size[1], size[2])), ones) if size else (-1, ones)
+            case "cylinder":
+                both = _numbers(f"{shape.get('radius')} {shape.get('length')}", 2)
+                return (store.cylinder(both[0], both[1]), ones) if both else (-1, ones)
+            case "sphere":
+                radius = _numbers(shape.get("radius", ""), 1)
+                return (store.sphere(radius[0]), ones) if radius else (-1, ones)
+    return -1, ones
+
+
+def _origin(element: Any) -> list[float]:
+    out = np.eye(4)
+    if element is not None:
+        out[:3, 3] = _numbers(element.get("xyz", "0 0 0"), 3) or [0.0, 0.0, 0.0]
+        out[:3, :3] = rotation_xyz(*(_numbers(element.get("rpy", "0 0 0"), 3) or (0.0, 0.0, 0.0)))
+    return frame(out)
+
+
+def _colour(element: Any) -> tuple[float, ...] | None:
+    return tuple(_numbers(element.get("rgba", ""), 4)) or None if element is not None else None
+
+
+def _numbers(text: str, count: int) -> list[float]:
+    """So many finite numbers; else none."""
+    try:
+        found = [float(w) for w in text.split()]
+    except ValueError:
+        return []
+    return found if len(found) == count and bool(np.isfinite(found).all()) else []
+
+
+def _looks(looks: tuple[Look, ...], store: Meshes) -> list[list[Any]]:
+    out = []
+    for look in looks:
+        mesh = store.mesh(look.mesh) if look.mesh is not None else -1
+        if look.file is not None:
+            mesh = store.file(look.file)
+        if mesh >= 0:
+            out.append([mesh, frame(matrix_of(look.pose)), list(look.colour), [look.scale] * 3])
+    return out

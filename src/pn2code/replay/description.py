@@ -1,0 +1,104 @@
+"""`run.json`: the description of a run as a file, which version it has, and what it must have to be shown.
+
+    write(described, Path("run"))
+    described = read(Path("run/run.json"))
+
+docs/replay.md says what is in it.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from pn2code.base.os_reason import os_reason
+
+Json = dict[str, Any]
+
+VERSION = 1
+NAME = "run.json"
+LARGEST = 500_000_000
+"""Bytes of a description."""
+
+_NEEDED: Mapping[str, type] = {
+    "kind": str, "title": str, "clock": str, "end": object, "verdict": dict, "facts": list, "net": dict,
+    "course": dict,
+}  # fmt: skip
+
+
+class NoDescription(Exception):  # noqa: N818
+    """A file is not a description that can be shown; the message says why and what to do (a user's matter)."""
+
+
+def text_of(described: Json) -> str:
+    """The file's text: the same description gives the same bytes."""
+    return json.dumps(described, ensure_ascii=False, separators=(",", ":"), allow_nan=False) + "\n"
+
+
+def read(path: Path) -> Json:
+    """The description in a file, or in a run's folder.
+
+    Raises:
+        NoDescription: there is none, or another version.
+    """
+    file = path / NAME if path.is_dir() else path
+    try:
+        if file.stat().st_size > LARGEST:
+            raise NoDescription(f"`{file}` has more than {LARGEST:,} bytes")
+        data = json.loads(file.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        raise NoDescription(
+            f"there is no `{file}`: `pn2code run` writes it; of a trace, name the net as well"
+        ) from None
+    except OSError as problem:
+        raise NoDescription(f"cannot read `{file}`: {os_reason(problem)}") from None
+    except (ValueError, RecursionError) as problem:
+        raise NoDescription(f"`{file}` is not JSON: {problem}") from None
+    why = problem_of(data)
+    if why is not None:
+        raise NoDescription(f"`{file}` {why}")
+    return dict(data)
+
+
+def problem_of(data: Any) -> str | None:
+    """Why data are not a description of this version; None: they are."""
+    if not isinstance(data, dict) or not isinstance(data.get("pn2code"), dict):
+        return "is not the description of a run: its member `pn2code` is missing"
+    version = data["pn2code"].get("run")
+    if version != VERSION:
+        return f"is a description of version {version!r}, but version {VERSION} is expected: run the cell again"
+    for name, kind in _NEEDED.items():
+        if not isinstance(data.get(name), kind) or isinstance(data.get(name), bool):
+            return f"is incomplete: its `{name}` is missing or of another type"
+    for part, names in (("net", ("pages", "instances", "places", "transitions")),
+                        ("course", ("steps", "time", "transition", "changes", "keys", "tokens", "texts"))):  # fmt: skip
+        for name in names:
+            if name not in data[part]:
+                return f"is incomplete: its `{part}.{name}` is missing"
+    return None
+
+
+def facts(summary: Mapping[str, Any]) -> list[list[str]]:
+    """What is said of a run in a few lines: [what, how much]."""
+    rows = [
+        ["layout", str(summary["layout"])],
+        ["backend", str(summary["backend"])],
+        ["cycle time", f"{summary['cycle_seconds']:.2f} s"],
+    ]
+    known = {"cycle_seconds", "rows"}
+    rows += [[k, str(v)] for k, v in summary.items() if isinstance(v, int) and k not in known]
+    rows += [
+        [f"least clearance, {name}", f"{entry['m'] * 1000:.1f} mm"]
+        for name, entry in summary["clearances"].items()
+    ]
+    rows += [
+        [f"worst conditioning, {name}", f"{entry['worst']:.1f}"]
+        for name, entry in summary["conditioning"].items()
+    ]
+    rows += [
+        [f"{name} busy", f"{100 * entry['utilisation']:.0f} %"]
+        for name, entry in summary["robots"].items()
+    ]
+    return [row for row in rows if row[1]]

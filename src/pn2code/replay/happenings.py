@@ -1,0 +1,151 @@
+"""What happened in a run beside the net: who did what when, messages, curves, and moments to look at.
+
+described = describe(record, partition, config, limit)
+"""
+
+from __future__ import annotations
+
+from pathlib import PurePath
+from typing import Any
+
+import numpy as np
+
+from pn2code.cell.config import CellConfig
+from pn2code.cell.partition import Partition
+from pn2code.cell.scalars import scalars_of
+from pn2code.channels.scalars import format_scalars
+from pn2code.replay.arrays import packed_reals
+from pn2code.run.record import RunRecord
+
+Json = dict[str, Any]
+
+
+def describe(record: RunRecord, partition: Partition, config: CellConfig, near: float) -> Json:
+    """Parties, their bars, messages, events, curves.
+
+    Args:
+        record: the run.
+        partition, config: its cell.
+        near: what is warned of as a small clearance, m.
+    """
+    return {
+        "parties": [{"name": o.name, "kind": o.kind.value} for o in partition.owners],
+        "owners": list(partition.transition_owner),
+        "bars": _bars(record, partition),
+        "activities": [{"name": a.name, "start": a.start, "end": a.end} for a in record.activities],
+        "messages": _messages(record, partition),
+        "events": _events(record),
+        "curves": _curves(record, config, near),
+    }
+
+
+def _bars(record: RunRecord, partition: Partition) -> list[Json]:
+    transition = {t.name: t.index for t in partition.net.transitions}
+    party = {o.name: o.index for o in partition.owners}
+    return [
+        {
+            "party": party[a.robot],
+            "kind": a.kind,
+            "label": a.label,
+            "start": a.start,
+            "end": a.end,
+            "line": a.line,
+            "transition": transition.get(a.transition, -1),
+            "activity": a.activity,
+        }
+        for a in record.actions
+    ]
+
+
+def _messages(record: RunRecord, partition: Partition) -> list[Json]:
+    channels = {PurePath(c.file).stem: c for c in partition.channels}
+    rows = []
+    for what, m in record.traffic:
+        channel = channels[m.channel]
+        scalars = scalars_of(partition.net.places[channel.place].colset) or ()
+        text = format_scalars(scalars, m.values) or " ".join(map(str, m.values))
+        rows.append(
+            {
+                "t": m.t,
+                "channel": m.channel,
+                "place": channel.place,
+                "from": channel.writer,
+                "to": channel.reader,
+                "what": what,
+                "text": text,
+            }
+        )
+    return rows
+
+
+def _events(record: RunRecord) -> list[Json]:
+    rows: list[Json] = [
+        {"t": w.t, "kind": "warning", "party": w.robot, "text": w.text} for w in record.warnings
+    ]
+    for line in record.events:
+        match line.get("event"):
+            case "sense":
+                text = f"sensor {line['sensor']}: {line['value']}"
+                rows.append({"t": line["t"], "kind": "sense", "party": line["robot"], "text": text})
+            case "part":
+                text = f"{line['effect']} {line['part']}"
+                rows.append({"t": line["t"], "kind": "part", "party": line["robot"], "text": text})
+            case "end":
+                good = record.verdict == "finished"
+                text = record.reason or ", ".join(record.final) or record.verdict
+                kind = "end" if good else "fault"
+                rows.append({"t": line["t"], "kind": kind, "party": "", "text": text})
+    return sorted(rows, key=lambda row: float(row["t"]))
+
+
+def _curves(record: RunRecord, config: CellConfig, near: float) -> list[Json]:
+    rows = []
+    for name in sorted(record.series):
+        kind, _, of = name.partition(".")
+        if kind not in ("clearance", "condition"):
+            continue
+        values = record.array(name)
+        if not np.isfinite(values).any():
+            continue
+        limit = near if kind == "clearance" else config.report.warn_condition
+        t, v = thinned(np.asarray(record.sample_t), values)
+        rows.append(
+            {
+                "kind": kind,
+                "of": of,
+                "unit": "m" if kind == "clearance" else "",
+                "limit": limit,
+                "t": packed_reals(t, double=True),
+                "v": packed_reals(v),
+            }
+        )
+    return rows
+
+
+def thinned(t: Any, v: Any, share: float = 2e-3) -> tuple[Any, Any]:
+    """The samples without those that lie between their neighbours, as far as a chart of the values shows it."""
+    if len(t) < 3:
+        return t, v
+    finite = v[np.isfinite(v)]
+    tolerance = share * max(float(np.ptp(finite)), 1e-12)
+    keep, last = [0], 0
+    low, high = -np.inf, np.inf
+    for i in range(1, len(t)):
+        span = t[i] - t[last]
+        is_odd = not (np.isfinite(v[i]) and np.isfinite(v[last])) or span <= 0
+        slope = 0.0 if is_odd else (v[i] - v[last]) / span
+        if is_odd or not low <= slope <= high:
+            if keep[-1] != i - 1:
+                keep.append(i - 1)
+            last = i - 1
+            span = t[i] - t[last]
+            low, high = -np.inf, np.inf
+            if not (np.isfinite(v[i]) and np.isfinite(v[last])) or span <= 0:
+                keep.append(i)
+                last = i
+                continue
+        low = max(low, (v[i] - tolerance - v[last]) / span)
+        high = min(high, (v[i] + tolerance - v[last]) / span)
+    if keep[-1] != len(t) - 1:
+        keep.append(len(t) - 1)
+    return t[keep], v[keep]

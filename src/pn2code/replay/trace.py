@@ -1,0 +1,178 @@
+"""The description of any trace: simulations, counterexamples and lassos, and runs of a cell without its geometry.
+
+described = describe(Path("net.dead-40.trace.jsonl"), document, net, storage)
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import Any
+
+from pn2code.net.flat import FlatNet
+from pn2code.reading.document import Document
+from pn2code.replay import net as nets
+from pn2code.replay.course import Course
+from pn2code.replay.description import VERSION, Json
+from pn2code.semantics.evaluation.files import Files
+from pn2code.semantics.game.marking import BindingElement
+from pn2code.semantics.game.token_game import Game
+from pn2code.trace.parties import RUN, SIMULATORS, VERIFY
+from pn2code.trace.replay import ReplayResult, replay_lines
+
+MOST_STEPS = 1_000_000
+_TOLD_STEPS = 500
+
+Tell = Callable[[int, float], None]
+"""Is told now and then how many steps have been read, and which share of the file."""
+
+
+def _nothing(steps: int, share: float) -> None:
+    return None
+
+
+def describe(
+    trace: Path,
+    document: Document,
+    net: FlatNet,
+    storage: Mapping[str, str],
+    *,
+    most: int = MOST_STEPS,
+    files: Files | None = None,
+    tell: Tell = _nothing,
+) -> Json:
+    """The description of a trace file.
+
+    Args:
+        trace: the file.
+        document, net: its net, as drawn and as played.
+        storage: as for `Game`.
+        most: how many steps are shown; the rest is left out, and the page says so.
+        files: what the net can do with files.
+        tell: how far it is.
+
+    Raises:
+        OSError: it cannot be read.
+    """
+    with trace.open(encoding="utf-8", errors="replace") as lines:
+        reader = _Lines(lines, most, max(trace.stat().st_size, 1), tell)
+        by = reader.by
+        counts = by in SIMULATORS or by == VERIFY or by == ""
+        course, refused = follow(reader, net, storage, by_steps=counts, files=files)
+    end = reader.end or {}
+    return {
+        "pn2code": {"run": VERSION},
+        "kind": "trace",
+        "title": net.name,
+        "clock": "steps" if counts else "seconds",
+        "end": float(course.steps) if counts else max(reader.latest, 0.0),
+        "verdict": {
+            "word": "cut" if reader.is_cut else str(end.get("why", "")),
+            "reason": str(end.get("reason", "")),
+            "final": [str(p) for p in end.get("final", ())],
+        },
+        "facts": [["trace", trace.name], ["by", by], ["steps", f"{course.steps:,}"]],
+        "net": nets.describe(document, net),
+        "course": {
+            **course.described(),
+            "refused": refused,
+            "loop": end.get("loop") if isinstance(end.get("loop"), int) else None,
+        },
+        "happenings": None,
+        "programs": None,
+        "cell": None,
+        "motion": None,
+    }
+
+
+def follow(
+    lines: Iterable[str],
+    net: FlatNet,
+    storage: Mapping[str, str],
+    *,
+    by_steps: bool = False,
+    files: Files | None = None,
+) -> tuple[Course, Json | None]:
+    """The course of a trace through its net, as the token game repeats it, and where that ends before the trace does.
+
+    Args:
+        by_steps: the axis counts steps; else it is that of the times in the trace.
+    """
+    course = Course(net)
+    latest = 0.0
+
+    def watch(game: Game, occurred: BindingElement | None, line: Mapping[str, Any]) -> None:
+        nonlocal latest
+        if occurred is None:
+            course.begin(game)
+            return
+        t = line.get("t")
+        latest = max(latest, float(t)) if isinstance(t, int | float) else latest
+        course.step(game, occurred, float(course.steps + 1) if by_steps else latest)
+
+    result = replay_lines(lines, net, storage, watch=watch, files=files)
+    return course, _refusal(result)
+
+
+def _refusal(result: ReplayResult) -> Json | None:
+    if result.ok:
+        return None
+    return {"step": result.steps + 1, "transition": result.transition, "why": result.why}
+
+
+class _Lines:
+    """The lines of a trace, as far as they are wanted; knows afterwards what its head and its end said.
+
+    Attributes:
+        by: who wrote it.
+        end: its last line, if it has one.
+        latest: the greatest time.
+        is_cut: whether steps were left out.
+    """
+
+    def __init__(self, lines: Iterable[str], most: int, size: int, tell: Tell) -> None:
+        self._size, self._tell = size, tell
+        self._lines = iter(lines)
+        self._first = next(self._lines, "")
+        self._most = most
+        self.by = str(_object(self._first).get("by", ""))
+        self.end: Json | None = None
+        self.latest = 0.0
+        self.is_cut = False
+
+    def __iter__(self) -> Iterator[str]:
+        yield self._first
+        steps, read = 0, len(self._first)
+        for text in self._lines:
+            read += len(text)
+            if '"event"' in text:
+                line = _object(text)
+                self._note(line)
+                if line.get("event") == "end":
+                    self.end = line
+                    yield text
+                    continue
+            elif text.strip():
+                steps += 1
+                if steps % _TOLD_STEPS == 0:
+                    self._tell(steps, max(read / self._size, steps / self._most))
+                if steps > self._most:
+                    self.is_cut = True
+                    return
+                if self.by == RUN or self.by not in (*SIMULATORS, VERIFY):
+                    self._note(_object(text))
+            yield text
+
+    def _note(self, line: Json) -> None:
+        t = line.get("t")
+        if isinstance(t, int | float):
+            self.latest = max(self.latest, float(t))
+
+
+def _object(text: str) -> Json:
+    try:
+        data = json.loads(text)
+    except (ValueError, RecursionError):
+        return {}
+    return data if isinstance(data, dict) else {}

@@ -1,0 +1,398 @@
+// @ts-check
+/** The cell in 3D at the moment of the cursor: arms, parts, marks, paths of the TCPs, clearances; views and the mouse. */
+
+import { upperBound } from "./course.js";
+import { colour, el } from "./dom.js";
+import { Path, frames, valueAt } from "./kinematics.js";
+import { CellScene, place } from "./scene3d.js";
+
+import { Gaps } from "./gaps.js";
+
+const THREE = /** @type {any} */ (globalThis).THREE;
+
+/** Seconds of a path that are bright behind the tool. */
+const SLOW_MS = 70;
+const FIELD = 38;
+const ARM_COLOURS = [0x0072b2, 0xcc79a7, 0x009e73, 0xe69f00, 0x56b4e9, 0xd55e00];
+
+export class CellView {
+  /**
+   * @param {HTMLElement} pane
+   * @param {any} run
+   * @param {string} missing why there is no 3D, "" if there is
+   */
+  constructor(pane, run, missing) {
+    this.run = run;
+    this.pane = pane;
+    this.t = 0;
+    this.buttons = el("div", { class: "views", role: "group", "aria-label": "Views" });
+    this.pathsButton = el("button", {
+      class: "toggle", "aria-pressed": "true", text: "Paths", title: "Paths of the TCPs, coloured by conditioning (P)",
+      onclick: () => this.showPaths(!this.hasPaths),
+    });
+    this.host = el("div", { class: "stage" });
+    this.legend = el("p", { class: "status" });
+    pane.append(el("header", {}, el("h2", { text: "Cell" }), this.buttons, this.pathsButton), this.host, this.legend);
+    this.paths = run.cell.robots.map((/** @type {any} */ r) => (run.motion[r.name] ? new Path(run.motion[r.name]) : null));
+    if (missing || !THREE) {
+      this.fail(missing || "three.js is not in this page");
+      return;
+    }
+    try {
+      this.renderer = new THREE.WebGLRenderer({ antialias: true, powerPreference: "high-performance" });
+    } catch (problem) {
+      this.fail(`this browser has no WebGL (${problem instanceof Error ? problem.message : problem})`);
+      return;
+    }
+    this.start();
+  }
+
+  /** @param {string} why */
+  fail(why) {
+    this.host.append(el("p", { class: "missing", role: "note", text: `The arms cannot be shown: ${why}` }));
+    this.buttons.remove();
+    this.pathsButton.remove();
+  }
+
+  start() {
+    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.type = THREE.PCFShadowMap;
+    this.renderer.outputEncoding = THREE.LinearEncoding;
+    const canvas = this.renderer.domElement;
+    canvas.setAttribute("role", "img");
+    canvas.setAttribute("aria-label", "The cell in 3D. Arrow keys turn the view, plus and minus change the distance.");
+    canvas.tabIndex = 0;
+    this.host.append(canvas);
+    this.cell = new CellScene(this.run.cell);
+    this.cell.aim();
+    this.camera = new THREE.PerspectiveCamera(FIELD, 1, 0.05, 200);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new THREE.OrbitControls(this.camera, canvas);
+    this.controls.enableDamping = false;
+    this.controls.screenSpacePanning = true;
+    this.controls.addEventListener("change", () => this.request());
+    canvas.addEventListener("pointerdown", () => (this.mounted = -1));
+    canvas.addEventListener("keydown", (/** @type {KeyboardEvent} */ e) => this.key(e));
+    this.hasPaths = true;
+    this.slow = 0;
+    this.mounted = -1;
+    this.makePaths();
+    this.gaps = new Gaps(this.cell, this.run.cell);
+    this.makeViews();
+    this.theme();
+    new ResizeObserver(() => this.resize()).observe(this.host);
+    this.resize();
+    this.view(0);
+  }
+
+  /** The colours of the surroundings. */
+  theme() {
+    if (!this.renderer) return;
+    this.renderer.setClearColor(new THREE.Color(colour("sky") || "#dfe6ee"));
+    this.request();
+  }
+
+  resize() {
+    const { clientWidth: w, clientHeight: h } = this.host;
+    if (!w || !h) return;
+    this.renderer.setSize(w, h);
+    this.camera.aspect = w / h;
+    this.camera.updateProjectionMatrix();
+    if (this.chosen !== undefined) this.view(this.chosen);
+    this.request();
+  }
+
+  // --- views ---------------------------------------------------------------------------------
+
+  makeViews() {
+    const box = this.cell?.box;
+    const centre = box.getCenter(new THREE.Vector3());
+    const size = box.getSize(new THREE.Vector3());
+    const radius = size.length() / 2;
+    const look = (/** @type {number} */ azimuth, /** @type {number} */ elevation, /** @type {number} */ fit) => () => {
+      this.look(centre, azimuth, elevation, this.distance(radius) * fit);
+    };
+    /** @type {[string, () => void, number][]} */
+    this.views = [
+      ["Overview", look(-42, 24, 0.82), -1],
+      ["Behind", look(50, 20, 0.86), -1],
+      ["Above", look(-90, 89.5, 0.9), -1],
+      ["Tools", () => this.lookAtTools(-28, 16), -1],
+    ];
+    this.run.cell.robots.forEach((/** @type {any} */ r, /** @type {number} */ i) => {
+      if (i < 5) this.views?.push([r.name, () => {}, i]);
+    });
+    this.buttons.append(
+      ...this.views.map(([name], i) =>
+        el("button", { text: name, title: `View ${i + 1} (key ${i + 1})`, onclick: () => this.view(i) })),
+    );
+  }
+
+  /** @param {number} radius */
+  distance(radius) {
+    const half = Math.min(FIELD, (2 * 180 * Math.atan(Math.tan((FIELD * Math.PI) / 360) * this.camera.aspect)) / Math.PI);
+    return radius / Math.sin((half * Math.PI) / 360);
+  }
+
+  /**
+   * @param {any} target
+   * @param {number} azimuth
+   * @param {number} elevation
+   * @param {number} distance
+   */
+  look(target, azimuth, elevation, distance) {
+    const [a, e] = [(azimuth * Math.PI) / 180, (elevation * Math.PI) / 180];
+    this.camera.position.set(
+      target.x + distance * Math.cos(e) * Math.cos(a), target.y + distance * Math.cos(e) * Math.sin(a),
+      Math.max(target.z + distance * Math.sin(e), 0.15),
+    );
+    this.camera.up.set(0, 0, 1);
+    this.controls.target.copy(target);
+    this.controls.update();
+  }
+
+  /**
+   * @param {number} azimuth
+   * @param {number} elevation
+   */
+  lookAtTools(azimuth, elevation) {
+    const tips = this.tips();
+    const middle = new THREE.Vector3();
+    for (const tip of tips) middle.add(tip);
+    middle.divideScalar(tips.length);
+    const spread = Math.max(...tips.map((/** @type {any} */ p) => p.distanceTo(middle)));
+    this.look(middle, azimuth, elevation, 1.7 + 2.2 * spread);
+  }
+
+  /** @param {number} number from 0 */
+  view(number) {
+    const chosen = this.views?.[number];
+    if (!chosen) return;
+    this.chosen = number;
+    this.mounted = chosen[2];
+    chosen[1]();
+    if (this.mounted >= 0) this.mount();
+    [...this.buttons.children].forEach((b, i) => b.setAttribute("aria-pressed", String(i === number)));
+    this.request();
+  }
+
+  /** The camera rides on a robot's tool, and looks along it. */
+  mount() {
+    const at = this.mounted ?? -1;
+    const tcp = this.frames?.[at]?.[this.run.cell.robots[at].tcp];
+    if (!tcp) return;
+    const z = new THREE.Vector3(tcp[2], tcp[6], tcp[10]);
+    const x = new THREE.Vector3(tcp[0], tcp[4], tcp[8]);
+    const p = new THREE.Vector3(tcp[3], tcp[7], tcp[11]);
+    this.camera.position.copy(p).addScaledVector(z, -0.9).addScaledVector(x, 0.42);
+    this.camera.up.set(0, 0, 1);
+    this.controls.target.copy(p).addScaledVector(z, 0.1);
+    this.camera.lookAt(this.controls.target);
+  }
+
+  /** @param {KeyboardEvent} e */
+  key(e) {
+    const spin = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[e.key];
+    const nearer = { "+": 0.87, "=": 0.87, "-": 1.15 }[e.key];
+    if (!spin && !nearer) return;
+    e.preventDefault();
+    e.stopPropagation();
+    this.mounted = -1;
+    const way = this.camera.position.clone().sub(this.controls.target);
+    const sphere = new THREE.Spherical().setFromVector3(new THREE.Vector3(way.y, way.z, way.x));
+    if (spin) {
+      sphere.theta += spin[0] * 0.1;
+      sphere.phi = Math.min(Math.max(sphere.phi - spin[1] * 0.08, 0.05), 3.0);
+    }
+    sphere.radius *= nearer ?? 1;
+    const moved = new THREE.Vector3().setFromSpherical(sphere);
+    this.camera.position.set(moved.z, moved.x, moved.y).add(this.controls.target);
+    this.controls.update();
+    this.request();
+  }
+
+  // --- paths ---------------------------------------------------------------------------------
+
+  tips() {
+    return this.frames.map((/** @type {any} */ links, /** @type {number} */ i) => {
+      const tcp = links[this.cell?.robots[i].robot.tcp];
+      return new THREE.Vector3(tcp[3], tcp[7], tcp[11]);
+    });
+  }
+
+  /** The way of each TCP: bright behind it, in the colours of its conditioning, and faint ahead. */
+  makePaths() {
+    const curves = this.run.happenings?.curves ?? [];
+    this.trails = this.cell?.robots.map((/** @type {any} */ { robot }, /** @type {number} */ i) => {
+      const path = this.paths[i];
+      if (!path || path.t.length < 2) return null;
+      const condition = curves.find((/** @type {any} */ c) => c.kind === "condition" && c.of === robot.name);
+      const points = new Float32Array(3 * path.t.length);
+      const colours = new Float32Array(3 * path.t.length);
+      for (let s = 0; s < path.t.length; s++) {
+        const q = path.q.subarray(s * path.axes, (s + 1) * path.axes);
+        const tcp = frames(robot, q)[robot.tcp];
+        points.set([tcp[3], tcp[7], tcp[11]], 3 * s);
+        colours.set(conditionColour(condition ? valueAt(condition, path.t[s]) : NaN, condition?.limit ?? 50, i), 3 * s);
+      }
+      return this.trail(points, colours, path.t);
+    });
+  }
+
+  /**
+   * @param {Float32Array} points
+   * @param {Float32Array} colours
+   * @param {Float64Array} t
+   */
+  trail(points, colours, t) {
+    const geometry = new THREE.LineGeometry();
+    geometry.setPositions(points);
+    geometry.setColors(colours);
+    const material = new THREE.LineMaterial({ linewidth: 2.4, vertexColors: true });
+    const behind = new THREE.Line2(geometry, material);
+    behind.frustumCulled = false;
+    const plain = new THREE.BufferGeometry();
+    plain.setAttribute("position", new THREE.BufferAttribute(points, 3));
+    const ahead = new THREE.Line(plain, new THREE.LineBasicMaterial({ color: 0x5b6b7c, transparent: true, opacity: 0.45 }));
+    ahead.frustumCulled = false;
+    this.cell?.scene.add(behind, ahead);
+    return { behind, ahead, material, t, count: t.length };
+  }
+
+  /** @param {boolean} on */
+  showPaths(on) {
+    this.hasPaths = on;
+    this.pathsButton.setAttribute("aria-pressed", String(on));
+    this.request();
+  }
+
+  // --- the moment ----------------------------------------------------------------------------
+
+  /**
+   * The joint position of a robot at a moment.
+   * @param {number} robot
+   * @param {number} t
+   */
+  joints(robot, t) {
+    return this.paths[robot]?.at(t) ?? this.run.cell.robots[robot].home;
+  }
+
+  /** @param {number} t */
+  update(t) {
+    this.t = t;
+    this.frames = this.run.cell.robots.map((/** @type {any} */ r, /** @type {number} */ i) => frames(r, this.joints(i, t)));
+    this.tell(t);
+    if (!this.renderer) return;
+    this.cell?.robots.forEach((/** @type {any} */ { links }, /** @type {number} */ i) => {
+      links.forEach((/** @type {any} */ link, /** @type {number} */ k) => place(link, this.frames[i][k]));
+    });
+    this.moveParts(t);
+    if (this.cell) this.cell.marks.count = this.run.cell.marks.filter((/** @type {any} */ m) => m.t <= t + 1e-9).length;
+    if ((this.mounted ?? -1) >= 0) this.mount();
+    const near = this.gaps?.update(t) ?? [];
+    if (near.length) {
+      const [{ pair, distance }] = near;
+      const text = `${(distance * 1000).toFixed(1)} mm between ${pair[0]} and ${pair[1]}`;
+      this.legend.append(el("span", { class: distance < this.run.cell.warningClearance ? "arm near" : "arm", text }));
+    }
+    this.request();
+  }
+
+  /** @param {number} t */
+  moveParts(t) {
+    const index = new Map(this.run.cell.robots.map((/** @type {any} */ r, /** @type {number} */ i) => [r.name, i]));
+    this.run.cell.parts.forEach((/** @type {any} */ part, /** @type {number} */ i) => {
+      const state = part.states.filter((/** @type {any} */ s) => s.t <= t + 1e-9).pop();
+      const object = this.cell?.parts[i];
+      object.visible = Boolean(state?.frame);
+      if (!state?.frame) return;
+      if (!state.holder) {
+        place(object, state.frame);
+        return;
+      }
+      const at = /** @type {number} */ (index.get(state.holder));
+      const tcp = new THREE.Matrix4();
+      tcp.set(.../** @type {[any]} */ (this.frames[at][this.run.cell.robots[at].tcp]));
+      const own = new THREE.Matrix4();
+      own.set(.../** @type {[any]} */ (state.frame));
+      object.matrixAutoUpdate = false;
+      object.matrix.multiplyMatrices(tcp, own);
+      object.matrixWorldNeedsUpdate = true;
+    });
+  }
+
+  /**
+   * What the arms are doing, in words.
+   * @param {number} t
+   */
+  tell(t) {
+    const happenings = this.run.happenings;
+    if (!happenings) return;
+    const rows = this.run.cell.robots.map((/** @type {any} */ r, /** @type {number} */ i) => {
+      const party = happenings.parties.findIndex((/** @type {any} */ p) => p.name === r.name);
+      const bar = happenings.bars.find((/** @type {any} */ b) => b.party === party && b.start <= t && t < b.end);
+      const curve = happenings.curves.find((/** @type {any} */ c) => c.kind === "condition" && c.of === r.name);
+      const condition = curve ? valueAt(curve, t) : NaN;
+      const tcp = this.frames[i][r.tcp];
+      const at = [tcp[3], tcp[7], tcp[11]].map((v) => (v * 1000).toFixed(1)).join("  ");
+      return el(
+        "span", { class: "arm" }, el("b", { text: r.name }), ` ${bar ? bar.label : "rests"} · TCP ${at} mm`,
+        Number.isFinite(condition) ? ` · conditioning ${condition.toFixed(1)}` : "",
+      );
+    });
+    this.legend.replaceChildren(...rows);
+  }
+
+  request() {
+    if (this.isRequested || !this.renderer) return;
+    this.isRequested = true;
+    requestAnimationFrame(() => {
+      this.isRequested = false;
+      this.paint();
+    });
+  }
+
+  paint() {
+    if (!this.host.clientWidth) return;
+    const start = performance.now();
+    const { clientWidth: w, clientHeight: h } = this.host;
+    for (const trail of this.trails ?? []) {
+      if (!trail) continue;
+      const n = upperBound(trail.t, this.t);
+      trail.behind.visible = trail.ahead.visible = Boolean(this.hasPaths);
+      trail.behind.geometry.instanceCount = Math.max(n - 1, 0);
+      trail.ahead.geometry.setDrawRange(Math.max(n - 1, 0), trail.count);
+      trail.material.resolution.set(w, h);
+    }
+    this.gaps?.size(w, h);
+    this.renderer.render(this.cell?.scene, this.camera);
+    this.spare(performance.now() - start);
+  }
+
+  /**
+   * Leaves out shadows where drawing is slow (without a GPU).
+   * @param {number} ms
+   */
+  spare(ms) {
+    if (!this.renderer.shadowMap.enabled) return;
+    this.slow = ms > SLOW_MS ? (this.slow ?? 0) + 1 : 0;
+    if (this.slow < 12) return;
+    this.renderer.shadowMap.enabled = false;
+    for (const material of this.cell?.materials.values() ?? []) material.needsUpdate = true;
+  }
+}
+
+/**
+ * From blue over yellow to vermilion as the condition number comes to its limit (which colour-blind people can tell).
+ * @param {number} value
+ * @param {number} limit
+ * @param {number} arm
+ * @returns {number[]}
+ */
+function conditionColour(value, limit, arm) {
+  if (!Number.isFinite(value)) return new THREE.Color(ARM_COLOURS[arm % ARM_COLOURS.length]).toArray();
+  const share = Math.min(Math.max(Math.log(Math.max(value, 1) / 6) / Math.log(limit / 6), 0), 1);
+  const [a, b] = share < 0.5 ? [0x0072b2, 0xf0c63c] : [0xf0c63c, 0xd55e00];
+  return new THREE.Color(a).lerp(new THREE.Color(b), share < 0.5 ? share * 2 : share * 2 - 1).toArray();
+}

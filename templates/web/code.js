@@ -1,0 +1,139 @@
+// @ts-check
+/** The generated programs: the lines of what occurs, and of what a robot does, are lit; a line leads to its transition. */
+
+import { el } from "./dom.js";
+
+const LINE = 17;
+
+/** @typedef {import("./clock.js").Clock} Clock */
+
+export class Code {
+  /**
+   * @param {HTMLElement} host
+   * @param {any} run
+   * @param {Clock} clock
+   * @param {(transition: number) => void} onTransition
+   */
+  constructor(host, run, clock, onTransition) {
+    this.run = run;
+    this.clock = clock;
+    this.files = run.programs.files;
+    /** @type {Map<number, number[][]>} */
+    this.elements = new Map(Object.entries(run.programs.elements).map(([t, rows]) => [Number(t), /** @type {any} */ (rows)]));
+    this.isFollowing = true;
+    /** The file that is shown. */
+    this.shown = -1;
+    /** What was lit last. */
+    this.key = "";
+    this.choice = el(
+      "select", { "aria-label": "Program", onchange: () => { this.setFollowing(false); this.show(Number(this.choice.value)); } },
+      ...this.files.map((/** @type {any} */ f, /** @type {number} */ i) => el("option", { value: i, text: f.name })),
+    );
+    this.follow = el("button", {
+      class: "toggle", "aria-pressed": "true", text: "Follow", title: "Turn to the program that does something",
+      onclick: () => this.setFollowing(!this.isFollowing),
+    });
+    this.numbers = el("pre", { class: "numbers", "aria-hidden": "true" });
+    this.text = el("pre", { class: "code", tabindex: "0", "aria-label": "Program" });
+    this.marks = el("div", { class: "marks" });
+    this.view = el("div", { class: "program" }, this.marks, this.numbers, this.text);
+    this.text.addEventListener("click", (/** @type {MouseEvent} */ e) => {
+      const line = Math.floor((e.clientY - this.text.getBoundingClientRect().top) / LINE) + 1;
+      const found = this.transitionAt(this.shown, line);
+      if (found >= 0 && getSelection()?.isCollapsed) onTransition(found);
+    });
+    host.append(el("header", {}, this.choice, this.follow), this.view);
+    this.show(0);
+  }
+
+  /** @param {boolean} on */
+  setFollowing(on) {
+    this.isFollowing = on;
+    this.follow.setAttribute("aria-pressed", String(on));
+    if (on) this.update(true);
+  }
+
+  /** @param {number} file */
+  show(file) {
+    if (file === this.shown || !this.files[file]) return;
+    this.shown = file;
+    this.choice.value = String(file);
+    const text = this.files[file].text;
+    const lines = text.split("\n").length;
+    this.text.textContent = text;
+    this.numbers.textContent = Array.from({ length: lines }, (_, i) => i + 1).join("\n");
+    this.light();
+  }
+
+  /**
+   * The transition whose lines these are, the one with the fewest; -1: none.
+   * @param {number} file
+   * @param {number} line
+   */
+  transitionAt(file, line) {
+    let best = -1;
+    let size = Infinity;
+    for (const [t, rows] of this.elements) {
+      for (const [f, first, last] of rows) {
+        if (f === file && first <= line && line <= last && last - first < size) {
+          best = t;
+          size = last - first;
+        }
+      }
+    }
+    return best;
+  }
+
+  /** What is under way: [file, first line, last line, kind]. */
+  now() {
+    const { k, t, course } = this.clock;
+    /** @type {[number, number, number, string][]} */
+    const rows = [];
+    const occurred = k ? course.transition[k - 1] : -1;
+    for (const [file, first, last] of this.elements.get(occurred) ?? []) rows.push([file, first, last, "occurs"]);
+    for (const bar of this.run.happenings?.bars ?? []) {
+      if (bar.start > t || t >= bar.end) continue;
+      const name = `${this.run.happenings.parties[bar.party].name}.tdl`;
+      const file = this.files.findIndex((/** @type {any} */ f) => f.name === name);
+      if (file >= 0) rows.push([file, bar.line, bar.line, "moves"]);
+    }
+    return rows;
+  }
+
+  light() {
+    const rows = (this.rows ?? []).filter(([file]) => file === this.shown);
+    this.marks.replaceChildren(
+      ...rows.map(([, first, last, kind]) => {
+        const mark = el("div", { class: `mark ${kind}` });
+        mark.style.top = `${(first - 1) * LINE}px`;
+        mark.style.height = `${(last - first + 1) * LINE}px`;
+        return mark;
+      }),
+    );
+    const row = rows.find(([, , , kind]) => kind === "occurs") ?? rows[0];
+    if (!row || !this.isFollowing) return;
+    const view = this.view.clientHeight;
+    const top = (row[1] - 1) * LINE;
+    if (top < this.view.scrollTop || top > this.view.scrollTop + view - 4 * LINE) {
+      this.view.scrollTop = Math.max(top - view / 3, 0);
+    }
+  }
+
+  /** @param {boolean} [force] */
+  update(force = false) {
+    this.rows = this.now();
+    const key = this.rows.join(";");
+    if (key === this.key && !force) return;
+    this.key = key;
+    if (!this.view.clientHeight) return;
+    if (this.isFollowing) {
+      const script = this.rows.find(([file, , , kind]) => kind === "occurs" && this.files[file].name.endsWith(".tdl"));
+      const row = script ?? this.rows.find(([, , , kind]) => kind === "occurs");
+      if (row && row[0] !== this.shown) {
+        this.show(row[0]);
+        return;
+      }
+    }
+    this.light();
+  }
+}

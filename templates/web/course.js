@@ -1,0 +1,187 @@
+// @ts-check
+/** The course of a run through its net: the marking after any step, from keys and changes. */
+
+/**
+ * How many entries of a sorted array are not above a value.
+ * @param {ArrayLike<number>} sorted
+ * @param {number} value
+ */
+export function upperBound(sorted, value) {
+  let low = 0;
+  let high = sorted.length;
+  while (low < high) {
+    const middle = (low + high) >> 1;
+    if (sorted[middle] <= value) low = middle + 1;
+    else high = middle;
+  }
+  return low;
+}
+
+export class Course {
+  /** @param {any} run the description */
+  constructor(run) {
+    const course = run.course;
+    this.run = run;
+    this.net = run.net;
+    /** @type {number} */
+    this.steps = course.steps;
+    /** @type {Float64Array} */
+    this.time = course.time;
+    this.clock = course.clock;
+    this.transition = course.transition;
+    this.texts = course.texts;
+    this.tokens = course.tokens;
+    this.changes = course.changes;
+    this.keys = course.keys;
+    this.binding = course.binding;
+    const sizes = this.net.transitions.map((/** @type {any} */ t) => t.variables.length);
+    this.bindingStart = new Uint32Array(this.steps + 1);
+    for (let k = 0; k < this.steps; k++) this.bindingStart[k + 1] = this.bindingStart[k] + sizes[this.transition[k]];
+    /** The step after which the marking is the one that is held. */
+    this.at = -1;
+    /** @type {Map<number, number>[]} */
+    this.held = this.net.places.map(() => new Map());
+    /** Grows whenever the marking of a place changes. */
+    this.version = new Uint32Array(this.net.places.length);
+    this.seek(0);
+  }
+
+  /**
+   * @param {number} token
+   * @param {number} by
+   */
+  change(token, by) {
+    const place = this.tokens.place[token];
+    const held = this.held[place];
+    const n = (held.get(token) ?? 0) + by;
+    if (n) held.set(token, n);
+    else held.delete(token);
+    this.version[place]++;
+  }
+
+  /**
+   * Holds the marking after step k (0: the initial one).
+   * @param {number} k
+   */
+  seek(k) {
+    if (k === this.at) return;
+    const { offset, token, count } = this.changes;
+    const key = upperBound(this.keys.step, k) - 1;
+    const fromKey = offset[k] - offset[this.keys.step[key]] + (this.keys.offset[key + 1] - this.keys.offset[key]);
+    const fromHere = this.at < 0 ? Infinity : Math.abs(offset[k] - offset[this.at]);
+    if (fromHere > fromKey) this.load(key);
+    while (this.at < k) {
+      for (let i = offset[this.at]; i < offset[this.at + 1]; i++) this.change(token[i], count[i]);
+      this.at++;
+    }
+    while (this.at > k) {
+      this.at--;
+      for (let i = offset[this.at]; i < offset[this.at + 1]; i++) this.change(token[i], -count[i]);
+    }
+  }
+
+  /** @param {number} key */
+  load(key) {
+    this.held.forEach((held, place) => {
+      if (held.size) this.version[place]++;
+      held.clear();
+    });
+    for (let i = this.keys.offset[key]; i < this.keys.offset[key + 1]; i++) {
+      this.change(this.keys.token[i], this.keys.count[i]);
+    }
+    this.at = this.keys.step[key];
+  }
+
+  /**
+   * How many tokens a place holds.
+   * @param {number} place
+   */
+  count(place) {
+    let n = 0;
+    for (const c of this.held[place].values()) n += c;
+    return n;
+  }
+
+  /**
+   * What a place holds, as CPN Tools prints it.
+   * @param {number} place
+   */
+  text(place) {
+    const held = this.held[place];
+    if (!held.size) return "empty";
+    const { text, stamp } = this.tokens;
+    const joint = this.net.places[place].timed ? "+++\n" : "++\n";
+    return [...held.keys()]
+      .sort((a, b) => a - b)
+      .map((i) => `${held.get(i)}\`${this.texts[text[i]]}${stamp[i] ? `@${this.texts[stamp[i] - 1]}` : ""}`)
+      .join(joint);
+  }
+
+  /**
+   * What occurred in a step (from 1).
+   * @param {number} k
+   */
+  occurred(k) {
+    return this.net.transitions[this.transition[k - 1]];
+  }
+
+  /**
+   * The binding of a step: [variable, value].
+   * @param {number} k
+   * @returns {[string, string][]}
+   */
+  bound(k) {
+    const start = this.bindingStart[k - 1];
+    return this.occurred(k).variables.map((/** @type {string} */ name, /** @type {number} */ i) => [
+      name,
+      this.texts[this.binding[start + i]],
+    ]);
+  }
+
+  /**
+   * How many steps have occurred by a moment.
+   * @param {number} t
+   */
+  stepAt(t) {
+    return upperBound(this.time, t + 1e-9);
+  }
+
+  /**
+   * The next step (or the one before, for `by` -1) of a transition after step k; 0: there is none.
+   * @param {number} transition
+   * @param {number} k
+   * @param {number} by
+   */
+  nextOf(transition, k, by = 1) {
+    for (let i = by > 0 ? k + 1 : k - 1; i >= 1 && i <= this.steps; i += by) {
+      if (this.transition[i - 1] === transition) return i;
+    }
+    return 0;
+  }
+
+  /**
+   * How many tokens a place held over all steps: where it changed, and what it was from there on.
+   * @param {number} place
+   * @returns {{step: number, count: number}[]}
+   */
+  history(place) {
+    const { offset, token, count } = this.changes;
+    let n = 0;
+    for (let i = 0; i < this.keys.offset[1]; i++) {
+      if (this.tokens.place[this.keys.token[i]] === place) n += this.keys.count[i];
+    }
+    const rows = [{ step: 0, count: n }];
+    for (let k = 0; k < this.steps; k++) {
+      let by = 0;
+      let changed = false;
+      for (let i = offset[k]; i < offset[k + 1]; i++) {
+        if (this.tokens.place[token[i]] !== place) continue;
+        by += count[i];
+        changed = true;
+      }
+      n += by;
+      if (changed) rows.push({ step: k + 1, count: n });
+    }
+    return rows;
+  }
+}

@@ -1,0 +1,65 @@
+// @ts-check
+/** The data of the page: JSON, with packed arrays (docs/replay.md) that become typed arrays. */
+
+/** @type {Record<string, any>} */
+const ARRAYS = {
+  u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, i8: Int8Array, i16: Int16Array, i32: Int32Array,
+  f32: Float32Array, f64: Float64Array,
+};
+
+/**
+ * @param {string} text base64
+ * @returns {Uint8Array<ArrayBuffer>}
+ */
+function bytes(text) {
+  const raw = atob(text);
+  const out = new Uint8Array(raw.length);
+  for (let i = 0; i < raw.length; i++) out[i] = raw.charCodeAt(i);
+  return out;
+}
+
+/**
+ * @param {{type: string, length: number, deflate: string}} packed
+ * @returns {Promise<any>}
+ */
+async function unpacked(packed) {
+  const stream = new Blob([bytes(packed.deflate)]).stream().pipeThrough(new DecompressionStream("deflate"));
+  const buffer = await new Response(stream).arrayBuffer();
+  if (packed.type === "text") return new TextDecoder().decode(buffer);
+  const array = new ARRAYS[packed.type](buffer);
+  if (array.length !== packed.length) throw new Error("an array of the run is incomplete");
+  return array;
+}
+
+/** @param {any} value */
+function isPacked(value) {
+  return typeof value.deflate === "string" && typeof value.type === "string" && typeof value.length === "number";
+}
+
+/**
+ * Replaces all packed arrays below a value, in place.
+ * @param {any} value
+ * @param {Promise<void>[]} waiting
+ */
+function unpack(value, waiting) {
+  if (value === null || typeof value !== "object") return;
+  for (const key of Object.keys(value)) {
+    const child = value[key];
+    if (child === null || typeof child !== "object") continue;
+    if (isPacked(child)) waiting.push(unpacked(child).then((array) => void (value[key] = array)));
+    else unpack(child, waiting);
+  }
+}
+
+/**
+ * All data of the page.
+ * @returns {Promise<{runs: any[], difference: any, generator: string, missing: string}>}
+ */
+export async function load() {
+  const data = JSON.parse(document.getElementById("data")?.textContent ?? "null");
+  /** @type {Promise<void>[]} */
+  const waiting = [];
+  unpack(data.runs, waiting);
+  await Promise.all(waiting);
+  return data;
+}

@@ -1,0 +1,111 @@
+// @ts-check
+/** The messages as a sequence diagram that scrolls with the time, and the steps as a list. */
+
+import { upperBound } from "./course.js";
+import { el, shorten, svg } from "./dom.js";
+import { LongList } from "./list.js";
+
+const ROW = 24;
+const COLUMN = 84;
+const TIME = 62;
+
+/** @typedef {import("./clock.js").Clock} Clock */
+
+export class Messages {
+  /**
+   * @param {HTMLElement} host
+   * @param {any} run
+   * @param {Clock} clock
+   * @param {(message: any) => void} onMessage
+   */
+  constructor(host, run, clock, onMessage) {
+    this.clock = clock;
+    this.messages = run.happenings?.messages ?? [];
+    this.parties = run.happenings?.parties ?? [];
+    this.times = Float64Array.from(this.messages, (/** @type {any} */ m) => m.t);
+    const heads = this.parties.map((/** @type {any} */ p) => el("span", { class: "party", text: p.name, title: p.name }));
+    host.append(el("div", { class: "parties", "aria-hidden": "true" }, el("span", { class: "when" }), ...heads));
+    this.list = new LongList(host, {
+      label: "Messages", count: this.messages.length, height: ROW, row: (i) => this.row(i),
+      onRow: (i) => {
+        onMessage(this.messages[i]);
+        this.list.go(i);
+      },
+    });
+  }
+
+  /** @param {number} i */
+  row(i) {
+    const m = this.messages[i];
+    const width = this.parties.length * COLUMN;
+    const x = (/** @type {number} */ party) => (party + 0.5) * COLUMN;
+    const [a, b] = [x(m.from), x(m.to)];
+    const way = b > a ? 1 : -1;
+    const drawing = svg("svg", { width, height: ROW, class: "arrow", "aria-hidden": "true" });
+    this.parties.forEach((/** @type {any} */ _, /** @type {number} */ p) => {
+      drawing.append(svg("line", { x1: x(p), x2: x(p), y1: 0, y2: ROW, class: "life" }));
+    });
+    drawing.append(
+      svg("line", { x1: a, x2: b - way * 6, y1: ROW / 2, y2: ROW / 2, class: "line" }),
+      svg("path", { d: `M${b} ${ROW / 2}l${-way * 8} -4v8z`, class: "head" }),
+    );
+    const said = `${m.channel}: ${m.text}`;
+    return el(
+      "div", { class: m.t <= this.clock.t + 1e-9 ? "message" : "message later", title: `${said}\n${m.what} at ${m.t.toFixed(3)} s` },
+      el("span", { class: "when", text: m.t.toFixed(2) }), drawing,
+      el("span", { class: "said" }, el("b", { text: m.channel }), ` ${shorten(m.text, 200)}`),
+      el("span", { class: "hidden", text: `from ${this.parties[m.from]?.name} to ${this.parties[m.to]?.name}` }),
+    );
+  }
+
+  /** How many messages have been sent by a moment. */
+  count() {
+    return upperBound(this.times, this.clock.t + 1e-9);
+  }
+
+  /**
+   * The moment of the next message, or the one before; NaN: there is none.
+   * @param {number} by
+   */
+  next(by) {
+    const i = by > 0 ? this.count() : upperBound(this.times, this.clock.t - 1e-9) - 1;
+    return this.times[i] ?? NaN;
+  }
+
+  update() {
+    const last = this.count() - 1;
+    if (last !== this.list.current) this.list.go(last);
+  }
+}
+
+export class Steps {
+  /**
+   * @param {HTMLElement} host
+   * @param {Clock} clock
+   */
+  constructor(host, clock) {
+    this.clock = clock;
+    this.list = new LongList(host, {
+      label: "Steps", count: clock.course.steps, height: ROW, row: (i) => this.row(i),
+      onRow: (i) => clock.step(i + 1),
+    });
+  }
+
+  /** @param {number} i */
+  row(i) {
+    const course = this.clock.course;
+    const t = course.occurred(i + 1);
+    const bound = course.bound(i + 1).map(([name, value]) => `${name} = ${value.replace(/\s+/g, " ")}`).join(", ");
+    const when = course.clock ? course.clock[i] : course.time[i];
+    const time = this.clock.course.run.clock === "seconds" ? course.time[i].toFixed(2) : String(when);
+    return el(
+      "div", { class: i < this.clock.k ? "message" : "message later", title: `${t.name}\n${shorten(bound, 2000)}` },
+      el("span", { class: "when", text: String(i + 1) }), el("span", { class: "when", text: course.run.clock === "seconds" || course.clock ? time : "" }),
+      el("span", { class: "said" }, el("b", { text: t.short.replace(/\s+/g, " ") }), ` ${shorten(bound, 160)}`),
+    );
+  }
+
+  update() {
+    if (this.clock.k - 1 !== this.list.current) this.list.go(this.clock.k - 1);
+  }
+}

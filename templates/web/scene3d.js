@@ -1,0 +1,207 @@
+// @ts-check
+/** The cell as a scene of three.js: meshes, arms, parts, marks. What moves is set by `cellview.js`. */
+
+import { frames } from "./kinematics.js";
+
+const THREE = /** @type {any} */ (globalThis).THREE;
+
+const CREASE = Math.cos((38 * Math.PI) / 180);
+
+/**
+ * The triangles of a mesh of the description, with normals that are smooth but across sharp edges.
+ * @param {any} mesh
+ */
+export function geometryOf(mesh) {
+  const n = mesh.points.length / 3;
+  const position = new Float32Array(3 * n);
+  for (let axis = 0; axis < 3; axis++) {
+    const scale = mesh.size[axis] / 65535;
+    for (let i = 0; i < n; i++) position[3 * i + axis] = mesh.low[axis] + mesh.points[axis * n + i] * scale;
+  }
+  const index = mesh.triangles;
+  const faces = index.length / 3;
+  const flat = new Float32Array(3 * faces);
+  const length = new Float32Array(faces);
+  /** @type {number[][]} */
+  const around = Array.from({ length: n }, () => []);
+  for (let f = 0; f < faces; f++) {
+    const [a, b, c] = [index[3 * f] * 3, index[3 * f + 1] * 3, index[3 * f + 2] * 3];
+    const ux = position[b] - position[a], uy = position[b + 1] - position[a + 1], uz = position[b + 2] - position[a + 2];
+    const vx = position[c] - position[a], vy = position[c + 1] - position[a + 1], vz = position[c + 2] - position[a + 2];
+    flat[3 * f] = uy * vz - uz * vy;
+    flat[3 * f + 1] = uz * vx - ux * vz;
+    flat[3 * f + 2] = ux * vy - uy * vx;
+    length[f] = Math.hypot(flat[3 * f], flat[3 * f + 1], flat[3 * f + 2]) || 1;
+    for (let k = 0; k < 3; k++) around[index[3 * f + k]].push(f);
+  }
+  const corners = new Float32Array(9 * faces);
+  const normals = new Float32Array(9 * faces);
+  for (let f = 0; f < faces; f++) {
+    for (let k = 0; k < 3; k++) {
+      const point = index[3 * f + k];
+      const at = 9 * f + 3 * k;
+      let x = 0, y = 0, z = 0;
+      for (const g of around[point]) {
+        const dot = flat[3 * f] * flat[3 * g] + flat[3 * f + 1] * flat[3 * g + 1] + flat[3 * f + 2] * flat[3 * g + 2];
+        if (dot < CREASE * length[f] * length[g]) continue;
+        x += flat[3 * g];
+        y += flat[3 * g + 1];
+        z += flat[3 * g + 2];
+      }
+      const size = Math.hypot(x, y, z) || 1;
+      normals.set([x / size, y / size, z / size], at);
+      corners.set(position.subarray(3 * point, 3 * point + 3), at);
+    }
+  }
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(corners, 3));
+  geometry.setAttribute("normal", new THREE.BufferAttribute(normals, 3));
+  return geometry;
+}
+
+/**
+ * @param {any} object
+ * @param {ArrayLike<number>} frame by rows
+ */
+export function place(object, frame) {
+  object.matrixAutoUpdate = false;
+  const f = Array.from(frame);
+  object.matrix.set(...f);
+  object.matrixWorldNeedsUpdate = true;
+}
+
+export class CellScene {
+  /** @param {any} cell of the description */
+  constructor(cell) {
+    this.cell = cell;
+    this.scene = new THREE.Scene();
+    /** @type {Map<number, any>} */
+    this.geometries = new Map();
+    /** @type {Map<string, any>} */
+    this.materials = new Map();
+    this.light();
+    for (const body of cell.bodies) {
+      const group = this.group(body.visuals);
+      group.name = body.name;
+      this.scene.add(group);
+    }
+    this.robots = cell.robots.map((/** @type {any} */ r) => this.robot(r));
+    this.parts = cell.parts.map((/** @type {any} */ p) => {
+      const group = this.group(cell.kinds[p.kind] ?? []);
+      group.visible = false;
+      this.scene.add(group);
+      return group;
+    });
+    this.marks = this.markMesh();
+    this.box = this.extent();
+  }
+
+  light() {
+    this.sky = new THREE.HemisphereLight(0xf4f8ff, 0x7d858e, 0.5);
+    this.sky.position.set(0, 0, 1);
+    this.sun = new THREE.DirectionalLight(0xfff4e2, 0.58);
+    this.fill = new THREE.DirectionalLight(0xdfeaff, 0.16);
+    this.scene.add(this.sky, this.sun, this.sun.target, this.fill, this.fill.target);
+  }
+
+  /** @param {number} mesh */
+  geometry(mesh) {
+    let found = this.geometries.get(mesh);
+    if (!found) {
+      found = geometryOf(this.cell.meshes[mesh]);
+      this.geometries.set(mesh, found);
+    }
+    return found;
+  }
+
+  /** @param {number[]} rgba */
+  material(rgba) {
+    const key = rgba.join(" ");
+    let found = this.materials.get(key);
+    if (!found) {
+      const colour = new THREE.Color(rgba[0], rgba[1], rgba[2]);
+      const isMetal = Math.max(...rgba.slice(0, 3)) - Math.min(...rgba.slice(0, 3)) < 0.08;
+      found = new THREE.MeshPhongMaterial({
+        color: colour, shininess: isMetal ? 45 : 28, specular: isMetal ? 0x3a3d42 : 0x26282b,
+        transparent: rgba[3] < 1, opacity: rgba[3], side: rgba[3] < 1 ? THREE.DoubleSide : THREE.FrontSide,
+      });
+      this.materials.set(key, found);
+    }
+    return found;
+  }
+
+  /** @param {any[][]} visuals */
+  group(visuals) {
+    const group = new THREE.Group();
+    for (const [mesh, frame, rgba, scale] of visuals) {
+      if (!this.cell.meshes[mesh]?.triangles.length) continue;
+      const object = new THREE.Mesh(this.geometry(mesh), this.material(rgba));
+      place(object, frame);
+      object.matrix.scale(new THREE.Vector3(...scale));
+      object.castShadow = object.receiveShadow = rgba[3] >= 1;
+      group.add(object);
+    }
+    return group;
+  }
+
+  /** @param {any} robot */
+  robot(robot) {
+    const links = robot.links.map((/** @type {any} */ link) => {
+      const group = this.group(link.visuals);
+      group.name = `${robot.name}/${link.name}`;
+      this.scene.add(group);
+      return group;
+    });
+    frames(robot, robot.home).forEach((frame, i) => place(links[i], frame));
+    return { robot, links };
+  }
+
+  /** A small dome where a counted action of a tool has ended; as many are shown as have been made. */
+  markMesh() {
+    const geometry = new THREE.SphereGeometry(0.014, 14, 8, 0, Math.PI * 2, 0, Math.PI / 2);
+    geometry.rotateX(-Math.PI / 2);
+    geometry.scale(1, 1, 0.7);
+    const material = new THREE.MeshPhongMaterial({ color: 0xd9a520, specular: 0x775511, shininess: 60, side: THREE.DoubleSide });
+    const mesh = new THREE.InstancedMesh(geometry, material, Math.max(this.cell.marks.length, 1));
+    this.cell.marks.forEach((/** @type {any} */ mark, /** @type {number} */ i) => {
+      const frame = new THREE.Matrix4();
+      frame.set(.../** @type {[any]} */ (mark.frame));
+      mesh.setMatrixAt(i, frame);
+    });
+    mesh.count = 0;
+    mesh.frustumCulled = false;
+    this.scene.add(mesh);
+    return mesh;
+  }
+
+  /** The box around what stands here, without the floor. */
+  extent() {
+    const box = new THREE.Box3();
+    this.scene.updateMatrixWorld(true);
+    for (const child of this.scene.children) {
+      if (child.isGroup && child.name && child.name !== "floor" && child.children.length) box.expandByObject(child);
+    }
+    if (box.isEmpty()) box.set(new THREE.Vector3(-1, -1, 0), new THREE.Vector3(1, 1, 2));
+    return box;
+  }
+
+  /** Light and shadow that suit the size of the cell. */
+  aim() {
+    const centre = this.box.getCenter(new THREE.Vector3());
+    const size = this.box.getSize(new THREE.Vector3()).length();
+    this.sun.position.set(centre.x + 0.35 * size, centre.y - 0.4 * size, centre.z + 0.9 * size);
+    this.sun.target.position.copy(centre);
+    this.fill.position.set(centre.x - 0.6 * size, centre.y + 0.7 * size, centre.z + 0.3 * size);
+    this.fill.target.position.copy(centre);
+    this.sun.castShadow = true;
+    this.sun.shadow.mapSize.set(2048, 2048);
+    const camera = this.sun.shadow.camera;
+    camera.left = camera.bottom = -0.6 * size;
+    camera.right = camera.top = 0.6 * size;
+    camera.near = 0.05 * size;
+    camera.far = 2.2 * size;
+    this.sun.shadow.bias = -0.0006;
+    this.sun.shadow.normalBias = 0.01;
+    this.sun.shadow.radius = 2;
+  }
+}

@@ -1,0 +1,126 @@
+// @ts-check
+/** Finding a transition, a place, or a value that occurs in the run. */
+
+import { el, shorten } from "./dom.js";
+
+const MOST = 40;
+
+/** @typedef {import("./clock.js").Clock} Clock */
+/** @typedef {{kind: string, text: string, more: string, go: () => void}} Found */
+
+export class Search {
+  /**
+   * @param {HTMLElement} host
+   * @param {Clock} clock
+   * @param {{onTransition: (t: number) => void, onPlace: (p: number) => void}} actions
+   */
+  constructor(host, clock, actions) {
+    this.clock = clock;
+    this.actions = actions;
+    this.field = el("input", {
+      type: "search", placeholder: "Find transition, place, value  ( / )", "aria-label": "Find a transition, a place or a value",
+      role: "combobox", "aria-expanded": "false", "aria-controls": "found", autocomplete: "off", spellcheck: "false",
+    });
+    this.list = el("ul", { id: "found", role: "listbox", hidden: true });
+    host.append(this.field, this.list);
+    this.field.addEventListener("input", () => this.find());
+    this.field.addEventListener("keydown", (/** @type {KeyboardEvent} */ e) => this.key(e));
+    this.field.addEventListener("blur", () => setTimeout(() => this.close(), 150));
+  }
+
+  focus() {
+    this.field.focus();
+    this.field.select();
+  }
+
+  close() {
+    this.list.hidden = true;
+    this.field.setAttribute("aria-expanded", "false");
+  }
+
+  /** @param {KeyboardEvent} e */
+  key(e) {
+    if (e.key === "Escape") {
+      this.close();
+      this.field.blur();
+    }
+    const items = [...this.list.children];
+    const at = items.findIndex((i) => i.getAttribute("aria-selected") === "true");
+    if (e.key === "ArrowDown" || e.key === "ArrowUp") {
+      e.preventDefault();
+      const next = items[(at + (e.key === "ArrowDown" ? 1 : items.length - 1)) % items.length];
+      items.forEach((i) => i.setAttribute("aria-selected", String(i === next)));
+      next?.scrollIntoView({ block: "nearest" });
+    }
+    if (e.key === "Enter" && this.found?.length) {
+      this.found[Math.max(at, 0)].go();
+      this.close();
+    }
+  }
+
+  find() {
+    const word = this.field.value.trim().toLowerCase();
+    this.found = word ? this.search(word) : [];
+    this.list.replaceChildren(
+      ...this.found.map((f, i) => {
+        const item = el("li", { role: "option", "aria-selected": String(i === 0) },
+          el("span", { class: `kind ${f.kind}`, text: f.kind }), el("b", { text: shorten(f.text, 60) }), el("span", { text: shorten(f.more, 70) }));
+        item.onpointerdown = () => {
+          f.go();
+          this.close();
+        };
+        return item;
+      }));
+    if (word && !this.found.length) this.list.append(el("li", { class: "note", text: "Nothing has that name or value." }));
+    this.list.hidden = !word;
+    this.field.setAttribute("aria-expanded", String(Boolean(word)));
+  }
+
+  /**
+   * @param {string} word
+   * @returns {Found[]}
+   */
+  search(word) {
+    const { course } = this.clock;
+    /** @type {Found[]} */
+    const found = [];
+    course.net.transitions.forEach((/** @type {any} */ t, /** @type {number} */ i) => {
+      if (t.name.toLowerCase().includes(word)) {
+        found.push({ kind: "transition", text: t.short, more: t.name, go: () => this.actions.onTransition(i) });
+      }
+    });
+    course.net.places.forEach((/** @type {any} */ p, /** @type {number} */ i) => {
+      if (p.name.toLowerCase().includes(word)) {
+        found.push({ kind: "place", text: p.short, more: p.name, go: () => this.actions.onPlace(i) });
+      }
+    });
+    return [...found.slice(0, MOST), ...this.values(word)];
+  }
+
+  /**
+   * Where a value is bound, from the current step on.
+   * @param {string} word
+   * @returns {Found[]}
+   */
+  values(word) {
+    const { course } = this.clock;
+    const texts = new Set();
+    course.texts.forEach((/** @type {string} */ text, /** @type {number} */ i) => {
+      if (text.toLowerCase().includes(word)) texts.add(i);
+    });
+    /** @type {Found[]} */
+    const found = [];
+    for (let n = 0; texts.size && n < course.steps && found.length < MOST; n++) {
+      const k = ((this.clock.k + n) % course.steps) + 1;
+      for (let i = course.bindingStart[k - 1]; i < course.bindingStart[k]; i++) {
+        if (!texts.has(course.binding[i])) continue;
+        const t = course.occurred(k);
+        const name = t.variables[i - course.bindingStart[k - 1]];
+        const text = `${name} = ${course.texts[course.binding[i]].replace(/\s+/g, " ")}`;
+        found.push({ kind: "value", text, more: `step ${k}: ${t.short}`, go: () => this.clock.step(k) });
+        break;
+      }
+    }
+    return found;
+  }
+}

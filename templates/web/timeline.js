@@ -1,0 +1,500 @@
+// @ts-check
+/** Who does what when, with messages between them, and curves below, on one axis with one cursor. */
+
+import { upperBound } from "./course.js";
+import { colour, shorten } from "./dom.js";
+
+const HEAD = 20;
+const LEFT = 108;
+const GAP = 8;
+const LOWEST_LANE = 20;
+const HIGHEST_LANE = 32;
+const LOWEST_CURVE = 52;
+const HIGHEST_CURVE = 150;
+const MOST_LANES = 14;
+
+/** Colour-blind safe (Okabe and Ito), one colour a kind, as in gantt.png. */
+export const KINDS = /** @type {Record<string, string>} */ ({
+  joint: "#0072B2", home: "#56B4E9", linear: "#009E73", tool: "#D55E00", measure: "#CC79A7", wait: "#9aa3ad",
+});
+const CURVES = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"];
+
+/** @typedef {import("./clock.js").Clock} Clock */
+/** @typedef {{name: string, bars: any[], ticks: Float64Array | number[], steps: number[], party: number}} Lane */
+
+export class Timeline {
+  /**
+   * @param {HTMLElement} host
+   * @param {any} run
+   * @param {Clock} clock
+   * @param {{onBar: (bar: any) => void, onStep: (k: number) => void}} actions
+   */
+  constructor(host, run, clock, actions) {
+    this.run = run;
+    this.clock = clock;
+    this.actions = actions;
+    this.host = host;
+    this.canvas = document.createElement("canvas");
+    this.canvas.tabIndex = 0;
+    this.canvas.setAttribute("role", "slider");
+    this.canvas.setAttribute("aria-label", "Time");
+    this.canvas.setAttribute("aria-valuemin", "0");
+    this.canvas.setAttribute("aria-valuemax", clock.end.toFixed(2));
+    host.append(this.canvas);
+    this.from = 0;
+    this.to = clock.end;
+    this.lane = LOWEST_LANE;
+    this.curve = LOWEST_CURVE;
+    this.hover = null;
+    /** @type {Lane[]} */
+    this.lanes = run.happenings ? this.partyLanes() : this.pageLanes();
+    this.curves = this.charts();
+    new ResizeObserver(() => this.paint()).observe(host);
+    this.canvas.addEventListener("pointerdown", (e) => this.press(e));
+    this.canvas.addEventListener("pointermove", (e) => this.point(e));
+    this.canvas.addEventListener("pointerleave", () => this.leave());
+    this.canvas.addEventListener("wheel", (e) => this.wheel(e), { passive: false });
+    this.canvas.addEventListener("dblclick", () => this.whole());
+    host.style.setProperty("--wanted", `${this.height()}px`);
+  }
+
+  height() {
+    return HEAD + this.lanes.length * LOWEST_LANE + this.curves.length * (LOWEST_CURVE + GAP) + 6;
+  }
+
+  /** Lanes and curves share the height that there is. */
+  divide() {
+    const free = Math.max(this.host.clientHeight - 4, this.height()) - HEAD - 6;
+    const lanes = Math.max(this.lanes.length, 1);
+    const wanted = this.curves.length ? (0.5 * free) / lanes : free / lanes;
+    this.lane = Math.min(Math.max(wanted, LOWEST_LANE), HIGHEST_LANE);
+    const rest = free - this.lanes.length * this.lane;
+    this.curve = Math.min(Math.max(rest / Math.max(this.curves.length, 1) - GAP, LOWEST_CURVE), HIGHEST_CURVE);
+  }
+
+  /** A lane for the activities, one for each party. */
+  partyLanes() {
+    const { parties, bars, activities, owners } = this.run.happenings;
+    const course = this.clock.course;
+    /** @type {number[][]} */
+    const steps = parties.map(() => []);
+    for (let k = 1; k <= course.steps; k++) steps[owners[course.transition[k - 1]]].push(k);
+    const lanes = parties.map((/** @type {any} */ p, /** @type {number} */ i) => ({
+      name: p.name, party: i, steps: steps[i], ticks: steps[i].map((/** @type {number} */ k) => course.time[k - 1]),
+      bars: i === 0
+        ? activities.map((/** @type {any} */ a) => ({ ...a, kind: "activity", label: a.name, transition: -1, party: 0 }))
+        : bars.filter((/** @type {any} */ b) => b.party === i),
+    }));
+    return lanes;
+  }
+
+  /** Of a net without parties: a lane for each page instance on which something occurs, the busiest ones. */
+  pageLanes() {
+    const course = this.clock.course;
+    /** @type {Map<number, number[]>} */
+    const found = new Map();
+    for (let k = 1; k <= course.steps; k++) {
+      const at = course.occurred(k).instance;
+      if (!found.has(at)) found.set(at, []);
+      found.get(at)?.push(k);
+    }
+    const busiest = [...found].sort((a, b) => b[1].length - a[1].length).slice(0, MOST_LANES).map(([at]) => at);
+    return busiest.sort((a, b) => a - b).map((at) => {
+      const steps = found.get(at) ?? [];
+      const path = this.run.net.instances[at]?.path.split("/").pop() ?? "net";
+      return { name: path, party: -1, bars: [], steps, ticks: steps.map((k) => course.time[k - 1]) };
+    });
+  }
+
+  /** Curves that share a chart. */
+  charts() {
+    const curves = this.run.happenings?.curves ?? [];
+    const charts = [];
+    for (const [kind, title] of [["clearance", "clearance [mm]"], ["condition", "conditioning"]]) {
+      const own = curves.filter((/** @type {any} */ c) => c.kind === kind);
+      if (!own.length) continue;
+      const scale = kind === "clearance" ? 1000 : 1;
+      const limit = own[0].limit * scale;
+      let low = limit;
+      let high = limit;
+      for (const c of own) {
+        for (const v of c.v) {
+          if (!Number.isFinite(v)) continue;
+          low = Math.min(low, v * scale);
+          high = Math.max(high, v * scale);
+        }
+      }
+      charts.push({ title, kind, curves: own, scale, limit, low: Math.max(low * 0.85, 1), high: Math.max(high * 1.15, 2) });
+    }
+    return charts;
+  }
+
+  /** @param {number} t */
+  x(t) {
+    return LEFT + ((t - this.from) / (this.to - this.from)) * (this.width() - LEFT - 10);
+  }
+
+  /** @param {number} x */
+  time(x) {
+    return this.from + ((x - LEFT) / (this.width() - LEFT - 10)) * (this.to - this.from);
+  }
+
+  width() {
+    return this.host.clientWidth;
+  }
+
+  whole() {
+    this.from = 0;
+    this.to = this.clock.end;
+    this.paint();
+  }
+
+  /** @param {WheelEvent} e */
+  wheel(e) {
+    if (e.ctrlKey || Math.abs(e.deltaX) < Math.abs(e.deltaY)) {
+      if (!e.ctrlKey && !e.altKey && this.host.scrollHeight > this.host.clientHeight + 2 && !e.shiftKey) return;
+      e.preventDefault();
+      this.zoom(Math.exp(e.deltaY * 0.002), this.time(e.offsetX));
+    } else {
+      e.preventDefault();
+      this.pan((e.deltaX / this.width()) * (this.to - this.from));
+    }
+  }
+
+  /**
+   * @param {number} by
+   * @param {number} at
+   */
+  zoom(by, at) {
+    const span = Math.min(Math.max((this.to - this.from) * by, 0.05), this.clock.end);
+    const share = (at - this.from) / (this.to - this.from);
+    this.from = Math.min(Math.max(at - share * span, 0), this.clock.end - span);
+    this.to = this.from + span;
+    this.paint();
+  }
+
+  /** @param {number} by */
+  pan(by) {
+    const span = this.to - this.from;
+    this.from = Math.min(Math.max(this.from + by, 0), this.clock.end - span);
+    this.to = this.from + span;
+    this.paint();
+  }
+
+  /** @param {PointerEvent} e */
+  press(e) {
+    this.canvas.setPointerCapture(e.pointerId);
+    this.isDragging = true;
+    const bar = this.barAt(e.offsetX, e.offsetY);
+    if (bar) this.actions.onBar(bar);
+    else this.clock.seek(this.time(e.offsetX));
+    this.canvas.onpointerup = () => {
+      this.isDragging = false;
+      this.canvas.onpointerup = null;
+    };
+  }
+
+  /** @param {PointerEvent} e */
+  point(e) {
+    if (this.isDragging && e.buttons) {
+      this.clock.seek(this.time(e.offsetX));
+      return;
+    }
+    this.hover = { x: e.offsetX, y: e.offsetY };
+    this.canvas.title = this.tip(e.offsetX, e.offsetY);
+    this.paint();
+  }
+
+  leave() {
+    this.hover = null;
+    this.paint();
+  }
+
+  /**
+   * @param {number} x
+   * @param {number} y
+   */
+  barAt(x, y) {
+    const lane = this.lanes[Math.floor((y - HEAD) / this.lane)];
+    if (!lane || y < HEAD) return null;
+    const t = this.time(x);
+    const inside = lane.bars.find((b) => b.start <= t && t < b.end);
+    if (inside) return inside;
+    // What takes little time is a few pixels wide at most, but can still be hit.
+    const slack = ((this.to - this.from) / this.width()) * 3;
+    return lane.bars.find((b) => b.start - slack <= t && t <= b.end + slack) ?? null;
+  }
+
+  /**
+   * @param {number} x
+   * @param {number} y
+   */
+  tip(x, y) {
+    const bar = this.barAt(x, y);
+    if (bar) {
+      const t = this.run.net.transitions[bar.transition];
+      const what = t ? `\n${t.name}, line ${bar.line}` : "";
+      return `${bar.label}: ${bar.start.toFixed(2)} to ${bar.end.toFixed(2)} s${what}`;
+    }
+    const events = this.run.happenings?.events ?? [];
+    const near = events.find((/** @type {any} */ v) => Math.abs(this.x(v.t) - x) < 4 && y < HEAD && v.kind !== "sense");
+    return near ? `${near.t.toFixed(2)} s: ${near.text}` : `${this.time(x).toFixed(2)}`;
+  }
+
+  /** The moment has changed: the window follows where it is not the whole. */
+  update() {
+    const { t } = this.clock;
+    this.canvas.setAttribute("aria-valuenow", t.toFixed(2));
+    this.canvas.setAttribute("aria-valuetext", `${t.toFixed(2)}, step ${this.clock.k}`);
+    const span = this.to - this.from;
+    if (span < this.clock.end * 0.999 && !this.isDragging && (t < this.from || t > this.from + 0.9 * span)) {
+      this.from = Math.min(Math.max(t - 0.15 * span, 0), this.clock.end - span);
+      this.to = this.from + span;
+    }
+    this.paint();
+  }
+
+  paint() {
+    if (this.isRequested) return;
+    this.isRequested = true;
+    requestAnimationFrame(() => {
+      this.isRequested = false;
+      this.draw();
+    });
+  }
+
+  draw() {
+    const w = this.width();
+    const h = Math.max(this.height(), this.host.clientHeight);
+    if (!w || !h) return;
+    const ratio = Math.min(devicePixelRatio, 2);
+    if (this.canvas.width !== Math.round(w * ratio) || this.canvas.height !== Math.round(h * ratio)) {
+      this.canvas.width = Math.round(w * ratio);
+      this.canvas.height = Math.round(h * ratio);
+      this.canvas.style.width = `${w}px`;
+      this.canvas.style.height = `${h}px`;
+    }
+    const c = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext("2d"));
+    c.setTransform(ratio, 0, 0, ratio, 0, 0);
+    c.clearRect(0, 0, w, h);
+    c.font = "12px system-ui, sans-serif";
+    c.textBaseline = "middle";
+    this.ink = { text: colour("text"), faint: colour("faint"), line: colour("line"), accent: colour("accent"), bar: colour("bar") };
+    this.axis(c, w, h);
+    this.divide();
+    this.lanes.forEach((lane, i) => this.drawLane(c, lane, HEAD + i * this.lane, w));
+    this.messages(c);
+    this.curves.forEach((chart, i) => this.chart(c, chart, HEAD + this.lanes.length * this.lane + GAP + i * (this.curve + GAP), w));
+    this.events(c, h);
+    this.cursor(c, h);
+  }
+
+  /**
+   * @param {CanvasRenderingContext2D} c
+   * @param {number} w
+   * @param {number} h
+   */
+  axis(c, w, h) {
+    const wanted = (this.to - this.from) / Math.max((w - LEFT) / 90, 1);
+    const power = 10 ** Math.floor(Math.log10(wanted));
+    const step = [1, 2, 5, 10].map((m) => m * power).find((s) => s >= wanted) ?? power;
+    c.fillStyle = this.ink?.faint ?? "";
+    c.strokeStyle = this.ink?.line ?? "";
+    c.lineWidth = 1;
+    c.textAlign = "center";
+    const digits = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+    const unit = this.run.clock === "seconds" ? " s" : "";
+    for (let t = Math.ceil(this.from / step) * step; t <= this.to + 1e-9; t += step) {
+      const x = Math.round(this.x(t)) + 0.5;
+      c.beginPath();
+      c.moveTo(x, HEAD);
+      c.lineTo(x, h);
+      c.stroke();
+      c.fillText(`${t.toFixed(digits)}${unit}`, Math.min(x, w - 22), HEAD / 2);
+    }
+    c.textAlign = "left";
+    c.fillText(this.run.clock === "seconds" ? "" : "step", 8, HEAD / 2);
+  }
+
+  /**
+   * @param {CanvasRenderingContext2D} c
+   * @param {Lane} lane
+   * @param {number} y
+   * @param {number} w
+   */
+  drawLane(c, lane, y, w) {
+    const LANE = this.lane;
+    c.fillStyle = this.ink?.text ?? "";
+    c.textAlign = "left";
+    c.fillText(shorten(lane.name, 15), 8, y + LANE / 2);
+    c.save();
+    c.beginPath();
+    c.rect(LEFT, y, w - LEFT, LANE);
+    c.clip();
+    for (const bar of lane.bars) {
+      if (bar.end < this.from || bar.start > this.to) continue;
+      const x = this.x(bar.start);
+      const width = Math.max(this.x(bar.end) - x, 1.5);
+      c.fillStyle = bar.kind === "activity" ? (this.ink?.bar ?? "") : (KINDS[bar.kind] ?? "#444");
+      c.globalAlpha = bar.kind === "activity" ? 0.9 : 1;
+      c.fillRect(x, y + 4, Math.max(width - 0.6, 1), LANE - 8);
+      c.globalAlpha = 1;
+      if (bar.start <= this.clock.t && this.clock.t < bar.end && bar.kind !== "activity") {
+        c.strokeStyle = this.ink?.text ?? "";
+        c.lineWidth = 1.5;
+        c.strokeRect(x, y + 3.5, width, LANE - 7);
+      }
+      const fits = Math.floor((Math.min(width, this.x(this.to) - x) - 6) / 6.2);
+      if (fits > 2) {
+        c.fillStyle = bar.kind === "activity" ? (this.ink?.text ?? "") : "#fff";
+        c.fillText(shorten(bar.label, fits), Math.max(x, LEFT) + 4, y + LANE / 2);
+      }
+    }
+    this.ticks(c, lane, y);
+    c.restore();
+  }
+
+  /**
+   * Marks of the steps, one a pixel at most.
+   * @param {CanvasRenderingContext2D} c
+   * @param {Lane} lane
+   * @param {number} y
+   */
+  ticks(c, lane, y) {
+    const LANE = this.lane;
+    c.fillStyle = this.ink?.text ?? "";
+    const first = Math.max(upperBound(lane.ticks, this.from) - 1, 0);
+    const last = upperBound(lane.ticks, this.to);
+    const isBare = lane.bars.length === 0;
+    let before = -1;
+    for (let i = first; i < last; ) {
+      const x = Math.round(this.x(lane.ticks[i]));
+      if (x !== before) c.fillRect(x, isBare ? y + 5 : y + LANE - 4, 1, isBare ? LANE - 10 : 4);
+      before = x;
+      i = Math.max(i + 1, upperBound(lane.ticks, this.time(x + 0.5)));
+    }
+  }
+
+  /** @param {CanvasRenderingContext2D} c */
+  messages(c) {
+    const LANE = this.lane;
+    const messages = this.run.happenings?.messages ?? [];
+    c.lineWidth = 1;
+    const seen = messages.filter((/** @type {any} */ m) => m.t >= this.from && m.t <= this.to).length;
+    const isCrowded = seen > this.width() / 14;
+    for (const m of messages) {
+      if (m.t < this.from || m.t > this.to) continue;
+      const x = Math.round(this.x(m.t)) + 0.5;
+      const [a, b] = [m.from, m.to].map((party) => HEAD + party * LANE + LANE / 2);
+      const isNow = Math.abs(m.t - this.clock.t) < 1e-6;
+      const down = b > a ? 1 : -1;
+      c.strokeStyle = c.fillStyle = isNow ? (this.ink?.accent ?? "") : (this.ink?.faint ?? "");
+      c.globalAlpha = isNow ? 1 : isCrowded ? 0.3 : 0.6;
+      c.beginPath();
+      c.moveTo(x, a + down * 7);
+      c.lineTo(x, b - down * 8);
+      c.stroke();
+      if (isCrowded && !isNow) continue;
+      c.beginPath();
+      c.moveTo(x, b - down * 6);
+      c.lineTo(x - 3, b - down * 11);
+      c.lineTo(x + 3, b - down * 11);
+      c.fill();
+    }
+    c.globalAlpha = 1;
+  }
+
+  /**
+   * @param {CanvasRenderingContext2D} c
+   * @param {any} chart
+   * @param {number} y
+   * @param {number} w
+   */
+  chart(c, chart, y, w) {
+    const CURVE = this.curve;
+    const [low, high] = [Math.log(chart.low), Math.log(chart.high)];
+    const at = (/** @type {number} */ v) => y + CURVE - ((Math.log(Math.max(v, chart.low)) - low) / (high - low)) * CURVE;
+    c.fillStyle = this.ink?.text ?? "";
+    c.fillText(chart.title, 8, y + 8);
+    c.save();
+    c.beginPath();
+    c.rect(LEFT, y - 1, w - LEFT, CURVE + 2);
+    c.clip();
+    c.strokeStyle = "#D55E00";
+    c.setLineDash([3, 3]);
+    c.beginPath();
+    c.moveTo(LEFT, at(chart.limit));
+    c.lineTo(w, at(chart.limit));
+    c.stroke();
+    c.setLineDash([]);
+    chart.curves.forEach((/** @type {any} */ curve, /** @type {number} */ i) => {
+      c.strokeStyle = CURVES[i % CURVES.length];
+      c.lineWidth = 1.5;
+      c.beginPath();
+      let isOpen = false;
+      const first = Math.max(upperBound(curve.t, this.from) - 2, 0);
+      const last = Math.min(upperBound(curve.t, this.to) + 2, curve.t.length);
+      for (let k = first; k < last; k++) {
+        const v = curve.v[k] * chart.scale;
+        if (!Number.isFinite(v)) {
+          isOpen = false;
+          continue;
+        }
+        if (isOpen) c.lineTo(this.x(curve.t[k]), at(v));
+        else c.moveTo(this.x(curve.t[k]), at(v));
+        isOpen = true;
+      }
+      c.stroke();
+    });
+    c.restore();
+    chart.curves.slice(0, 4).forEach((/** @type {any} */ curve, /** @type {number} */ i) => {
+      c.fillStyle = CURVES[i % CURVES.length];
+      c.fillText(shorten(curve.of.replace(/^(scene|self)\./, "$1 "), 14), 8, y + 22 + i * 12);
+    });
+  }
+
+  /**
+   * @param {CanvasRenderingContext2D} c
+   * @param {number} h
+   */
+  events(c, h) {
+    const rows = [...(this.run.happenings?.events ?? [])];
+    for (const mark of this.run.cell?.marks ?? []) rows.push({ t: mark.t, kind: "mark" });
+    const inks = /** @type {Record<string, string>} */ ({
+      warning: "#E69F00", fault: "#D00000", mark: "#b8860b", part: "#009E73", end: this.ink?.text });
+    for (const event of rows) {
+      const ink = inks[event.kind];
+      if (!ink || event.t < this.from || event.t > this.to) continue;
+      const x = this.x(event.t);
+      c.fillStyle = c.strokeStyle = ink;
+      c.beginPath();
+      if (event.kind === "mark") {
+        c.arc(x, HEAD - 4, 3, 0, 7);
+      } else {
+        c.moveTo(x, HEAD - 1);
+        c.lineTo(x - 4, HEAD - 8);
+        c.lineTo(x + 4, HEAD - 8);
+      }
+      c.fill();
+      if (event.kind === "fault") c.fillRect(x - 0.75, HEAD, 1.5, h);
+    }
+  }
+
+  /**
+   * @param {CanvasRenderingContext2D} c
+   * @param {number} h
+   */
+  cursor(c, h) {
+    const x = this.x(this.clock.t);
+    if (x < LEFT - 1) return;
+    c.fillStyle = this.ink?.accent ?? "";
+    c.fillRect(x - 1, HEAD - 6, 2, h);
+    c.beginPath();
+    c.arc(x, HEAD - 6, 5, 0, 7);
+    c.fill();
+    if (this.hover && this.hover.x > LEFT) {
+      c.fillStyle = this.ink?.faint ?? "";
+      c.fillRect(this.hover.x, HEAD, 1, h);
+    }
+  }
+}

@@ -1,0 +1,316 @@
+"""The replay page in a browser: it shows what token game and kinematics say, and everything is connected."""
+
+from __future__ import annotations
+
+import json
+import random
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from helpers.browser import Page, launched, opened
+from helpers.shown import PAIR, described
+from pn2code.diagnostics import Diagnostics
+from pn2code.net.source import read
+from pn2code.replay import run as runs
+from pn2code.replay.motion import Motion
+from pn2code.replay.page import page
+from pn2code.robot.transforms import Array
+from pn2code.run.cell import RunOptions, RunResult, run_cell
+from pn2code.run.engine import Engine
+from pn2code.semantics.game.marking import BindingElement
+from pn2code.semantics.game.report import places
+from pn2code.semantics.game.token_game import Game
+from pn2code.trace.replay import replay_lines
+
+MOMENTS = 50
+TOLERANCE_M = 1e-4
+
+
+@dataclass
+class Between:
+    """Notes where the arms are between the samples, as the motions themselves say it."""
+
+    chance: random.Random = field(default_factory=lambda: random.Random(7))
+    last: float = 0.0
+    seen: list[tuple[float, str, Array]] = field(default_factory=list)
+
+    def begun(self, engine: Engine) -> None: ...
+
+    def advanced(self, engine: Engine) -> None: ...
+
+    def ended(self, engine: Engine) -> None: ...
+
+    def sampled(self, engine: Engine, t: float, joints: Mapping[str, Array]) -> None:
+        now = self.chance.uniform(max(self.last, engine.now), t)
+        for robot in engine.robots:
+            if robot.arm is not None and robot.motion is not None:
+                self.seen.append((now, robot.name, np.array(robot.joints(now))))
+        self.last = t
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A run of the riveting cell, its page, and what it must show."""
+
+    result: RunResult
+    file: Path
+    between: Between
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Any]:
+    """The browser of this file."""
+    with launched() as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def shown(
+    root: Path, tmp_path_factory: pytest.TempPathFactory, quick_build: None, chromium: Any
+) -> Shown:
+    out = tmp_path_factory.mktemp("riveting")
+    motion, between, d = Motion(), Between(), Diagnostics()
+    options = RunOptions(out=out, backend="fake", checked=False)
+    result = run_cell(root / "examples/riveting", options, d, [motion, between])
+    assert result is not None, [e.message for e in d.errors]
+    document = read(root / "examples/riveting/cell.cpn", Diagnostics())
+    assert document is not None
+    file = out / "replay.html"
+    file.write_text(page(runs.describe(result, motion, document)), encoding="utf-8")
+    return Shown(result, file, between)
+
+
+@pytest.fixture(scope="module")
+def browser(shown: Shown, chromium: Any) -> Iterator[Page]:
+    with opened(chromium) as found:
+        found.open(shown.file)
+        yield found
+
+
+@pytest.mark.cc
+class TestRivetingCell:
+    """One page of the riveting cell, looked at from all sides."""
+
+    def test_it_is_one_small_file(self, shown: Shown) -> None:
+        assert shown.file.stat().st_size < 5_000_000
+
+    def test_markings_are_those_of_the_token_game(self, browser: Page, shown: Shown) -> None:
+        net = shown.result.prepared.generated.partition.net
+        markings: list[dict[str, str]] = []
+
+        def watch(game: Game, occurred: BindingElement | None, line: Mapping[str, Any]) -> None:
+            rows = {
+                (row["id"], row["instance"]): str(row["marking"])
+                for row in places(net, game.marking)
+            }
+            markings.append({p.name: rows[p.id, p.instance_number] for p in net.places})
+
+        record = shown.result.record
+        lines = [json.dumps(line) for line in (record.header, *record.events)]
+        storage = shown.result.prepared.config.storage
+        assert replay_lines(lines, net, storage, watch=watch).ok
+        times = [float(e["t"]) for e in record.events if "transition" in e]
+        chance = random.Random(3)
+        for _ in range(MOMENTS):
+            t = chance.uniform(0.0, record.time)
+            browser.ask("t => replay.seek(t)", t)
+            step = sum(x <= t for x in times)
+            assert dict(browser.ask("() => replay.marking()")) == markings[step]
+
+    def test_arms_are_where_the_kinematics_says(self, browser: Page, shown: Shown) -> None:
+        cell = shown.result.prepared.robot_cell
+        names = [r.name for r in cell.robots]
+        chosen = random.Random(5).sample(shown.between.seen, MOMENTS)
+        for t, name, q in chosen:
+            robot = cell.robot(name)
+            wanted = robot.T_world_base @ robot.kinematics.forward(q)
+            found = browser.ask("([r, t]) => replay.tcp(r, t)", [names.index(name), t])
+            frame = np.array(found).reshape(4, 4)
+            assert np.linalg.norm(frame[:3, 3] - wanted[:3, 3]) < TOLERANCE_M
+            assert np.abs(frame[:3, :3] - wanted[:3, :3]).max() < 1e-4
+
+    def test_a_bar_leads_to_the_transition_and_its_line(self, browser: Page, shown: Shown) -> None:
+        record = shown.result.record
+        action = next(a for a in record.actions if a.kind == "tool")
+        party = 1 + [r.name for r in shown.result.prepared.config.programs].index(action.robot)
+        middle = (action.start + action.end) / 2
+        at = browser.ask(
+            "([t, p]) => { const l = replay.page.timeline; const b = l.canvas.getBoundingClientRect();"
+            " return [b.x + l.x(t), b.y + 20 + (p + 0.5) * l.lane]; }",
+            [middle, party],
+        )
+        browser.ask("() => replay.seek(0)")
+        browser.page.mouse.click(*at)
+        assert browser.ask("() => replay.page.clock.t") == pytest.approx(action.start)
+        selected = browser.ask(
+            "() => replay.page.course.net.transitions[replay.page.transition].name"
+        )
+        assert selected == action.transition
+        assert browser.page.locator("#net .selected").count() >= 1
+        browser.page.get_by_role("tab", name="Code").click()
+        browser.page.get_by_role("combobox", name="Program").select_option(
+            label=f"{action.robot}.tdl"
+        )
+        top = browser.ask("() => document.querySelector('.mark.moves').style.top")
+        assert round(float(top.removesuffix("px")) / 17) + 1 == action.line
+
+    def test_a_line_of_code_leads_to_its_transition(self, browser: Page, shown: Shown) -> None:
+        block = next(
+            b
+            for f in shown.result.prepared.generated.files
+            if f.path == "net.c"
+            for b in f.blocks
+            if b.kind == "transition"
+        )
+        found = browser.ask("line => replay.page.code.transitionAt(0, line)", block.first)
+        assert (
+            browser.ask("i => replay.page.course.net.transitions[i].name", found) == block.element
+        )
+
+    def test_a_message_leads_to_its_place(self, browser: Page, shown: Shown) -> None:
+        browser.page.get_by_role("tab", name="Messages").click()
+        browser.ask("() => replay.seek(0)")
+        browser.page.locator(".panel.messages li").first.click()
+        place = browser.ask("() => replay.page.course.net.places[replay.page.place].short")
+        assert place == shown.result.record.traffic[0][1].channel
+
+    def test_keys_move_the_cursor(self, browser: Page, shown: Shown) -> None:
+        browser.page.locator("body").click(position={"x": 200, "y": 12})
+        keys = browser.page.keyboard
+        keys.press("Home")
+        before = browser.ask("() => replay.page.clock.k")
+        keys.press("ArrowRight")
+        assert browser.ask("() => replay.page.clock.k") == before + 1
+        keys.press("ArrowLeft")
+        assert browser.ask("() => replay.page.clock.k") == before
+        keys.press("]")
+        assert browser.ask("() => replay.page.clock.t") > 0
+        keys.press("End")
+        assert browser.ask("() => replay.page.clock.k") == browser.ask(
+            "() => replay.page.course.steps"
+        )
+        keys.press("Home")
+        keys.press("Space")
+        browser.wait("replay.page.clock.t > 0.05")
+        keys.press("Space")
+        assert browser.ask("() => replay.page.clock.isPlaying") is False
+
+    def test_rivets_appear_as_they_are_set(self, browser: Page, shown: Shown) -> None:
+        ends = sorted(a.end for a in shown.result.record.actions if a.label == "insert")
+        for t, count in ((ends[2] - 0.01, 2), (ends[2] + 0.01, 3), (0.0, 0)):
+            browser.ask("t => replay.seek(t)", t)
+            assert browser.ask("() => replay.page.cell.cell.marks.count") == count
+
+    def test_search_finds_transitions_places_and_values(self, browser: Page) -> None:
+        field = browser.page.get_by_role("combobox", name="Find a transition")
+        for word, kind in (
+            ("moveLinear", "transition"),
+            ("dadosrobo1", "place"),
+            ("5802.2", "value"),
+        ):
+            field.fill(word)
+            assert browser.page.locator(f"#found .kind.{kind}").count() >= 1
+        field.press("Enter")
+        assert browser.ask("() => replay.page.clock.k") > 0
+
+    def test_an_address_names_a_moment(self, browser: Page, shown: Shown) -> None:
+        browser.page.goto("about:blank")
+        browser.open(shown.file, "#t=33.42")
+        assert browser.ask("() => replay.page.clock.t") == 33.42
+
+    def test_nothing_was_complained_of_or_asked_for(self, browser: Page, shown: Shown) -> None:
+        assert browser.errors == []
+        own = {
+            shown.file.resolve().as_uri(),
+            f"{shown.file.resolve().as_uri()}#t=33.42",
+            "about:blank",
+        }
+        assert [
+            url for url in browser.asked if url not in own and not url.startswith("data:")
+        ] == []
+
+
+HOSTILE = "<img src=x onerror=alert(1)>"
+TURNED = {
+    "viewport": {"width": 390, "height": 844},
+    "reduced_motion": "reduce",
+    "color_scheme": "dark",
+}
+
+
+def written(folder: Path, shown: dict[str, Any], other: dict[str, Any] | None = None) -> Path:
+    file = folder / "page.html"
+    file.write_text(page(shown, other), encoding="utf-8")
+    return file
+
+
+def test_a_trace_without_arms_on_a_phone_in_the_dark(tmp_path: Path, chromium: Any) -> None:
+    file = written(tmp_path, described(tmp_path))
+    with opened(chromium, **TURNED) as browser:
+        browser.open(file, "#step=7")
+        assert browser.ask("() => replay.page.clock.k") == 7
+        assert browser.ask("() => document.documentElement.dataset.theme") == "dark"
+        assert browser.ask("() => document.documentElement.scrollWidth") <= 390
+        assert browser.ask("() => [...document.querySelectorAll('#net .tokens text')].length") > 0
+        assert browser.ask("() => document.querySelectorAll('.flight').length") == 0
+        browser.page.get_by_role("button", name="More").click()
+        assert browser.page.get_by_role("listbox", name="Steps").is_visible()
+        assert browser.errors == []
+
+
+def test_a_hostile_net_does_nothing(tmp_path: Path, chromium: Any) -> None:
+    text = PAIR.replace("page Sub", f'page Sub\n    place "{HOSTILE}" : STRING = 1`"{HOSTILE}"')
+    shown = described(tmp_path, text)
+    shown["title"] = f"</script><script>alert(2)</script>{HOSTILE}"
+    shown["facts"].append([HOSTILE, "javascript:alert(3)"])
+    shown["net"]["pages"][0]["name"] = HOSTILE
+    file = written(tmp_path, shown)
+    with opened(chromium) as browser:
+        browser.open(file, "#step=3")
+        field = browser.page.get_by_role("combobox", name="Find a transition")
+        field.fill("img")
+        assert "onerror" in browser.page.locator("#found").inner_text()
+        field.press("Escape")
+        browser.page.get_by_role("tab", name="Run").click()
+        browser.page.wait_for_timeout(300)
+        assert browser.dialogues == []
+        assert browser.page.locator("img, iframe, object").count() == 0
+        assert browser.errors == []
+
+
+def test_two_runs_beside_each_other(tmp_path: Path, chromium: Any) -> None:
+    (tmp_path / "b").mkdir()
+    other = described(
+        tmp_path / "b", PAIR.replace("out Out : n + 1", "out Out : if n = 3 then 9 else n + 1")
+    )
+    file = written(tmp_path, described(tmp_path), other)
+    with opened(chromium) as browser:
+        browser.open(file)
+        banner = browser.page.locator("#difference")
+        assert "First difference: step" in banner.inner_text()
+        banner.get_by_role("button").click()
+        step = int(banner.inner_text().split("step ")[1].split(".")[0])
+        assert browser.ask("() => [replay.page.course.at, replay.page.second.at]") == [step, step]
+        assert browser.page.locator(".sheet").count() == 2
+        assert browser.errors == []
+
+
+def test_a_moment_of_a_very_long_run_is_near_a_key(tmp_path: Path, chromium: Any) -> None:
+    """Many steps: seeking to and fro gives the same markings as going there step by step."""
+    text = PAIR.replace("[n < 40]", "[n < 4000]")
+    file = written(tmp_path, described(tmp_path, text, 6000))
+    with opened(chromium) as browser:
+        browser.open(file)
+        script = """() => { const c = replay.page.course, r = [];
+            const text = () => c.net.places.map((_, i) => c.text(i)).join();
+            const there = new Map();
+            for (let k = 0; k <= c.steps; k++) { c.seek(k); if (k % 97 === 0) there.set(k, text()); }
+            for (const k of [...there.keys()].sort((a, b) => (a * 7919) % 6007 - (b * 7919) % 6007)) {
+              c.seek(k); if (text() !== there.get(k)) r.push(k); }
+            return [there.size, r]; }"""
+        assert browser.ask(script) == [62, []]

@@ -1,0 +1,123 @@
+"""`pn2code show`, and the page that `pn2code run` writes."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from helpers import netbuilder
+from helpers.shown import PAIR, recorded
+from pn2code.cli import main
+from pn2code.replay import three
+
+
+def pn2code(*arguments: object) -> int:
+    with pytest.raises(SystemExit) as left:
+        main.app(list(map(str, arguments)))
+    return int(left.value.code or 0)
+
+
+@pytest.fixture(scope="module")
+def run(root: Path, tmp_path_factory: pytest.TempPathFactory, quick_build: None) -> Path:
+    out = tmp_path_factory.mktemp("shown") / "run"
+    cell = root / "examples/minimal"
+    assert pn2code("run", cell, "--backend", "fake", "--no-pictures", "--unchecked", "-o", out) == 0
+    return out
+
+
+@pytest.mark.cc
+class TestRun:
+    """The smallest cell, run once."""
+
+    def test_the_folder_has_the_page_and_its_description(self, run: Path) -> None:
+        text = (run / "replay.html").read_text(encoding="utf-8")
+        assert text.startswith("<!DOCTYPE html>") and "SPDX-License-Identifier: MIT" in text
+        described = json.loads((run / "run.json").read_text(encoding="utf-8"))
+        assert described["pn2code"] == {"run": 1}
+        assert described["kind"] == "run" and described["verdict"]["word"] == "finished"
+        assert [r["name"] for r in described["cell"]["robots"]] == list(described["motion"])
+
+    def test_show_writes_the_same_page_again(self, run: Path, tmp_path: Path) -> None:
+        assert pn2code("show", run, "-o", tmp_path / "again.html") == 0
+        assert (tmp_path / "again.html").read_bytes() == (run / "replay.html").read_bytes()
+
+    def test_a_run_beside_itself_has_no_difference(self, run: Path, tmp_path: Path) -> None:
+        file = tmp_path / "both.html"
+        assert pn2code("show", run, "--compare", run, "-o", file) == 0
+        assert '"difference":null' in file.read_text(encoding="utf-8")
+
+    def test_its_trace_alone_is_shown_in_seconds(
+        self, run: Path, root: Path, tmp_path: Path
+    ) -> None:
+        described = tmp_path / "trace.json"
+        trace, cell = next(run.glob("*[!r].trace.jsonl")), root / "examples/minimal"
+        options = ("-o", tmp_path / "a.html", "--description", described)
+        assert pn2code("show", trace, cell, *options) == 0
+        found = json.loads(described.read_text(encoding="utf-8"))
+        whole = json.loads((run / "run.json").read_text(encoding="utf-8"))
+        assert (found["clock"], found["cell"]) == ("seconds", None)
+        assert found["course"] == whole["course"]
+        assert found["end"] == whole["end"]
+
+    def test_without_three_js_a_run_has_a_page_all_the_same(
+        self, run: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    ) -> None:
+        monkeypatch.setattr(three, "PACKAGE", "a_package_that_is_not_there")
+        assert pn2code("show", run, "-o", tmp_path / "flat.html") == 0
+        assert "three.js is not installed: pip install" in (tmp_path / "flat.html").read_text()
+
+    def test_no_page_where_none_is_wanted(self, root: Path, tmp_path: Path) -> None:
+        cell, flags = root / "examples/minimal", ("--no-pictures", "--unchecked", "--no-replay")
+        assert pn2code("run", cell, "--backend", "fake", *flags, "-o", tmp_path) == 0
+        assert not (tmp_path / "replay.html").exists() and not (tmp_path / "run.json").exists()
+
+
+@pytest.fixture
+def trace(tmp_path: Path) -> Path:
+    return recorded(netbuilder.write(PAIR, tmp_path / "net.cpn"), tmp_path / "a.trace.jsonl", 20)
+
+
+def test_a_long_trace_is_shown_in_part(trace: Path, tmp_path: Path) -> None:
+    described = tmp_path / "a.json"
+    options = ("--steps", 5, "--description", described, "-o", tmp_path / "a.html")
+    assert pn2code("show", trace, tmp_path / "net.cpn", *options) == 0
+    found = json.loads(described.read_text(encoding="utf-8"))
+    assert found["course"]["steps"] == 5
+    assert found["verdict"]["word"] == "cut"
+
+
+def test_a_trace_of_another_net_is_shown_as_far_as_it_goes(
+    trace: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    other = netbuilder.write(PAIR.replace("[n < 40]", "[n < 3]"), tmp_path / "other.cpn")
+    assert pn2code("show", trace, other, "-o", tmp_path / "a.html") == 1
+    assert "the next is not possible in this net" in capsys.readouterr().err
+    assert (tmp_path / "a.html").is_file()
+
+
+def test_what_cannot_be_shown_is_said(
+    trace: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    net = tmp_path / "net.cpn"
+    (tmp_path / "text.jsonl").write_text("hello\n")
+    (tmp_path / "empty").mkdir()
+    for arguments, why in (
+        ((trace,), "no net is named"),
+        ((tmp_path / "missing.jsonl", net), "cannot read"),
+        ((tmp_path / "text.jsonl", net), "neither the folder of a run nor a trace"),
+        ((tmp_path / "empty",), "`pn2code run` writes it"),
+        ((trace, net, "-o", tmp_path), "cannot write"),
+    ):
+        assert pn2code("show", *arguments) == 2
+        assert why in " ".join(capsys.readouterr().err.split())
+
+
+def test_a_trace_that_grows_for_ever_is_not_read_to_its_end(tmp_path: Path) -> None:
+    """Of a very large trace only the steps that are shown are read."""
+    net = netbuilder.write(PAIR, tmp_path / "net.cpn")
+    file = recorded(net, tmp_path / "a.trace.jsonl", 20)
+    with file.open("a", encoding="utf-8") as more:
+        more.write("this is not a line of a trace\n" * 1000)
+    assert pn2code("show", file, net, "--steps", 10, "-o", tmp_path / "a.html") == 0
