@@ -1,9 +1,9 @@
 """What compiling a net costs by its size: `./dev bench --compile`.
 
-The net is a ring of stations with a queue each: lists, records, code segments, a guard, and no two transitions alike,
-so that none of them share a C function. Told of each size: how long the generated C is, what generating and compiling
-it takes, and how fast the explorer is; in turn with `-O2`, with what `c_flags` has for large nets, and with what
-explorers of large nets have. Processor time.
+One net is a ring of stations with a queue each: lists, records, code segments, a guard, and no two transitions alike,
+so that none of them share a C function. In another one all places are counters of coloured tokens. Told of each size:
+how long the generated C is, what generating and compiling it takes, and how fast the explorer is; in turn with `-O2`,
+with what `c_flags` has for large nets, and with what explorers of large nets have. Processor time.
 """
 
 from __future__ import annotations
@@ -27,9 +27,11 @@ from pn2code.verify.exploring import programs
 from pn2code.verify.exploring.programs import Sizes
 
 SIZES = (100, 200, 300, 600)
+COUNTED = (66, 200)
 STATES = 1_000_000
 """So many are explored, of each size; the ring has more."""
 WAYS = (("-O2",), ("-O2", *c_flags.QUICKER), programs.LARGE.net)
+COUNTED_WAYS = (("-O2",), programs.PACKED.net, programs.QUICK.net)
 
 
 def ring(transitions: int) -> str:
@@ -73,6 +75,31 @@ def ring(transitions: int) -> str:
     return "\n".join(lines + moves)
 
 
+def counters(transitions: int) -> str:
+    """A ring in which tokens of two colours go round and change, with resources and numbers beside it."""
+    lines = [
+        "net Counters", "  standard", "  colset K = int with 0..3;", "  colset C = with red | green | blue;",
+        "  colset KC = product K * C;", "  var k, m: K; var c, e: C;",
+        "  fun after c = case c of red => green | green => blue | blue => red",
+    ]  # fmt: skip
+    moves = []
+    for i in range(transitions):
+        begins = " = 1`(0, red) ++ 1`(1, green)" if i % 9 == 0 else ""
+        guard = f"k <> {i % 4}" if i % 2 else "k < 3 orelse c = red"
+        lines.append(f"  place P{i} : KC{begins}")
+        moves += [f"  trans T{i} guard [{guard}]", f"    in P{i} : (k, c)"]
+        if i % 3 == 0:
+            lines.append(f"  place R{i} : C = 1`red ++ 1`blue")
+            moves += [f"    in R{i} : e", f"    out R{i} : after e"]
+        if i % 3 == 1:
+            lines.append(f"  place F{i} : K = 2`1 ++ 1`{i % 4}")
+            moves += [f"    in F{i} : m", f"    out F{i} : (m + k + {i % 4}) mod 4"]
+        number = f"if c = red then (k + {1 + i % 3}) mod 4 else k"
+        colour = "after c" if i % 2 else "c"
+        moves.append(f"    out P{(i + 1) % transitions} : ({number}, {colour})")
+    return "\n".join(lines + moves)
+
+
 def measure(repeat: int) -> int:
     """Prints the table; the least of the repetitions."""
     print(
@@ -82,12 +109,14 @@ def measure(repeat: int) -> int:
     with tempfile.TemporaryDirectory(prefix="pn2code-bench-") as cache:
         os.environ["XDG_CACHE_HOME"] = cache  # nothing is there, so that all is compiled
         for size in SIZES:
-            _measure(size, repeat)
+            _measure(ring(size), WAYS, repeat)
+        for size in COUNTED:
+            _measure(counters(size), COUNTED_WAYS, repeat)
     return 0
 
 
-def _measure(size: int, repeat: int) -> None:
-    net = flat(ring(size))
+def _measure(text: str, ways: tuple[tuple[str, ...], ...], repeat: int) -> None:
+    net = flat(text)
     count = len(net.transitions)
     sizes = Sizes.start(net, {})
     start = time.process_time()
@@ -96,9 +125,9 @@ def _measure(size: int, repeat: int) -> None:
     if files is None:
         raise SystemExit("bench: the net cannot be generated")
     lines = sum(f.text.count("\n") for f in files)
-    compiled = [min(_compile(files, flags) for _ in range(repeat)) for flags in WAYS]
-    explored = _explore(files, repeat)
-    for flags, of_compiler, of_explorer in zip(WAYS, compiled, explored, strict=True):
+    compiled = [min(_compile(files, flags) for _ in range(repeat)) for flags in ways]
+    explored = _explore(files, ways, repeat)
+    for flags, of_compiler, of_explorer in zip(ways, compiled, explored, strict=True):
         print(
             f"| {count} | {lines:,} | {generated:.1f} | `{' '.join(flags)}` | {of_compiler:.1f} "
             f"| {1000 * of_compiler / count:.1f} | {of_explorer:.2f} |",
@@ -118,9 +147,11 @@ def _compile(files: tuple[OutputFile, ...], flags: tuple[str, ...]) -> float:
         return _work([*command, "-c", "net.c"], room)
 
 
-def _explore(files: tuple[OutputFile, ...], repeat: int) -> list[float]:
+def _explore(
+    files: tuple[OutputFile, ...], ways: tuple[tuple[str, ...], ...], repeat: int
+) -> list[float]:
     """Processor time of the explorers, in turn."""
-    hosts = [replace(programs.HOST, net=("-DPN_MANY", *flags)) for flags in WAYS]
+    hosts = [replace(programs.HOST, net=("-DPN_MANY", *flags)) for flags in ways]
     d = Diagnostics()
     with ExitStack() as stack:
         built = [stack.enter_context(toolchain.program(host, files, d)) for host in hosts]

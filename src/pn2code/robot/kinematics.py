@@ -16,6 +16,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, Protocol
 
 import numpy as np
@@ -125,6 +126,13 @@ class SphericalWrist:
         return self._robot.branches(T_base_tcp @ self._T_tcp_library)
 
 
+@lru_cache(maxsize=16)
+def _chain(arm: Arm) -> tuple[Chain, tuple[Any, Array] | str]:
+    """Worked out once for each arm, whatever tool it has."""
+    chain = Chain(arm)
+    return chain, derive(chain)
+
+
 class Kinematics:
     """Kinematics of one arm with one tool; lengths in m, angles in rad; frames are base and tcp."""
 
@@ -137,9 +145,8 @@ class Kinematics:
     @classmethod
     def of(cls, arm: Arm, tool: Tool | None, at: Origin, d: Diagnostics) -> Kinematics | None:
         """The kinematics of an arm; None (and a diagnostic) if there is no closed form for it."""
-        chain = Chain(arm)
+        chain, derived = _chain(arm)
         frame = np.eye(4) if tool is None else tool.T_flange_tcp
-        derived = derive(chain)
         if not isinstance(derived, str):
             return cls(arm, frame, chain, SphericalWrist(*derived, frame))
         form = parallel.derive(chain, frame)

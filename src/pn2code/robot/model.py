@@ -9,6 +9,7 @@ the cell's folder. The URDF is the only description: axes, limits and speeds are
 
 from __future__ import annotations
 
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -118,6 +119,13 @@ def find_arm(name: str, folder: Path, at: Origin, d: Diagnostics) -> Arm | None:
             Origin(str(tree.path)),
         )
         return None
+    return _arm(name, tree, flange)
+
+
+@lru_cache(maxsize=16)
+def _arm(name: str, tree: Urdf, flange: str) -> Arm:
+    chain = tree.chain(flange)
+    moving = [j for j in chain if j.type != "fixed"]
     return Arm(
         name=name,
         urdf=tree,

@@ -7,6 +7,7 @@ for PyBullet. Any robot's URDF in the usual form can be read, so that users brin
 from __future__ import annotations
 
 import copy
+from functools import lru_cache
 from pathlib import Path
 from typing import Any, Literal
 
@@ -90,18 +91,22 @@ def read(path: Path, d: Diagnostics) -> Urdf | None:
     if len(data) > _MAX_BYTES:
         d.error(codes.ROBOT_URDF, f"`{path}` has more than {_MAX_BYTES} bytes", at)
         return None
-    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
     try:
-        root = etree.fromstring(data, parser)
+        return _parsed(path, data)
     except etree.XMLSyntaxError as problem:
         line, column = problem.position
         d.error(codes.ROBOT_URDF, f"not XML: {problem.msg}", Origin(str(path), line, column))
         return None
-    try:
-        return _tree(path, root)
     except _BadError as problem:
         d.error(codes.ROBOT_URDF, str(problem), Origin(str(path), problem.line))
         return None
+
+
+@lru_cache(maxsize=16)
+def _parsed(path: Path, data: bytes) -> Urdf:
+    """The same text is read once: a cell may have several arms of a model, and is looked at in all its layouts."""
+    parser = etree.XMLParser(resolve_entities=False, no_network=True, load_dtd=False)
+    return _tree(path, etree.fromstring(data, parser))
 
 
 def _tree(path: Path, root: Any) -> Urdf:

@@ -37,9 +37,9 @@ QUICK = replace(HOST, net=("-O0",))
 """For small spaces: compiled in a fifth of the time. Only the net is slower, up to three times; the explorer is not."""
 LARGE = replace(HOST, net=("-DPN_MANY", "-Og"))
 """For nets of many transitions: a quarter of the compiler's time, and the explorer is as fast (docs/benchmarks.md)."""
-PACKED = replace(HOST, net=("-DPN_MANY", "-O2", "-finline"))
-"""For those whose places are counters, which are what the compiler optimizes best. It decides itself (PN_MANY) what is
-worth having in several copies."""
+PACKED = replace(HOST, net=("-DPN_MANY", "-O1"))
+"""For those whose places are counters, small functions that have to be inlined: three fifths of the time of `-O2`, and
+the explorer executes 2 % more instructions (docs/benchmarks.md)."""
 MANY = 40
 """Transitions of a net that is worth to be compiled quickly first."""
 FIRST_STATES = 100_000
