@@ -59,7 +59,9 @@ class Remembered:
         def explored() -> dict[str, Any] | None:
             return self._run(net, program, options, wishes, limits, d, search)
 
-        own = search is not None or limits.memory is not None or limits.processor_seconds is not None
+        own = (
+            search is not None or limits.memory is not None or limits.processor_seconds is not None
+        )
         if own or any(option in OUTSIDE for option in options):
             return explored()
         key = key_of(program, options)

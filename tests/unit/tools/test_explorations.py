@@ -17,7 +17,12 @@ from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.meanwhile import Meanwhile
 
 NET = flat("net n\n  standard\n  page P\n    place A = 1\n")
-BOUND = {"lower_multiset": [[1, 7]], "lower_colours": 1, "upper_multiset": [[2, 7]] * 3, "upper_colours": 3}  # fmt: skip
+BOUND = {
+    "lower_multiset": [[1, 7]],
+    "lower_colours": 1,
+    "upper_multiset": [[2, 7]] * 3,
+    "upper_colours": 3,
+}
 FOUND = {"complete": True, "error": None, "nodes": LARGE, "bounds": [BOUND]}
 Ask = Callable[..., int]
 
