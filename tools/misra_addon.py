@@ -10,6 +10,7 @@ Python that cppcheck finds, and so needs nothing of the project.
 
 from __future__ import annotations
 
+import gc
 import os
 import sys
 from typing import Any
@@ -33,5 +34,6 @@ def _at_names(checker: Any, configuration: Any, tokens: Any) -> None:
 misra.MisraChecker.misra_8_2 = _at_names
 
 if __name__ == "__main__":
+    gc.disable()  # tokens refer to each other, and are all needed to the end
     misra.main()
     sys.exit(misra.cppcheckdata.EXIT_CODE)

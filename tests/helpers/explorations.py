@@ -59,14 +59,13 @@ class Remembered:
         def explored() -> dict[str, Any] | None:
             return self._run(net, program, options, wishes, limits, d, search)
 
-        own = search is not None or limits.memory is not None or limits.processor_seconds is not None
-        if own or any(option in OUTSIDE for option in options):
+        if search is not None or limits.memory is not None or any(x in OUTSIDE for x in options):
             return explored()
         key = key_of(program, options)
         with alone(self._folder, key) as kept:  # whoever wants the same waits for it
             if kept.exists():
                 known: dict[str, Any] = json.loads(kept.read_text(encoding="utf-8"))
-                return known if is_answered(known, options) else explored()
+                return known if is_answered(known, options, limits) else explored()
             before = written(options)
             found = explored()
             if found is not None and is_worth_it(found) and written(options) == before:
@@ -95,24 +94,25 @@ def is_worth_it(found: Mapping[str, Any]) -> bool:
     is_whole = found["complete"] and found["error"] is None and found["nodes"] >= LARGE
     return bool(is_whole) and all(
         len(bound[f"{side}_multiset"]) == bound[f"{side}_colours"]
-        for bound in found["bounds"] or ()
+        for bound in found.get("bounds") or ()
         for side in ("lower", "upper")
-        if bound[f"{side}_multiset"] is not None
     )
 
 
-def is_answered(known: Mapping[str, Any], options: Sequence[str]) -> bool:
+def is_answered(known: Mapping[str, Any], options: Sequence[str], limits: Limits) -> bool:
     """Whether this exploration would not have come to a limit either."""
-    most = _limits(options)
+    whole = {int(place) for place in _value("--whole", options, "").split(",") if place}
     colours = [
         bound[f"{side}_colours"]
-        for bound in known["bounds"] or ()
+        for place, bound in enumerate(known.get("bounds") or ())
         for side in ("lower", "upper")
-        if bound[f"{side}_multiset"] is not None
+        if place not in whole
     ]
-    states, largest = most["--max-states"], most["--multiset-limit"]
-    return (states is None or known["nodes"] < states) and (
-        largest is None or max(colours, default=0) <= largest
+    processor_seconds = known["seconds"] * known["threads"]  # at most
+    return (
+        known["nodes"] < float(_value("--max-states", options, "inf"))
+        and max(colours, default=0) <= float(_value("--multiset-limit", options, "inf"))
+        and (limits.processor_seconds is None or processor_seconds <= limits.processor_seconds)
     )
 
 
@@ -126,5 +126,5 @@ def written(options: Sequence[str]) -> set[Path]:
     return found
 
 
-def _limits(options: Sequence[str]) -> dict[str, int | None]:
-    return {x: int(options[options.index(x) + 1]) if x in options else None for x in LIMITS}
+def _value(option: str, options: Sequence[str], without: str) -> str:
+    return options[options.index(option) + 1] if option in options else without

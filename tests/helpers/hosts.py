@@ -120,7 +120,7 @@ class Hosts:
                 capture_output=True,
                 text=True,
                 check=False,
-                timeout=300,
+                timeout=600,
                 cwd=folder,
                 env={"LD_LIBRARY_PATH": str(folder), "ASAN_OPTIONS": "detect_leaks=0"},
             )

@@ -20,7 +20,7 @@ NETS = 150
 
 
 def later() -> float:
-    return time.monotonic() + 60.0
+    return time.monotonic() + 600.0
 
 
 def nets(seeds: range) -> Iterator[tuple[random.Random, Tables, Graph]]:

@@ -66,7 +66,7 @@ class Machine:
         """Calls the script."""
         return subprocess.run(
             [self.project / "dev", *words], env={"PATH": str(self.programs)},
-            capture_output=True, text=True, check=False, timeout=60,
+            capture_output=True, text=True, check=False, timeout=600,
         )  # fmt: skip
 
     def calls(self) -> str:

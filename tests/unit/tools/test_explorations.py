@@ -17,8 +17,20 @@ from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.meanwhile import Meanwhile
 
 NET = flat("net n\n  standard\n  page P\n    place A = 1\n")
-BOUND = {"lower_multiset": [[1, 7]], "lower_colours": 1, "upper_multiset": [[2, 7]] * 3, "upper_colours": 3}  # fmt: skip
-FOUND = {"complete": True, "error": None, "nodes": LARGE, "bounds": [BOUND]}
+BOUND = {
+    "lower_multiset": [[1, 7]],
+    "lower_colours": 1,
+    "upper_multiset": [[2, 7]] * 3,
+    "upper_colours": 3,
+}
+FOUND = {
+    "complete": True,
+    "error": None,
+    "nodes": LARGE,
+    "bounds": [BOUND],
+    "seconds": 5.0,
+    "threads": 2,
+}
 Ask = Callable[..., int]
 
 
@@ -62,11 +74,14 @@ def ask(tmp_path: Path) -> Ask:
         ("--memory", "5", "--parent", "7", "--progress-every", "0.5"),
         ("--max-states", str(LARGE + 1)),
         ("--multiset-limit", "3"),
+        ("--multiset-limit", "2", "--whole", "0"),
     ],
 )
 def test_what_would_be_the_same_is_not_explored_again(ask: Ask, again: tuple[str, ...]) -> None:
-    assert ask("--memory", "4", "--parent", "6", "--max-states", "900000") == 1
+    whole = again[2:] if "--whole" in again else ()
+    assert ask("--memory", "4", "--parent", "6", "--max-states", "900000", *whole) == 1
     assert ask(*again) == 1
+    assert ask(*again, limits=Limits(processor_seconds=10.0)) == 1
 
 
 @pytest.mark.parametrize(
@@ -75,7 +90,7 @@ def test_what_would_be_the_same_is_not_explored_again(ask: Ask, again: tuple[str
         {"program": "explore-2"},
         {"questions": "another"},
         {"limits": Limits(memory=100)},
-        {"limits": Limits(processor_seconds=1.0)},
+        {"limits": Limits(processor_seconds=9.9)},
         {"search": Meanwhile(NET, {}, None, is_limited=False)},
         *({"options": o} for o in (
             ["--threads", "2"], ["--reduce", "time"], ["--no-graph"], ["--whole", "0"], ["--max-seconds", "9"],

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import gc
+
 import pytest
 
 from pace.choose import Asked, chosen, longest_first
@@ -98,3 +100,9 @@ def test_the_estimate_follows_the_pace_of_the_run() -> None:
 
 def test_clock() -> None:
     assert (clock(0.4), clock(187.0), clock(3600.0)) == ("0:00", "3:07", "60:00")
+
+
+def test_the_garbage_collector_leaves_what_was_collected_alone() -> None:
+    """It works all the same: some tests make circles that are large."""
+    assert gc.isenabled()
+    assert gc.get_freeze_count() > 10_000

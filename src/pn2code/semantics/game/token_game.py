@@ -45,7 +45,7 @@ from pn2code.semantics.values.multiset import MultiSet, TimedMultiSet
 __all__ = ["Binding", "BindingElement", "Game", "GameError", "Marking", "NotEnabled"]
 
 AT_START = Limits(steps=10_000_000)
-"""Of a declaration or an initial marking, which are computed once: one of some thousand sorted tokens takes millions."""
+"""Of a declaration or an initial marking, which are computed once: one of a thousand sorted tokens takes millions."""
 
 
 class NotEnabled(ValueError):  # noqa: N818
