@@ -19,7 +19,7 @@ from pn2code.base.resources import cnative_folder
 from pn2code.cli.main import app
 from pn2code.conform.cell import ProgramComparison
 from pn2code.conform.folder import compare
-from pn2code.conform.robot import DeviationError, PlacesAsFiles
+from pn2code.conform.places_as_files import DeviationError, PlacesAsFiles
 from pn2code.conform.supervisor import Report
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.output import OutputFile

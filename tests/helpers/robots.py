@@ -81,12 +81,13 @@ class Cell:
         *,
         extra: str = "",
         toml: str = "",
+        primitives: str = "",
     ) -> None:
         self.d = Diagnostics()
         self.end: Request | None = None
         net, loaded = load(_net(robot, channels, extra))
         assert net is not None, report(loaded.errors)
-        text = TOML
+        text = TOML.replace("[robots.robot1]", f"{primitives}[robots.robot1]")
         for c in channels:
             name, _, _ = c.split()
             text += f'[[channel]]\nplace = "{name}"\nfile = "{name}.robcad"\nkind = "data"\n'
@@ -226,7 +227,7 @@ def _net(robot: str, channels: tuple[str, ...], extra: str) -> str:
     for c in channels:
         name, direction, colset = c.split()
         variable = {"INT": "i", "BOOL": "a", "POSE": "p", "COLOUR": "e", "STRING": "s", "REAL": "w", "UNIT": "()",
-                    "PAIR": "(i, p)"}.get(colset, "x")  # fmt: skip
+                    "PAIR": "(i, p)"}.get(colset, "x" if f" m{name} :" not in extra else f"m{name}")  # fmt: skip
         ports.append(f"    place {name} port {direction} : {colset}")
         places.append(f"    place {name} : {colset}")
         other = "out" if direction == "in" else "in"

@@ -9,6 +9,7 @@
     python -m tools.fuzz --expressions N    CPN ML over the whole library, compiled: see `expressions`
     python -m tools.fuzz --inscriptions N   the same on arcs, in guards, delays and code segments: see `inscriptions`
     python -m tools.fuzz --scripts N    CPN ML that raises exceptions, on pages of robots: see `scripts`
+    python -m tools.fuzz --pages N      random pages of robots, and their scripts: see `pages`
 
 A case is a number: case 17 is the same net wherever the base nets are the same. Nothing but diagnostics may come
 out: no exception, no more than 10 s of the processor, no more than 1 GB, and a net that is refused has an error that
@@ -206,6 +207,10 @@ def main() -> int:
         from tools.fuzz import scripts
 
         return scripts.main()
+    if any(o.startswith("--pages") for o in others):
+        from tools.fuzz import pages
+
+        return pages.main()
     if others:
         parser.error(f"unrecognized arguments: {' '.join(others)}")
     shared = Path(os.environ.get("PN2CODE_SHARED", ROOT.parent / "shared"))

@@ -34,7 +34,7 @@ from pn2code.base.resources import cnative_folder
 
 ROOT = Path(__file__).parents[2]
 GOAL = 0.95
-EXAMPLES = ("riveting", "sorting")
+EXAMPLES = ("riveting", "sorting", "palletiser")
 """Those of which every state can be compared in seconds."""
 COMMANDS = ("command dropped", "command repeated")
 """A robot that moves less or more than the net says: all of these are tried, and each must be found out."""

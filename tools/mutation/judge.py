@@ -19,6 +19,7 @@ from tools.mutation.mutants import Mutant
 from pn2code.conform import robot
 from pn2code.conform.cell import ProgramComparison
 from pn2code.conform.folder import PROGRAM
+from pn2code.conform.places_as_files import Script
 from pn2code.conform.probe import HOST, ProbeError
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission import c_flags
@@ -107,7 +108,7 @@ class Judge:
     def _carried_out(self, name: str) -> frozenset[int]:
         lines: set[int] = set()
 
-        class Noting(robot.Script):
+        class Noting(Script):
             def _step(self) -> Request | None:
                 request = super()._step()
                 lines.add(self.line)

@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter, deque
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import astuple, replace
 
 from pn2code.base.frozen import frozen
@@ -22,6 +22,7 @@ from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Channel, ChannelKind, Partition
 from pn2code.conform.clock import Clock
 from pn2code.conform.messages import scalars
+from pn2code.conform.places_as_files import DeviationError, PlacesAsFiles, Script
 from pn2code.conform.scheme import MOST_STATES, Scheme
 from pn2code.net.flat import BindAll, BindRandom, FlatTransition
 from pn2code.primitive_calls import Calls, Listener, Unknown
@@ -38,7 +39,7 @@ from pn2code.semantics.values.colour_json import to_json
 from pn2code.semantics.values.data import Timed, is_negative_zero
 from pn2code.tdl.check import CheckedProgram
 from pn2code.tdl.evaluate import ScriptPose
-from pn2code.tdl.interpret import Interpreter, Saved
+from pn2code.tdl.interpret import Saved
 from pn2code.tdl.requests import (
     AwaitFile,
     Event,
@@ -79,8 +80,25 @@ class RobotReport:
     why: str = ""
 
 
-class DeviationError(Exception):
-    """The script does something else; the text says what."""
+@frozen
+class Chosen:
+    """When the script chose the transition that it announces next: messages that come afterwards do not matter to it.
+
+    Args:
+        held: the files that held a message then; several where it is not certain when: a wait for no time may be the
+            first command of the next transition, or the delay of the last one.
+        is_over: it has chosen; else it may do so now.
+    """
+
+    held: tuple[frozenset[str], ...] = ()
+    is_over: bool = False
+
+    def with_view(self, view: frozenset[str], *, is_certain: bool) -> Chosen:
+        """After a request at which it may have chosen before, or `is_certain` has."""
+        if self.is_over:
+            return self
+        held = self.held if view in self.held else (*self.held, view)
+        return Chosen(held, is_certain)
 
 
 @frozen
@@ -108,79 +126,7 @@ class _State:
     signs: object = None
     """of the zeros in the marking and in the script's variables: equal ones can be told apart"""
     late: frozenset[str] = frozenset()
-
-
-class PlacesAsFiles:
-    """The channels of a marking as the script sees its files; what it does is kept apart.
-
-    Here a message is seen when it is published, in a run perhaps later, and nobody comes between two statements. So
-    what is read must have been waited for; what is emptied or written must have been announced; what is taken is
-    emptied before an answer is given, or the next message could be emptied in its place; and data are written before
-    flags.
-
-    Args:
-        data: channels of data.
-
-    Attributes:
-        view: the messages.
-        announced: those that there have to be after all transitions that were announced.
-        looked: files that were seen to be filled.
-    """
-
-    def __init__(self, data: frozenset[str]) -> None:
-        self._data = data
-        self.view: dict[str, tuple[Scalar, ...]] = {}
-        self.announced: dict[str, tuple[Scalar, ...]] = {}
-        self.looked: set[str] = set()
-
-    def is_filled(self, name: str) -> bool:
-        """Whether there is a message."""
-        if name in self.view:
-            self.looked.add(name)
-        return name in self.view
-
-    def read(self, name: str) -> tuple[Scalar, ...] | None:
-        """The message, which stays."""
-        if name in self.view and name not in self.looked:
-            raise DeviationError(
-                f"{name} is read, but the script has not waited until it is filled"
-            )
-        return self.view.get(name)
-
-    def clear(self, name: str) -> None:
-        """Takes it."""
-        if name in self.view and name in self.announced:
-            raise DeviationError(f"{name} is emptied before a transition that takes it is marked")
-        self.looked.discard(name)
-        self.view.pop(name, None)
-
-    def write(self, name: str, values: tuple[Scalar, ...]) -> None:
-        """Puts one."""
-        if name in self.view:
-            raise DeviationError(f"a message is written to {name}, which holds one")
-        if name not in self.announced:
-            raise DeviationError(f"{name} is written before a transition that puts it is marked")
-        for other in self.view:
-            if other not in self.announced:
-                raise DeviationError(f"{name} is written before {other} is emptied, which is taken")
-        for other in self._data - {name}:
-            if name not in self._data and other in self.announced and other not in self.view:
-                raise DeviationError(f"the flag {name} is written before the data {other}")
-        self.view[name] = values
-
-
-class Script(Interpreter):
-    """A script whose questions after files are told from its reading them."""
-
-    def __init__(
-        self, program: CheckedProgram, files: PlacesAsFiles, heard: Callable[[Event], None]
-    ) -> None:
-        super().__init__(program, files, heard)
-        self._asked = files
-
-    def filled(self, name: str) -> bool:
-        """Whether a file holds a message."""
-        return self._asked.is_filled(self._channel[name])
+    chosen: Chosen = Chosen()
 
 
 class _Product:
@@ -218,6 +164,7 @@ class _Product:
         self._marking = self._start = game.marking
         self._done: list[commands.Command] = []
         self._owed = 0.0
+        self._chosen = Chosen()
         self._heard_of: list[tuple[str, Scalar]] = []
         self._marked: set[str] = set()
         self._marks = 0
@@ -331,7 +278,8 @@ class _Product:
             case Finished():
                 self._nothing_to_do(state, "the script has ended")
             case Fault(message=message, line=line):
-                if not self._must_stop(self._published(state.marking)):
+                self._chosen = state.chosen
+                if not any(map(self._must_stop, self._looked_at(state.marking))):
                     self._nothing_to_do(state, f"the script stops in line {line} ({message})")
             case AwaitFile(names=names, line=line):
                 view = self._view(state.marking)
@@ -392,14 +340,16 @@ class _Product:
     def _said(self, state: _State, sensor: str) -> list[Scalar]:
         """Every value that the net leaves open to the sensor here: those of its variable in what is enabled."""
         found: dict[Scalar, None] = {}
-        for element in self._scheme.enabled(self._owner, self._published(state.marking)):
-            for symbol, value in element.values:
-                if self._sensors.get(symbol.name) != sensor:
-                    continue
-                assert symbol.colset is not None, "a net variable has a colour set"
-                data = to_json(symbol.colset, value)
-                if isinstance(data, int | float | bool | str):
-                    found[data] = None
+        self._chosen = state.chosen
+        for marking in self._looked_at(state.marking):
+            for element in self._scheme.enabled(self._owner, marking):
+                for symbol, value in element.values:
+                    if self._sensors.get(symbol.name) != sensor:
+                        continue
+                    assert symbol.colset is not None, "a net variable has a colour set"
+                    data = to_json(symbol.colset, value)
+                    if isinstance(data, int | float | bool | str):
+                        found[data] = None
         return list(found)
 
     # --- the script --------------------------------------------------------------------------------
@@ -410,6 +360,7 @@ class _Product:
         self._marking = state.marking
         self._done = list(state.done)
         self._owed = state.owed
+        self._chosen = state.chosen
         self._heard_of = list(state.said)
         if isinstance(state.request, Sense) and isinstance(result, int | float | bool | str):
             self._heard_of.append((state.request.sensor, result))
@@ -420,9 +371,13 @@ class _Product:
         with self._listener.noting(self._called):
             request = self._interpreter.resume(result)
         self._compare_files()
+        is_delay = self._owed > 0.0
         until = self._waited(request)
         if isinstance(request, Execute) and until is None:
             self._done.append(request.command)
+        if isinstance(request, Execute | Sense) and not is_delay:
+            view = frozenset(self._files.view)
+            self._chosen = self._chosen.with_view(view, is_certain=until is None)
         after = _State(
             self._marking,
             self._interpreter.save(),
@@ -432,7 +387,8 @@ class _Product:
             until,
             self._owed,
             frozenset(self._files.looked),
-            self._late,
+            late=self._late,
+            chosen=self._chosen,
         )
         return f"{self._name}: the script goes on after line {before}", after
 
@@ -478,6 +434,7 @@ class _Product:
             if _is_same(binding_to_json(occurred), event.binding):
                 self._compare_commands(where, tuple(self._called))
                 self._compare_sensors(where, t, event.binding)
+                self._chosen = Chosen()
                 self._owed = self._delay(self._marking, marking)
                 self._marking = marking
                 self._files.announced = self._view(marking)
@@ -493,10 +450,11 @@ class _Product:
     ) -> Iterator[tuple[Marking, BindingElement]]:
         """The ways in which a transition can occur, each with what it leads to; the calls of the last are noted."""
         try:
-            for element in self._scheme.enabled(self._owner, self._published(self._marking)):
-                if element.transition == t.index:
-                    self._called.clear()
-                    yield self._game.occur(self._marking, element)
+            for marking in self._looked_at(self._marking):
+                for element in self._scheme.enabled(self._owner, marking):
+                    if element.transition == t.index:
+                        self._called.clear()
+                        yield self._game.occur(self._marking, element)
         except GivenUpError:
             raise
         except GameError as error:
@@ -526,6 +484,8 @@ class _Product:
         done = tuple(self._done)
         self._done.clear()
         self._commands += len(done)
+        # A wait for no time is like that of a delay of zero, and like none.
+        called = tuple(c for c in called if c != commands.Wait(0.0))
         if done != called:
             raise DeviationError(
                 f"{where}: the script has commanded {_list(done)}, the net calls {_list(called)}"
@@ -540,6 +500,18 @@ class _Product:
             place = self._channels[name]
             places[place] = self._start.places[place]  # a channel is empty at the start
         return replace(marking, places=tuple(places))
+
+    def _looked_at(self, marking: Marking) -> Iterator[Marking]:
+        """The marking as the script may have seen it when it chose."""
+        published = self._published(marking)
+        if not self._chosen.is_over:
+            yield published
+        for held in self._chosen.held:
+            places = list(published.places)
+            for channel in self._incoming:
+                if channel.name not in held:
+                    places[channel.place] = self._start.places[channel.place]
+            yield replace(published, places=tuple(places))
 
     def _view(self, marking: Marking) -> dict[str, tuple[Scalar, ...]]:
         found = {}

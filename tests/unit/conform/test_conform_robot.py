@@ -1,18 +1,24 @@
-"""Robot scripts compared with their pages, without a supervisor: what sensors may say."""
+"""Robot scripts compared with their pages, without a supervisor: what sensors may say, when messages come."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
 
+from helpers import small_cell
 from helpers.robots import Cell
 from helpers.scripts import checked
+from pn2code.cell.divide import divide
 from pn2code.conform.observations import observed
 from pn2code.conform.robot import RobotReport, explore
 from pn2code.conform.scheme import Scheme
+from pn2code.diagnostics import Diagnostics
+from pn2code.emission.tdl import emit
+from pn2code.robot_scripts.translate import lower_robots
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.multiset import MultiSet
+from pn2code.verdict.opened import read
 
 EXTRA = """
 colset GRIP = with held | lost;
@@ -97,3 +103,90 @@ def test_zeros_of_both_signs_are_two_states(tmp_path: Path) -> None:
     plus, minus = (scheme.steps(1, m).steps[0].text for m in markings)
     assert "Plus" in plus and "Minus" in minus
     assert len({observed(scheme, m, frozenset()) for m in markings}) == 2
+
+
+IDLE_WORK = """
+    place Idle = 1
+    trans Told
+      both Idle
+      in x : n
+    trans Works priority 10000 code action drill ()
+      both Idle
+"""
+
+
+def sent(page: str, folder: Path, text: str = "") -> RobotReport:
+    """The script of a page to which one message comes, `x`; `text`: another script."""
+    cell = Cell(folder, page, ("x in INT",))
+    place = "Top.Supervisor.Source_x"
+    game = Game(cell.partition.net, initial={place: MultiSet.of([1])}, files=Files(None))
+    return explore(cell.partition, cell.config, 1, checked(text or cell.text), game)
+
+
+def test_a_message_that_comes_after_the_choice(tmp_path: Path) -> None:
+    """It may come while the robot carries out what it has chosen before, though it would have been preferred."""
+    found = sent(IDLE_WORK, tmp_path)
+    assert found.deviation is None and found.complete
+    assert found.transitions == 2
+
+
+def test_a_message_that_was_there_before_the_choice(tmp_path: Path) -> None:
+    script = Cell(tmp_path, IDLE_WORK, ("x in INT",)).text
+    blind = script.replace("if filled(x) then", "if filled(x) and 1 > 2 then")
+    assert blind != script
+    found = sent(IDLE_WORK, tmp_path, blind)
+    assert found.deviation is not None
+    assert "announces `Top.Robot.Works` with {}, which is not enabled" in found.deviation
+
+
+def test_a_wait_for_no_time(tmp_path: Path) -> None:
+    """A command of the net that takes no time, like a delay that does not."""
+    page = """
+    place Idle = 1
+    trans Told code action pause (0.0 * 2.0)
+      both Idle
+      in x : n
+    """
+    found = sent(page, tmp_path)
+    assert found.deviation is None and found.complete and found.marks == 1
+    text = Cell(tmp_path, page, ("x in INT",)).text
+    longer = text.replace("0.0 * 2.0", "1.0 * 2.0")
+    assert longer != text
+    found = sent(page, tmp_path, longer)
+    assert found.deviation is not None and "the script has commanded Wait" in found.deviation
+
+
+def test_a_message_that_comes_after_a_choice_of_no_time(tmp_path: Path) -> None:
+    page = IDLE_WORK.replace("action drill ()", "action pause (0.0 * 2.0)")
+    found = sent(page.replace("priority 10000 ", ""), tmp_path)
+    assert found.deviation is None, found
+    found = sent(page, tmp_path)
+    assert found.deviation is None, found
+
+
+def test_two_messages_of_one_occurrence_while_the_robot_works(tmp_path: Path) -> None:
+    """The second one may come later than a command after the first: a script that does not wait for it is found out."""
+    first = small_cell.TOML.index('[[channel]]\nplace = "data"')
+    second = small_cell.TOML.index('[[channel]]\nplace = "flag"')
+    data = small_cell.TOML[first:second].replace('kind = "data"', 'kind = "flag"')
+    toml = small_cell.TOML[:first] + small_cell.TOML[second:]
+    toml = toml.replace("[primitives]", f"{data}[primitives]")
+    net = small_cell.NET.replace("trans Accept\n", "trans Accept code action drill ()\n")
+    d = Diagnostics()
+    opened = read(small_cell.write(tmp_path, net, toml), {}, d)
+    assert opened is not None and opened.config is not None, [x.message for x in d.errors]
+    partition = divide(opened.flat, opened.config, d)
+    assert partition is not None, [x.message for x in d.errors]
+    (ir,) = lower_robots(partition, opened.config, d)
+    (file,) = emit([ir], source="cell.cpn", digest="0" * 64, version="1")
+    waiting = "wait until filled(data)"
+    assert waiting in file.text
+    hasty = file.text.replace(waiting, 'if not filled(data) then\nstop "no data"\nend if')
+
+    def compared_with(text: str) -> RobotReport:
+        game = Game(partition.net, files=Files(None))
+        return explore(partition, opened.config, 1, checked(text), game)  # type: ignore[arg-type]
+
+    assert compared_with(file.text).deviation is None
+    found = compared_with(hasty)
+    assert found.deviation is not None and "(no data)" in found.deviation
