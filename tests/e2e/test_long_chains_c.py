@@ -44,3 +44,43 @@ def test_long_chains(fast_workshop: Workshop, tmp_path: Path) -> None:
     assert ir is not None, [(e.code, e.message) for e in d.errors]
     program = fast_workshop.build(ir, tmp_path / "net", "walk", "-O0")
     assert agrees(net, program, seed=1, steps=0) == 0
+
+
+def listed(*items: str) -> str:
+    return "[" + ", ".join(items[i % len(items)].format(i) for i in range(130)) + "]"
+
+
+RECORD = '{{a = {}, s = "x"}}'
+UNION = "rec' {{a = {}, s = str (chr 65)}}"
+LISTS = f"""
+    net Lists
+      standard
+      colset E = with red | green
+      colset R = record a : INT * s : STRING
+      colset L = list INT
+      colset U = union none + num : INT + rec' : R
+      colset LE = list E
+      colset LR = list R
+      colset LU = list U
+      colset LL = list L
+      colset LT = list REAL
+      fun sum x = {listed("x + {}", "{} div x")}
+      place Numbers : L = 1`{listed("{}", "~{}")} ++ 1`(sum 3) ++ 1`(sum 0 handle Div => [0])
+      place Reals : LT = 1`{listed("{}.5")}
+      place Colours : LE = 1`{listed("red", "green", "red")}
+      place Records : LR = 1`{listed(RECORD)}
+      place Unions : LU = 1`{listed("none", "num {}", UNION)}
+      place Lists : LL = 1`{listed("[{}]", "[]")}
+"""
+
+
+def test_long_lists(fast_workshop: Workshop, tmp_path: Path) -> None:
+    """They are arrays that loops go through: with an object for each element a compiler takes minutes."""
+    net = flat(LISTS)
+    ir, d = lowered(net)
+    assert ir is not None, [(e.code, e.message) for e in d.errors]
+    program = fast_workshop.build(ir, tmp_path / "net", "walk", "-O0")
+    assert agrees(net, program, seed=1, steps=0) == 0
+    text = (tmp_path / "net" / "net.c").read_text()
+    assert text.count("const int64_t items[]") > 1
+    assert text.count("(int64_t[]){") < 130

@@ -13,6 +13,9 @@ from pn2code.ir.nodes import Ir, Rep, Stmt
 from pn2code.lowering.expressions.values import is_atomic
 
 INDENT = "    "
+_MANY = 50
+"""Elements of a list literal from which a loop puts them in: with as many temporary objects compilers take minutes."""
+_PLAIN = frozenset({Rep.INT, Rep.REAL, Rep.BOOL, Rep.CHAR})
 
 
 class Statements:
@@ -56,6 +59,30 @@ class Statements:
             self.note(note)
             self.line(text)
 
+    def _list(self, local: ir.Local, value: Ir, heads: list[Ir]) -> None:
+        """`head :: head :: ... :: tail`, by a loop over an array of the heads."""
+        tail = value
+        for _ in heads:
+            assert isinstance(tail, ir.Op)
+            tail = tail.arguments[1]
+        assert isinstance(value, ir.Op)
+        items = self._scope.name(("items", local.uid), "items")
+        left = self._scope.name(("left", local.uid), "left")
+        name = self._x.local(local)
+        are_plain = all(
+            isinstance(e, ir.EnumValue) or (isinstance(e, ir.Const) and e.type.rep in _PLAIN)
+            for e in heads
+        )
+        texts = ", ".join(map(self._x.text, heads))
+        kind = f"{'static ' if are_plain else ''}const {self._types.name(heads[0].type)}"
+        self.line(f"{kind} {items}[] = {{ {texts} }};")
+        self.line(f"{self._declaration(local)} = {self._x.text(tail)};")
+        self.line(f"for (size_t {left} = {len(heads)}U; {left} > 0U; {left}--) {{")
+        table = self._names.table(value.table)
+        cell = f"pn_list_cons(cx, &{table}, &{items}[{left} - 1U], {name})"
+        self.line(f"{INDENT}{name} = {cell};")
+        self.line("}")
+
     def block(self, statements: tuple[Stmt, ...]) -> None:
         """Statements one level deeper."""
         self._depth += 1
@@ -74,6 +101,8 @@ class Statements:
     def statement(self, s: Stmt) -> None:
         """Print one statement."""
         match s:
+            case ir.Let(local=local, value=value) if len(heads := _heads(value)) >= _MANY:
+                self._list(local, value, heads)
             case ir.Let(local=local, value=value, mutable=mutable):
                 text = self._x.text(value)
                 self.line(f"{'' if mutable else 'const '}{self._declaration(local)} = {text};")
@@ -245,3 +274,12 @@ _ERRORS = {
 
 def _error(name: str) -> str:
     return _ERRORS.get(name, "PN_ERR_RAISED")
+
+
+def _heads(value: Ir) -> list[Ir]:
+    """The elements that a list is built of, before what comes from elsewhere."""
+    heads: list[Ir] = []
+    while isinstance(value, ir.Op) and value.name == "list.cons":
+        head, value = value.arguments
+        heads.append(head)
+    return heads

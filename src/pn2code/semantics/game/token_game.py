@@ -45,7 +45,7 @@ from pn2code.semantics.values.multiset import MultiSet, TimedMultiSet
 __all__ = ["Binding", "BindingElement", "Game", "GameError", "Marking", "NotEnabled"]
 
 AT_START = Limits(steps=10_000_000)
-"""Of a declaration or an initial marking, which are computed once: one of a thousand sorted tokens takes millions."""
+"""Of a declaration or an initial marking, which are computed once: a thousand sorted tokens take a million."""
 
 
 class NotEnabled(ValueError):  # noqa: N818
