@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -15,6 +16,17 @@ from pn2code.diagnostics.suggestions import did_you_mean, nearest
 
 KeyPath = tuple[str | int, ...]
 """Of a table or key; tables of arrays are numbered from 0."""
+
+
+def _number_hint(value: object, kind: type | tuple[type, ...]) -> str:
+    """Of a number that is written as a text, perhaps with its unit: `"1 s"`."""
+    kinds = kind if isinstance(kind, tuple) else (kind,)
+    if float not in kinds and int not in kinds or not isinstance(value, str):
+        return ""
+    number = re.match(r"\s*[-+]?\d+(\.\d+)?", value)
+    return "write the number without quotes and unit" + (
+        f": `{number[0].strip()}`" if number else ""
+    )
 
 
 class Tables:
@@ -67,6 +79,7 @@ class Tables:
                 codes.CELL_VALUE,
                 f"`{key}` is `{value}`, but {words} is expected",
                 self.at(*path, key),
+                hint=_number_hint(value, kind),
             )
             return default
         return value
