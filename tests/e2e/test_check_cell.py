@@ -97,6 +97,15 @@ def test_what_is_found_without_running(what: str, tmp_path: Path) -> None:
     assert words in found[0][2]
 
 
+def test_radians_at_home_are_warned_of(tmp_path: Path) -> None:
+    pytest.importorskip("eaik")
+    robot = changed(ROBOT, "kr120_r2500", "ur10e") + "home = [0.0, -1.57, 1.57, 0.0, 1.57, 0.0]\n"
+    found = diagnostics(write(tmp_path, NET, TOML + robot))
+    assert [(s, c) for s, c, m in found if "further than 3.2 degrees" in m] == [
+        ("warning", "robot-home")
+    ], found
+
+
 @pytest.mark.parametrize(
     "what", ["a forked page", "what the language lacks", "a sensor that nobody asks"]
 )
@@ -216,3 +225,13 @@ def test_check_does_not_load_what_only_others_need(root: Path) -> None:
     )
     assert done.returncode == 0, done.stderr
     assert done.stdout.split() == []
+
+
+def test_a_net_without_a_cell_is_not_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is refused before anything of it is made, which may take long."""
+    monkeypatch.setattr("pn2code.pipeline.generate", lambda *_, **__: pytest.fail("not needed"))
+    write(tmp_path)
+    (tmp_path / "cell.toml").unlink()
+    done = run("run", tmp_path / "cell.cpn", "-o", tmp_path / "out")
+    assert done.exit_code == 1, done.output
+    assert "has no cell.toml beside it" in done.stderr and "pn2code simulate" in done.stderr

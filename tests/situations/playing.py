@@ -10,7 +10,7 @@ RAISED = {
     3: "no rule fits the value (`Match`)", 4: "a value does not fit its pattern (`Bind`)",
     5: "an index is out of range (`Subscript`)", 6: "the list is empty (`Empty`)",
     7: "a value is out of the function's domain (`Domain`)", 8: "a value is not in the colour set (`colour outside",
-    9: "the place is full (`place is full`)", 10: "the memory for lists and strings is used up (`memory",
+    9: "the place is full (the head of net.c", 10: "the memory for lists and strings is used up (`memory",
     11: "the recursion is too deep (`recursion", 12: "more tokens are taken than there are (`Subtract`)",
     13: "an exception of the net (`Own`)", 14: "an evaluation does not come to an end (`an evaluation without end`)",
     15: "a model time is beyond 64 bits (`a model time", 16: "a function is not available here (`a function that",

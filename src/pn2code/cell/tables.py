@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -17,6 +18,17 @@ from pn2code.diagnostics.suggestions import did_you_mean, nearest
 
 KeyPath = tuple[str | int, ...]
 """Of a table or key; tables of arrays are numbered from 0."""
+
+
+def _number_hint(value: object, kind: type | tuple[type, ...]) -> str:
+    """Of a number that is written as a text, perhaps with its unit: `"1 s"`."""
+    kinds = kind if isinstance(kind, tuple) else (kind,)
+    if float not in kinds and int not in kinds or not isinstance(value, str):
+        return ""
+    number = re.match(r"\s*[-+]?\d+(\.\d+)?", value)
+    return "write the number without quotes and unit" + (
+        f": `{number[0].strip()}`" if number else ""
+    )
 
 
 class Tables:
@@ -73,6 +85,7 @@ class Tables:
                 codes.CELL_VALUE,
                 f"`{name}` is `{value}`, but {key.expected or _any_of(key)} is expected",
                 self.at(*path, name),
+                hint=_number_hint(value, kind),
             )
             return fallback
         return value

@@ -104,21 +104,23 @@ def gantt(record: RunRecord, robots: tuple[str, ...], path: Path) -> None:
 
 
 def clearances(record: RunRecord, robots: tuple[str, ...], limits: Limits, path: Path) -> None:
-    """Clearances in mm and condition numbers over time, both logarithmic, with what is warned of."""
-    figure, (upper, lower) = plt.subplots(
-        2, 1, figsize=(12, 7.0), sharex=True, layout="constrained"
+    """Clearances in mm and condition numbers over time, both logarithmic, with what is warned of.
+
+    Of a run in which no clearances were measured there are only the condition numbers.
+    """
+    kinds = [n for n in sorted(record.series) if n.startswith("clearance.")]
+    figure, parts = plt.subplots(
+        1 + bool(kinds),
+        1,
+        figsize=(12, 7.0 if kinds else 3.8),
+        sharex=True,
+        layout="constrained",
+        squeeze=False,
     )
-    shown: list[float] = []
-    for number, name in enumerate(n for n in sorted(record.series) if n.startswith("clearance.")):
-        values = record.array(name) * 1000
-        label = _between(name.removeprefix("clearance."))
-        # Robots that stand alike have curves on one another: dashes let both be seen.
-        style = "-" if number % 2 == 0 else (0, (6, 4))
-        upper.plot(record.sample_t, values, label=label, linestyle=style)
-        shown += values[np.isfinite(values)].tolist()
-    _limit(upper, limits.clearance * 1000, f"warning below {limits.clearance * 1000:g} mm")
-    upper.set_ylabel("clearance [mm]")
-    _ticks(upper, [*shown, limits.clearance * 1000], least=1.0)
+    drawn = list(parts[:, 0])
+    lower = drawn[-1]
+    if kinds:
+        _clearances(drawn[0], record, kinds, limits)
     conditions: list[float] = []
     for robot in robots:
         values = record.array(f"condition.{robot}")
@@ -129,12 +131,26 @@ def clearances(record: RunRecord, robots: tuple[str, ...], limits: Limits, path:
     lower.set_ylabel("condition number (1 m)")
     _ticks(lower, [*conditions, limits.condition], least=1.0)
     lower.set_xlabel("simulated time [s]")
-    for axes in (upper, lower):
+    for axes in drawn:
         axes.set_xlim(0, max(record.time, 1e-9))
         axes.grid(visible=True, alpha=0.3)
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), frameon=False, fontsize=9)
         axes.spines[["top", "right"]].set_visible(False)
     _save(figure, path)
+
+
+def _clearances(axes: Any, record: RunRecord, kinds: list[str], limits: Limits) -> None:
+    shown: list[float] = []
+    for number, name in enumerate(kinds):
+        values = record.array(name) * 1000
+        label = _between(name.removeprefix("clearance."))
+        # Robots that stand alike have curves on one another: dashes let both be seen.
+        style = "-" if number % 2 == 0 else (0, (6, 4))
+        axes.plot(record.sample_t, values, label=label, linestyle=style)
+        shown += values[np.isfinite(values)].tolist()
+    _limit(axes, limits.clearance * 1000, f"warning below {limits.clearance * 1000:g} mm")
+    axes.set_ylabel("clearance [mm]")
+    _ticks(axes, [*shown, limits.clearance * 1000], least=1.0)
 
 
 def _between(name: str) -> str:

@@ -167,7 +167,8 @@ def page(summary: dict[str, Any]) -> RenderableType:
     facts.add_column(style="bold")
     facts.add_column()
     facts.add_row("cycle time", f"{summary['cycle_seconds']:.2f} s (simulated)")
-    facts.add_row("rows sent", str(summary["rows"]))
+    if summary["rows"]:
+        facts.add_row("rows sent", str(summary["rows"]))
     known = {"cell", "layout", "backend", "verdict", "reason", "cycle_seconds", "rows"}
     for key, value in summary.items():
         if key not in known and isinstance(value, int):

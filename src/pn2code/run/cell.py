@@ -25,6 +25,7 @@ from pn2code.base.frozen import frozen
 from pn2code.base.os_reason import os_reason
 from pn2code.cell.codes import INPUT
 from pn2code.cell.config import CellConfig
+from pn2code.cell.locate import locate
 from pn2code.cell.names import counted
 from pn2code.channels import GRACE_S, SharedDirectory, specs_of
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
@@ -130,6 +131,18 @@ def prepare(path: Path, options: RunOptions, d: Diagnostics) -> Prepared | None:
     def examine(net: FlatNet, config: CellConfig | None, d: Diagnostics) -> None:
         begin(net, config, d, is_started=True, given=options.input)
 
+    found = locate(path, d, layout=options.layout)
+    if found is None:
+        return None
+    if found[1] is None:
+        d.error(
+            RUN_NO_CELL,
+            f"`{path}` has no cell.toml beside it",
+            Origin(str(path)),
+            hint="give the folder of a cell, e.g. examples/riveting; docs/cell.md describes cell.toml. "
+            "A net without a cell is played by `pn2code simulate`",
+        )
+        return None
     generated = pipeline.generate(
         path,
         d,
@@ -142,14 +155,7 @@ def prepare(path: Path, options: RunOptions, d: Diagnostics) -> Prepared | None:
     if generated is None:
         return None
     config = generated.config
-    if config is None:
-        d.error(
-            RUN_NO_CELL,
-            f"`{path}` has no cell.toml beside it",
-            Origin(str(path)),
-            hint="give the folder of a cell, e.g. examples/riveting; docs/cell.md describes cell.toml",
-        )
-        return None
+    assert config is not None, "it was found above"
     robot_cell = scene.load(config.geometry, config.folder, config.locator.origin, d)
     scripts = _scripts(generated, config, d)
     if robot_cell is None or scripts is None or d.has_errors:
@@ -342,20 +348,26 @@ def _warn(record: RunRecord, config: CellConfig) -> None:
         if above:
             worst = max(above, key=values.__getitem__)
             elbow = math.degrees(record.series[f"elbow.{robot.name}"][worst])
+            wrist = math.degrees(record.series[f"wrist.{robot.name}"][worst])
             record.warnings.append(
                 RunWarning(
                     record.sample_t[above[0]],
                     robot.name,
-                    f"comes close to a singularity: condition number {condition_text(values[worst])} at "
-                    f"{record.sample_t[worst]:.2f} s, elbow {elbow:.1f} deg from straight "
-                    f"(warning above {limit:g})",
+                    f"comes close to a singularity: condition number up to {condition_text(values[worst])}, at "
+                    f"{record.sample_t[worst]:.2f} s, elbow {elbow:.1f} deg from straight, "
+                    f"wrist {wrist:.1f} deg (warning above {limit:g})",
                 )
             )
 
     for (a, b), (gap, t) in sorted(record.near.items()):
-        record.warnings.append(
-            RunWarning(t, a.split("/")[0], f"`{a}` comes within {gap * 1000:.1f} mm of `{b}`")
-        )
+        record.warnings.append(RunWarning(t, a.split("/")[0], _nearness(a, b, 1000 * gap)))
+
+
+def _nearness(a: str, b: str, gap: float) -> str:
+    """Of two parts and their distance in mm, negative where one is in the other."""
+    if gap < 0:
+        return f"`{a}` is {-gap:.1f} mm deep in `{b}`"
+    return f"`{a}` comes within {gap:.1f} mm of `{b}`"
 
 
 def _write_results(

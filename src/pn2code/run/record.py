@@ -148,6 +148,7 @@ class RunRecord:
                 seen.conditioning.condition
             )
             self.series.setdefault(f"elbow.{seen.robot}", []).append(seen.conditioning.elbow)
+            self.series.setdefault(f"wrist.{seen.robot}", []).append(seen.conditioning.wrist)
             self.series.setdefault(f"margin.{seen.robot}", []).append(seen.limit_margin)
         for gap in verdict.clearances or ():
             self._note_gap(verdict.t, gap)

@@ -5,6 +5,7 @@ look_ahead(partition, config, programs, d)
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
@@ -63,10 +64,23 @@ def look_ahead(
             _reach(arms, ir, d)
 
 
+_FEW_RADIANS = 3.2
+"""No axis at HOME is further from 0: written in radians this is half a turn, in degrees next to nothing."""
+
+
 def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> None:
     """Arms that are in something, or in each other, where the run begins."""
     if not cell.robots:
         return
+    for robot in cell.robots:
+        angles = [round(math.degrees(q), 4) for q in robot.home]
+        if max(map(abs, angles)) < _FEW_RADIANS and sum(abs(q) > 0.5 for q in angles) > 1:
+            d.warning(
+                codes.ROBOT_HOME,
+                f"at HOME{where} no axis of robot `{robot.name}` is further than {_FEW_RADIANS:g} degrees from 0",
+                config.locator.origin("robots", robot.name, "home"),
+                hint="angles in cell.toml are in degrees; if these are radians, multiply them by 57.2958",
+            )
     at = config.locator.origin("robots", cell.robots[0].name, "home")
     try:
         backend = open_backend("bullet", cell, looks=False)
@@ -97,7 +111,7 @@ def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> No
             codes.ROBOT_HOME,
             f"at HOME{where}: {verdict.fault.message}",
             config.locator.origin("robots", verdict.fault.robot, "home"),
-            hint="change `home` or `base` of the robot, or move what it touches",
+            hint="change `home` (degrees) or `base` (m and degrees) of the robot, or move what it touches",
         )
 
 
@@ -109,7 +123,7 @@ def _reach(arms: Arms, ir: RobotIR, d: Diagnostics) -> None:
                 codes.ROBOT_REACH,
                 f"a constant pose cannot be reached: {problem}",
                 origin,
-                hint=f"change the pose, or `base` of robot `{ir.name}`",
+                hint=f"change the pose (mm and degrees), or `base` of robot `{ir.name}` in cell.toml (m and degrees)",
             )
 
 

@@ -85,6 +85,13 @@ def test_a_misspelt_entry_is_told_the_function(tmp_path: Path) -> None:
     )
 
 
+def test_a_duration_with_its_unit_is_told_to_leave_it_out(tmp_path: Path) -> None:
+    with_unit = '{ command = "tool", action = "a", duration_s = "1.5 s" }'
+    found = said(tmp_path, toml=changed(TOML, '{ command = "move_home" }', with_unit))
+    (entry,) = (x for x in found if "`duration_s` is `1.5 s`" in x.message)
+    assert entry.hint == "write the number without quotes and unit: `1.5`"
+
+
 # --- calls of robots -------------------------------------------------------------------------------
 
 HOME = "code action moveHome ()"

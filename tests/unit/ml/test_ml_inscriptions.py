@@ -311,6 +311,12 @@ def test_priorities() -> None:
     ]  # fmt: skip
 
 
+def test_a_standard_priority_that_is_not_declared() -> None:
+    m = Ml()
+    assert m.e.priority(source("P_HIGH", "priority")) is None
+    assert m.only().hint == "declare it, as CPN Tools does in a new net: `val P_HIGH = 100;`"
+
+
 @pytest.mark.parametrize(
     ("text", "expected"),
     [

@@ -16,6 +16,7 @@ from pn2code.report import album, charts
 from pn2code.report.activities import activities, busy_seconds
 from pn2code.report.album import Album
 from pn2code.report.summary import summarise
+from pn2code.run.cell import _warn
 from pn2code.run.record import ActionRecord, ActivityRecord, RunRecord
 
 ROBOTS = ("arm", "mill")
@@ -100,6 +101,30 @@ def test_charts(record: RunRecord, figures: dict[str, Figure], tmp_path: Path) -
         (line,) = (x for x in axes.get_lines() if x.get_label() == warning)
         bottom, top = axes.get_ylim()
         assert bottom < float(np.asarray(line.get_ydata())[0]) < top
+
+
+def test_a_run_that_measures_no_clearances_has_no_empty_chart_of_them(
+    record: RunRecord, figures: dict[str, Figure], tmp_path: Path
+) -> None:
+    record.series = {"condition.arm": record.series["condition.arm"]}
+    charts.draw(record, ROBOTS, charts.Limits(0.02, 50.0), tmp_path)
+    (only,) = figures["clearances.png"].axes
+    assert only.get_ylabel().startswith("condition number")
+    assert only.get_xlabel() == "simulated time [s]"
+
+
+def test_warnings_say_how_deep_and_both_angles(record: RunRecord) -> None:
+    record.series |= {"condition.arm": [7.0, 90.0, 40.0], "elbow.arm": [1.0, 1.2, 1.0]}
+    record.series |= {"wrist.arm": [1.0, 0.02, 1.0]}
+    record.near = {("arm/link_2", "table"): (-0.0046, 5.0), ("arm/link_3", "table"): (0.004, 6.0)}
+    arm = SimpleNamespace(name="arm")
+    _warn(record, SimpleNamespace(robots=[arm], report=ReportConfig(warn_condition=50.0)))  # type: ignore[arg-type]
+    said = [w.text for w in record.warnings]
+    assert "up to 90, at 10.00 s, elbow 68.8 deg from straight, wrist 1.1 deg" in said[0]
+    assert said[1:] == [
+        "`arm/link_2` is 4.6 mm deep in `table`",
+        "`arm/link_3` comes within 4.0 mm of `table`",
+    ]
 
 
 def test_charts_of_a_run_in_which_nothing_happened(tmp_path: Path) -> None:

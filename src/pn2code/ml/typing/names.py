@@ -43,6 +43,8 @@ _SHORTEST_SUGGESTED = 4
 """Characters of a name of the library that a misspelt name may mean."""
 _MOST_ADVICE = 200
 """After so many errors no advice is looked for, which takes longer than the errors themselves."""
+_PRIORITIES = {"P_HIGH": 100, "P_NORMAL": 1000, "P_LOW": 10000}
+"""The standard priorities of CPN Tools, which its nets declare themselves."""
 _STRUCTURE_TYPES = {
     "Int": "int",
     "Real": "real",
@@ -255,6 +257,8 @@ class Names:
             hint = f"declare it: `var {name} : C;` for a variable of colour set C, or `val {name} = ..`"
             if span.source.origin.part in ("initial marking", "priority"):
                 hint = f"declare it: `val {name} = ..`, or `fun {name} () = ..`"
+                if name in _PRIORITIES:
+                    hint = f"declare it, as CPN Tools does in a new net: `val {name} = {_PRIORITIES[name]};`"
             if span.source.origin.part == "declaration":
                 hint = "declare it above what uses it"
         self._ctx.error(codes.UNBOUND, f"{quoted(name)} is not declared", span, hint=hint)

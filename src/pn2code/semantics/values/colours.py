@@ -139,7 +139,9 @@ class Colours:
 
     def sorted(self, c: Colset, values: Iterable[Value]) -> list[Value]:
         """In the colour set's order."""
-        return sorted(values, key=lambda value: self.key(c, value))
+        found = list(values)
+        # One value needs no key, which takes long for a long list, for example a queue of a search.
+        return found if len(found) < 2 else sorted(found, key=lambda value: self.key(c, value))
 
     # --- enumeration -----------------------------------------------------------------------------
 

@@ -28,7 +28,7 @@ from pn2code.structure.bounds import PlaceBound
 from pn2code.structure.report import Names, weighted
 from pn2code.verify.codes import CAPACITY_ASSUMED, CAPACITY_LARGE, CAPACITY_UNPROVED
 from pn2code.verify.exploring import nondeterminism
-from pn2code.verify.exploring.covering import MOST_WORK, Covering, Search
+from pn2code.verify.exploring.covering import MOST_WORK, WALKS, Covering, Search
 from pn2code.verify.exploring.result import Exploration
 
 DECLARED = "declared"
@@ -37,6 +37,8 @@ SPACE = "state space"
 INPUTS = "state space with input files"
 ASSUMED = "assumed"
 _LISTED = 5
+FEW_WALKS = 24
+"""Of a net without a cell, of which nothing is explored: all walks would take half a minute for one more warning."""
 MOST_TOKENS = 1 << 20
 """Of a place: for more, no program is generated."""
 MOST_DOUBLED = 1 << 16
@@ -141,7 +143,7 @@ def with_rooms(net: ir.NetIR, found: Sequence[PlaceCapacity]) -> ir.NetIR:
 
 
 def growing(
-    net: FlatNet, storage: Mapping[str, str], found: Sequence[PlaceCapacity]
+    net: FlatNet, storage: Mapping[str, str], found: Sequence[PlaceCapacity], walks: int = WALKS
 ) -> Covering | None:
     """A run that shows that places without a bound grow for ever in the closed net; None: none was come upon."""
     among = {
@@ -150,7 +152,7 @@ def growing(
     if not among:
         return None
     try:
-        return Search(net, storage, among).look(most=MOST_WORK)
+        return Search(net, storage, among).look(walks=walks, most=MOST_WORK)
     except GameError:
         return None  # whoever plays the net says so
 

@@ -43,6 +43,10 @@ bool sup_stop_error(sup_t *sup, const char *doing)
     const sup_exit_t code = (cx->error == PN_ERR_INTERNAL) ? SUP_EXIT_INTERNAL : SUP_EXIT_MODEL;
     /* Before the first element of the net is evaluated there is none to name. */
     const char *const where = (cx->error_origin[0] != '\0') ? cx->error_origin : sup->net->source;
+    if (cx->error == PN_ERR_CAPACITY) {
+        return sup_stop(sup, code, "%s: %s (the head of net.c says for how many tokens it has room), while %s", where,
+                        error_words(cx->error), doing);
+    }
     return sup_stop(sup, code, "%s: %s (`%s`), while %s", where, error_words(cx->error), cx->error_name, doing);
 }
 
