@@ -55,7 +55,10 @@ class Page {
     const word = course.refused ? "not possible" : words[verdict.word] ?? verdict.word;
     if (word) {
       const isGood = ["finished", "steps", "cut"].includes(verdict.word) && !course.refused;
-      byId("verdict").replaceChildren(el("span", { class: isGood ? "chip good" : "chip bad", text: word, title: verdict.reason }));
+      // A run that has finished may have done so in a place that means failure: the place is named as well.
+      const places = verdict.final.map((/** @type {string} */ p) => p.split(".").pop()).join(", ");
+      const text = places ? `${word} in ${places}` : word;
+      byId("verdict").replaceChildren(el("span", { class: isGood ? "chip good" : "chip bad", text, title: verdict.reason }));
     }
     byId("theme").addEventListener("click", () => this.dark());
     byId("help").addEventListener("click", help);

@@ -70,6 +70,7 @@ class TestRun:
 
     def test_no_page_where_none_is_wanted(self, root: Path, tmp_path: Path) -> None:
         cell, flags = root / "examples/minimal", ("--no-pictures", "--unchecked", "--no-replay")
+        (tmp_path / "replay.html").write_text("of an earlier run")
         assert pn2code("run", cell, "--backend", "fake", *flags, "-o", tmp_path) == 0
         assert not (tmp_path / "replay.html").exists() and not (tmp_path / "run.json").exists()
 

@@ -154,9 +154,16 @@ def run(
             )
             names = tuple(r.name for r in prepared.config.programs)
             charts.draw(result.record, names, limits, out)
-        if result is not None and replay:
+        if result is not None:
             progress.say("writing the replay page")
-            _write_replay(result, motion, out)
+            try:
+                _write_replay(result, motion, out, wanted=replay)
+            except OSError as problem:
+                typer.echo(
+                    f"pn2code: cannot write the replay page in `{out}`: {os_reason(problem)}",
+                    err=True,
+                )
+                raise typer.Exit(Exit.USAGE) from None
     if result is None:
         stop(d, form)
     print_but_known(d, cell, form)
@@ -168,16 +175,23 @@ def run(
         raise typer.Exit(Exit.MODEL)
 
 
-def _write_replay(result: RunResult, motion: Motion, out: Path) -> None:
-    """`run.json` and `replay.html`, from what is in memory."""
+def _write_replay(result: RunResult, motion: Motion, out: Path, *, wanted: bool) -> None:
+    """`run.json` and `replay.html`, from what is in memory; those of an earlier run do not stay."""
     from pn2code.net.source import read
     from pn2code.replay import run as described
     from pn2code.replay.description import NAME, text_of
     from pn2code.replay.page import NAME as PAGE
     from pn2code.replay.page import page
 
+    for name in (NAME, PAGE):
+        (out / name).unlink(missing_ok=True)
+    if not wanted:
+        return
     document = read(Path(result.prepared.generated.partition.net.file), Diagnostics(), drawn=True)
     if document is None:
+        typer.echo(
+            "pn2code: there is no replay page: the net's file has changed meanwhile", err=True
+        )
         return
     data = described.describe(result, motion, document)
     for name, text in ((NAME, text_of(data)), (PAGE, page(data))):
