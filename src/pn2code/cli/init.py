@@ -36,7 +36,7 @@ def init(
 ) -> None:
     """Make a folder with a cell that runs at once, to begin with.
 
-    It gets a net for CPN Tools, a cell.toml with comments, a schema for editors, and a README that says what comes next.
+    It gets a net for CPN Tools, a cell.toml with comments, a schema for editors, and a README.
     """
     from pn2code.new_cell.catalogue import templates
 
