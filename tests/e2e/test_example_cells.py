@@ -75,6 +75,11 @@ EXAMPLES = {
         "cell", ("Supervisor", "supervisor.svg"), 95, 1, {"grips": 6, "stored": 3}, {"n": 4},
         ("supervisor", "robot1", "robot2"),
     ),
+    "tending": Expected(
+        "cell", ("Supervisor", "supervisor.svg"), 4308, 21,
+        {"brought": 4, "milled": 4, "stored": 4, "breaks": 0}, {"t": {"stored": 3, "scrapped": 1}},
+        ("supervisor", "arm1", "arm2", "feeder", "mill", "gauge"),
+    ),
     "timed": Expected(
         "timed", ("Supervisor", "supervisor.svg"), 31014, 1668,
         {"beads": 3, "repairs": 2, "interruptions": 2, "answers": 2, "timeouts": 1, "late": 1},
@@ -244,7 +249,7 @@ def test_the_riveting_cell_has_its_properties(root: Path, tmp_path: Path) -> Non
 @pytest.mark.parametrize(
     "file",
     [
-        "sorting/cell.toml", "handover/cell.toml", "palletiser/cell.toml", "shared-zone/cell.toml",
+        "sorting/cell.toml", "handover/cell.toml", "tending/cell.toml", "palletiser/cell.toml", "shared-zone/cell.toml",
         "timed/cell.toml", "riveting/cell.properties.toml",
     ],
 )  # fmt: skip

@@ -34,7 +34,10 @@ def init(
     ] = False,
     form: FormatOption = Format.FULL,
 ) -> None:
-    """Make a folder with a cell that runs at once: a net for CPN Tools, a cell.toml, and a README."""
+    """Make a folder with a cell that runs at once, to begin with.
+
+    It gets a net for CPN Tools, a cell.toml with comments, a schema for editors, and a README.
+    """
     from pn2code.new_cell.catalogue import templates
 
     known = {t.name: t for t in templates()}
