@@ -507,7 +507,9 @@ def test_initial_markings_may_take_longer(monkeypatch: pytest.MonkeyPatch) -> No
     assert token_game.AT_START.steps > usual
     monkeypatch.setattr(token_game, "AT_START", Limits(steps=300))
     head = "\n        fun f n = if n = 0 then 7 else f (n - 1);\n"
-    with pytest.raises(GameError, match="initial marking of `Top.P` was given up: no end after 300"):
+    with pytest.raises(
+        GameError, match="initial marking of `Top.P` was given up: no end after 300"
+    ):
         game(head + "        place P : INT = f 1000\n")
     with pytest.raises(GameError, match="a declaration was given up: no end after 300 steps"):
         game(head + "        val x = f 1000;\n        place P : INT\n")
