@@ -198,7 +198,7 @@ def _is_fit(given: Path, config: CellConfig | None, d: Diagnostics) -> bool:
             at,
             hint="leave out --input, or add a cell.toml with `[[input]]` entries (docs/cell.md)",
         )
-    elif count == 0:
+    elif count == 0 and not any(s.file and (given / s.file).is_file() for s in config.sensors):
         d.error(
             INPUT,
             "input files are given, but cell.toml has no `[[input]]` entry that would read them",

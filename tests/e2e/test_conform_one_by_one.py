@@ -138,7 +138,7 @@ def test_a_script_that_does_something_between_two_messages_is_found_out(cell: Pa
 """
     said = edited(cell, "device.tdl", old, new)
     assert (
-        "has commanded ToolAction(action='crush', duration=2.0, handling=None), the net calls nothing"
+        "was not enabled according to the net when the script commanded ToolAction(action='crush', "
         in said
     )
     assert "size.txt is published" in said

@@ -183,6 +183,7 @@ class Tables:
             codes.CELL_VALUE,
             f"`{key.name}` is {value}, but must be {least}{most}, and finite",
             self.at(*path, key.name),
+            hint=key.meaning,
         )
         return default if key.default is None else float(cast(float, key.default))
 

@@ -441,9 +441,17 @@ class _Product:
                 self._marks += 1
                 self._marked.add(t.name)
                 return
-        raise DeviationError(
-            f"{where} with {event.binding}, which is not enabled according to the net"
-        )
+        raise DeviationError(f"{where} with {event.binding}, which {self._why_not(t, event)}")
+
+    def _why_not(self, t: FlatTransition, event: Marked) -> str:
+        """Why a transition must not be announced: the script may have chosen it before its messages were there."""
+        now = self._scheme.enabled(self._owner, self._published(self._marking))
+        if any(
+            e.transition == t.index and _is_same(binding_to_json(e), event.binding) for e in now
+        ):
+            did = f"commanded {_list(tuple(self._done))}" if self._done else "asked its sensors"
+            return f"was not enabled according to the net when the script {did}"
+        return "is not enabled according to the net"
 
     def _occurrences(
         self, t: FlatTransition, where: str

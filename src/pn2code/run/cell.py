@@ -134,7 +134,7 @@ def prepare(path: Path, options: RunOptions, d: Diagnostics) -> Prepared | None:
     found = locate(path, d, layout=options.layout)
     if found is None:
         return None
-    if found[1] is None:
+    if found[1] is None and options.input is None:  # else the command line is wrong, too
         d.error(
             RUN_NO_CELL,
             f"`{path}` has no cell.toml beside it",
