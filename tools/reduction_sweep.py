@@ -70,9 +70,9 @@ def _compare(net: Path, given: argparse.Namespace) -> Iterator[tuple[str, bool]]
         return
     took = time.perf_counter() - began
     u = table.unfolding
-    less = sum(table.useless)
+    less = sum(table.irrelevant)
     names = ", ".join(table.symmetries.names()) if table.symmetries else ""
-    sizes = f"{len(u.places)} counters, {len(u.transitions)} elements, {less} useless"
+    sizes = f"{len(u.places)} counters, {len(u.transitions)} elements, {less} irrelevant"
     yield f"{sizes}, {names or 'no symmetry'}; {took:.1f} s", False
     whole = _verify(net, given)
     if not whole.get("complete"):

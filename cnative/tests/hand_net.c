@@ -10,7 +10,7 @@
  */
 #include <stddef.h>
 
-#include "pn/pn_bag.h"
+#include "pn/pn_multiset.h"
 #include "pn/pn_net.h"
 
 #ifndef HAND_DELAY
@@ -106,21 +106,21 @@ static const pn_type_t BINDING = { .kind = PN_KIND_RECORD,
 
 /* --- places ------------------------------------------------------------------------------------------------------- */
 
-#define BAG(field, place_name, value_type, timed)                                         \
-    static const pn_bag_t field##_bag = { .origin = "page `Top`, place `" place_name "`", \
-                                          .type = &(value_type),                          \
-                                          .capacity = 1U,                                 \
-                                          .is_timed = (timed),                            \
-                                          PN_BAG_STAMPS(marking_t, field) };
+#define MULTISET(field, place_name, value_type, timed)                                              \
+    static const pn_multiset_t field##_multiset = { .origin = "page `Top`, place `" place_name "`", \
+                                                    .type = &(value_type),                          \
+                                                    .capacity = 1U,                                 \
+                                                    .is_timed = (timed),                            \
+                                                    PN_MULTISET_STAMPS(marking_t, field) };
 
-BAG(orders, "Top.Orders", ORDER_TYPE, false)
-BAG(idle, "Top.Idle", UNIT, true)
-BAG(waiting, "Top.Waiting", UNIT, false)
-BAG(done, "Top.Done", UNIT, false)
-BAG(pose, "Top.pose1", POSITION, false)
-BAG(command, "Top.command", INT, false)
-BAG(answer, "Top.answer", ANSWER, false)
-BAG(spin, "Top.Spin", UNIT, false)
+MULTISET(orders, "Top.Orders", ORDER_TYPE, false)
+MULTISET(idle, "Top.Idle", UNIT, true)
+MULTISET(waiting, "Top.Waiting", UNIT, false)
+MULTISET(done, "Top.Done", UNIT, false)
+MULTISET(pose, "Top.pose1", POSITION, false)
+MULTISET(command, "Top.command", INT, false)
+MULTISET(answer, "Top.answer", ANSWER, false)
+MULTISET(spin, "Top.Spin", UNIT, false)
 
 /* A token in a place where there is none, or another one instead. */
 #define PUT(field, token_value)                  \
@@ -145,7 +145,7 @@ static bool begin(pn_ctx_t *cx, void *marking)
 }
 
 #define PLAIN(field, place_name, place_owner) \
-    .name = place_name, .colset = "UNIT", .owner = (place_owner), .bag = &field##_bag
+    .name = place_name, .colset = "UNIT", .owner = (place_owner), .multiset = &field##_multiset
 
 static const pn_place_t PLACE[] = {
     { PLAIN(orders, "Top.Orders", 0), .initial = begin },
@@ -277,7 +277,7 @@ static const pn_transition_t TRANSITION_TABLE[] = {
 };
 
 static const uint32_t ORDER[] = { 0U, 1U, 2U, 3U, 4U, 5U, 6U };
-static const uint32_t BAGS[] = { 0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U };
+static const uint32_t MULTISETS[] = { 0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U };
 static const pn_owner_t OWNER[] = { { "supervisor" }, { "robot1" } };
 
 /* --- the net ------------------------------------------------------------------------------------------------------ */
@@ -298,6 +298,6 @@ const pn_net_t pn_net = {
     .order_count = sizeof ORDER / sizeof ORDER[0],
     .order = ORDER,
     .now_at = offsetof(marking_t, now),
-    .bag_count = sizeof BAGS / sizeof BAGS[0],
-    .bags = BAGS,
+    .multiset_count = sizeof MULTISETS / sizeof MULTISETS[0],
+    .multisets = MULTISETS,
 };

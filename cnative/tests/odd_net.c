@@ -19,7 +19,7 @@
 #include <stdlib.h>
 
 #include "pn/pn_arena.h"
-#include "pn/pn_bag.h"
+#include "pn/pn_multiset.h"
 #include "pn/pn_big.h"
 #include "pn/pn_marking.h"
 #include "pn/pn_net.h"
@@ -119,27 +119,27 @@ static const pn_type_t BINDING = { .kind = PN_KIND_RECORD,
 
 /* --- places ------------------------------------------------------------------------------------------------------- */
 
-#define BAG(field, value_type, timed)                                                 \
-    static const pn_bag_t field##_bag = { .origin = "page `Odd`, place `" #field "`", \
-                                          .type = &(value_type),                      \
-                                          .capacity = 1U,                             \
-                                          .is_timed = (timed),                        \
-                                          .is_real_time = REAL_TIME,                  \
-                                          PN_BAG_STAMPS(marking_t, field) };
+#define MULTISET(field, value_type, timed)                                                      \
+    static const pn_multiset_t field##_multiset = { .origin = "page `Odd`, place `" #field "`", \
+                                                    .type = &(value_type),                      \
+                                                    .capacity = 1U,                             \
+                                                    .is_timed = (timed),                        \
+                                                    .is_real_time = REAL_TIME,                  \
+                                                    PN_MULTISET_STAMPS(marking_t, field) };
 
-BAG(orders, INT, false)
-BAG(name, TOLD, false)
-BAG(few, UNIT, false)
-BAG(done, UNIT, false)
-BAG(also, UNIT, false)
-BAG(say, TEXT, false)
-BAG(big, BIG, false)
-BAG(level, REAL, false)
-BAG(command, INT, false)
-BAG(told, TOLD, false)
-BAG(answer, INT, false)
-BAG(timer, UNIT, true)
-BAG(loop, INT, false)
+MULTISET(orders, INT, false)
+MULTISET(name, TOLD, false)
+MULTISET(few, UNIT, false)
+MULTISET(done, UNIT, false)
+MULTISET(also, UNIT, false)
+MULTISET(say, TEXT, false)
+MULTISET(big, BIG, false)
+MULTISET(level, REAL, false)
+MULTISET(command, INT, false)
+MULTISET(told, TOLD, false)
+MULTISET(answer, INT, false)
+MULTISET(timer, UNIT, true)
+MULTISET(loop, INT, false)
 
 #define PUT(field, token_value, how_often)       \
     do {                                         \
@@ -168,7 +168,7 @@ static void set_up(pn_ctx_t *cx)
 }
 
 #define PLACE_ROW(field, place_name, place_owner) \
-    .name = (place_name), .colset = "ODD", .owner = (place_owner), .bag = &field##_bag
+    .name = (place_name), .colset = "ODD", .owner = (place_owner), .multiset = &field##_multiset
 
 static const pn_place_t PLACE[] = {
     { PLACE_ROW(orders, "Odd.Orders", 0), .initial = begin },
@@ -382,7 +382,7 @@ static const pn_transition_t TRANSITION_TABLE[] = {
 };
 
 static const uint32_t ORDER[] = { 0U, 1U, 2U, 3U, 4U };
-static const uint32_t BAGS[] = { 0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 9U, 10U, 11U, 12U };
+static const uint32_t MULTISETS[] = { 0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 9U, 10U, 11U, 12U };
 static const uint32_t REFER[] = { 1U, 5U, 9U };
 static const pn_owner_t OWNER[ODD_OWNERS] = { { "supervisor" }, { "robot1" }, { "robot2" } };
 
@@ -438,6 +438,6 @@ const pn_net_t pn_net = {
     .set_up = set_up,
     .refer_count = sizeof REFER / sizeof REFER[0],
     .refer = REFER,
-    .bag_count = sizeof BAGS / sizeof BAGS[0],
-    .bags = BAGS,
+    .multiset_count = sizeof MULTISETS / sizeof MULTISETS[0],
+    .multisets = MULTISETS,
 };

@@ -14,7 +14,7 @@
 #include <unistd.h>
 
 #include "pn/pn_arena.h"
-#include "pn/pn_bag.h"
+#include "pn/pn_multiset.h"
 #include "pn/pn_num.h"
 #include "pn/pn_text.h"
 #include "pn/pn_trace.h"
@@ -61,23 +61,23 @@ static const pn_type_t s_small = { .kind = PN_KIND_INT,
                                    .has_range = true,
                                    .low = 1,
                                    .high = 3 };
-static const pn_bag_t s_plain = { .origin = "place `Plain`",
-                                  .type = &s_int,
-                                  .capacity = 4U,
-                                  PN_BAG_TOKENS(marking_t, Plain) };
-static const pn_bag_t s_timed = { .origin = "place `Timed`",
-                                  .type = &s_int,
-                                  .capacity = 3U,
-                                  .is_timed = true,
-                                  PN_BAG_STAMPS(marking_t, Timed) };
+static const pn_multiset_t s_plain = { .origin = "place `Plain`",
+                                       .type = &s_int,
+                                       .capacity = 4U,
+                                       PN_MULTISET_TOKENS(marking_t, Plain) };
+static const pn_multiset_t s_timed = { .origin = "place `Timed`",
+                                       .type = &s_int,
+                                       .capacity = 3U,
+                                       .is_timed = true,
+                                       PN_MULTISET_STAMPS(marking_t, Timed) };
 
 /* The text of a place's marking. */
-static const char *json(const pn_bag_t *bag, const marking_t *m)
+static const char *json(const pn_multiset_t *multiset, const marking_t *m)
 {
     static char buffer[512];
     pn_text_t text;
     pn_text_init(&text, buffer, sizeof buffer);
-    pn_bag_json(bag, m, &text);
+    pn_multiset_json(multiset, m, &text);
     return buffer;
 }
 
@@ -207,8 +207,8 @@ static void test_moves(void)
     const int64_t one = 1;
     const int64_t two = 2;
     const int64_t three = 3;
-    CHECK(pn_bag_add(&cx, &s_plain, &m, &two, 1U, PN_NO_TIME));
-    CHECK(pn_bag_add(&cx, &s_plain, &m, &one, 2U, PN_NO_TIME));
+    CHECK(pn_multiset_add(&cx, &s_plain, &m, &two, 1U, PN_NO_TIME));
+    CHECK(pn_multiset_add(&cx, &s_plain, &m, &one, 2U, PN_NO_TIME));
     CHECK(is_text(json(&s_plain, &m), "[[2, 1], [1, 2]]"));
 
     /* Demands on one place sum up. */
@@ -221,11 +221,11 @@ static void test_moves(void)
     CHECK(!pn_moves_are_possible(&moves, &m));
 
     /* Timed: stamps 1, 4, 9 of value 1. A demand up to 2 and one up to 5 can be met, two up to 2 cannot. */
-    CHECK(pn_bag_add(&cx, &s_timed, &m, &one, 1U, pn_time_int(9)));
-    CHECK(pn_bag_add(&cx, &s_timed, &m, &one, 1U, pn_time_int(1)));
-    CHECK(pn_bag_add(&cx, &s_timed, &m, &one, 1U, pn_time_int(4)));
+    CHECK(pn_multiset_add(&cx, &s_timed, &m, &one, 1U, pn_time_int(9)));
+    CHECK(pn_multiset_add(&cx, &s_timed, &m, &one, 1U, pn_time_int(1)));
+    CHECK(pn_multiset_add(&cx, &s_timed, &m, &one, 1U, pn_time_int(4)));
     CHECK(is_text(json(&s_timed, &m), "[[1, 1, 1], [1, 1, 4], [1, 1, 9]]"));
-    CHECK(pn_bag_available(&s_timed, &m, pn_time_int(4)) == 2U);
+    CHECK(pn_multiset_available(&s_timed, &m, pn_time_int(4)) == 2U);
     pn_moves_init(&moves, &cx);
     pn_moves_take(&moves, &s_timed, &one, 1, pn_time_int(5));
     pn_moves_take(&moves, &s_timed, &one, 1, pn_time_int(2));
@@ -257,7 +257,7 @@ static void test_moves(void)
     CHECK(is_text(json(&s_timed, &m), "[[1, 1, 9]]"));
 
     /* A colour outside its colour set. */
-    pn_bag_t small = s_plain;
+    pn_multiset_t small = s_plain;
     small.type = &s_small;
     const int64_t four = 4;
     pn_moves_init(&moves, &cx);
@@ -279,8 +279,8 @@ static void test_arrivals(void)
             bool full;
         } Word;
     } words;
-    static const pn_bag_t place = {
-        .origin = "place `Word`", .type = &word, .capacity = 1U, PN_BAG_SLOT(struct words, Word)
+    static const pn_multiset_t place = {
+        .origin = "place `Word`", .type = &word, .capacity = 1U, PN_MULTISET_SLOT(struct words, Word)
     };
     pn_arena_t arena;
     pn_ctx_t cx;
@@ -291,7 +291,7 @@ static void test_arrivals(void)
     pn_ctx_init(&cx, &arena, 1U);
     pn_arena_seal(&arena);
     const pn_leaf_t number = { .kind = PN_LEAF_INT, .integer = 2 };
-    CHECK(pn_bag_put(&cx, &s_plain, &m, &number, 1U) && is_text(json(&s_plain, &m), "[[1, 2]]"));
+    CHECK(pn_multiset_put(&cx, &s_plain, &m, &number, 1U) && is_text(json(&s_plain, &m), "[[1, 2]]"));
     CHECK(pn_ok(&cx));
 
     pn_arena_init(&arena, s_memory, 512U);
@@ -299,11 +299,11 @@ static void test_arrivals(void)
     const pn_leaf_t longer = { .kind = PN_LEAF_STRING, .text = "longer", .length = 6U };
     const pn_leaf_t fine = { .kind = PN_LEAF_STRING, .text = "abc", .length = 3U };
     for (uint32_t i = 0U; i < 100U; i++) { /* it is sent again and again */
-        CHECK(!pn_bag_put(&cx, &place, &words, &longer, 1U) && (cx.error == PN_ERR_COLOUR));
+        CHECK(!pn_multiset_put(&cx, &place, &words, &longer, 1U) && (cx.error == PN_ERR_COLOUR));
         pn_clear_error(&cx);
     }
     CHECK(pn_arena_mark(&arena) == 0U);
-    CHECK(pn_bag_put(&cx, &place, &words, &fine, 1U) && (pn_arena_mark(&arena) > 0U));
+    CHECK(pn_multiset_put(&cx, &place, &words, &fine, 1U) && (pn_arena_mark(&arena) > 0U));
     CHECK(words.Word.full && (words.Word.value.length == 3U) && is_text(words.Word.value.bytes, "abc"));
 }
 

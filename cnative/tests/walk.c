@@ -200,7 +200,7 @@ static void print_step(const void *marking, pn_text_t *text, int64_t chosen)
         pn_text_str(text, (i > 0U) ? ", " : "");
         pn_text_json_str(text, pn_net.place[i].name);
         pn_text_str(text, ": ");
-        pn_bag_json(pn_net.place[i].bag, marking, text);
+        pn_multiset_json(pn_net.place[i].multiset, marking, text);
     }
     pn_text_str(text, "}, \"chosen\": ");
     pn_text_int(text, chosen);

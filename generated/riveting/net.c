@@ -846,57 +846,57 @@ static int64_t ml_worse(int64_t e, int64_t f)
 /* --- places ------------------------------------------------------------------------------------ */
 
 /* place Cell.dadosrobo1, colour set POSE: page `Cell`, place `dadosrobo1` (ID1412310013) */
-static const pn_bag_t s_at_dadosrobo1 = {
+static const pn_multiset_t s_at_dadosrobo1 = {
     .origin = "page `Cell`, place `dadosrobo1` (ID1412310013)", .type = &s_POSE, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, dadosrobo1) };
+    PN_MULTISET_SLOT(net_marking_t, dadosrobo1) };
 
 /* place Cell.flag1_interno, colour set COMMAND: page `Cell`, place `flag1_interno` (ID1412310016) */
-static const pn_bag_t s_at_flag1_interno = {
+static const pn_multiset_t s_at_flag1_interno = {
     .origin = "page `Cell`, place `flag1_interno` (ID1412310016)", .type = &s_COMMAND,
-    .capacity = 1U, PN_BAG_SLOT(net_marking_t, flag1_interno) };
+    .capacity = 1U, PN_MULTISET_SLOT(net_marking_t, flag1_interno) };
 
 /* place Cell.flag1_externo, colour set REPLY: page `Cell`, place `flag1_externo` (ID1412310019) */
-static const pn_bag_t s_at_flag1_externo = {
+static const pn_multiset_t s_at_flag1_externo = {
     .origin = "page `Cell`, place `flag1_externo` (ID1412310019)", .type = &s_REPLY, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, flag1_externo) };
+    PN_MULTISET_SLOT(net_marking_t, flag1_externo) };
 
 /* place Cell.referencia1, colour set POSE: page `Cell`, place `referencia1` (ID1412310022) */
-static const pn_bag_t s_at_referencia1 = {
+static const pn_multiset_t s_at_referencia1 = {
     .origin = "page `Cell`, place `referencia1` (ID1412310022)", .type = &s_POSE, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, referencia1) };
+    PN_MULTISET_SLOT(net_marking_t, referencia1) };
 
 /* place Cell.medida1, colour set POSE: page `Cell`, place `medida1` (ID1412310025) */
-static const pn_bag_t s_at_medida1 = { .origin = "page `Cell`, place `medida1` (ID1412310025)",
-    .type = &s_POSE, .capacity = 1U, PN_BAG_SLOT(net_marking_t, medida1) };
+static const pn_multiset_t s_at_medida1 = { .origin = "page `Cell`, place `medida1` (ID1412310025)",
+    .type = &s_POSE, .capacity = 1U, PN_MULTISET_SLOT(net_marking_t, medida1) };
 
 /* place Cell.dadosrobo2, colour set POSE: page `Cell`, place `dadosrobo2` (ID1412310028) */
-static const pn_bag_t s_at_dadosrobo2 = {
+static const pn_multiset_t s_at_dadosrobo2 = {
     .origin = "page `Cell`, place `dadosrobo2` (ID1412310028)", .type = &s_POSE, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, dadosrobo2) };
+    PN_MULTISET_SLOT(net_marking_t, dadosrobo2) };
 
 /* place Cell.flag2_interno, colour set COMMAND: page `Cell`, place `flag2_interno` (ID1412310031) */
-static const pn_bag_t s_at_flag2_interno = {
+static const pn_multiset_t s_at_flag2_interno = {
     .origin = "page `Cell`, place `flag2_interno` (ID1412310031)", .type = &s_COMMAND,
-    .capacity = 1U, PN_BAG_SLOT(net_marking_t, flag2_interno) };
+    .capacity = 1U, PN_MULTISET_SLOT(net_marking_t, flag2_interno) };
 
 /* place Cell.flag2_externo, colour set REPLY: page `Cell`, place `flag2_externo` (ID1412310034) */
-static const pn_bag_t s_at_flag2_externo = {
+static const pn_multiset_t s_at_flag2_externo = {
     .origin = "page `Cell`, place `flag2_externo` (ID1412310034)", .type = &s_REPLY, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, flag2_externo) };
+    PN_MULTISET_SLOT(net_marking_t, flag2_externo) };
 
 /* place Cell.referencia2, colour set POSE: page `Cell`, place `referencia2` (ID1412330001) */
-static const pn_bag_t s_at_referencia2 = {
+static const pn_multiset_t s_at_referencia2 = {
     .origin = "page `Cell`, place `referencia2` (ID1412330001)", .type = &s_POSE, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, referencia2) };
+    PN_MULTISET_SLOT(net_marking_t, referencia2) };
 
 /* place Cell.medida2, colour set POSE: page `Cell`, place `medida2` (ID1412330004) */
-static const pn_bag_t s_at_medida2 = { .origin = "page `Cell`, place `medida2` (ID1412330004)",
-    .type = &s_POSE, .capacity = 1U, PN_BAG_SLOT(net_marking_t, medida2) };
+static const pn_multiset_t s_at_medida2 = { .origin = "page `Cell`, place `medida2` (ID1412330004)",
+    .type = &s_POSE, .capacity = 1U, PN_MULTISET_SLOT(net_marking_t, medida2) };
 
 /* place Cell.Supervisor.coordenadas, colour set PLAN: page `Supervisor`, place `coordenadas` (ID1412310094) */
-static const pn_bag_t s_at_Supervisor_coordenadas = {
+static const pn_multiset_t s_at_Supervisor_coordenadas = {
     .origin = "page `Supervisor`, place `coordenadas` (ID1412310094)", .type = &s_PLAN,
-    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_coordenadas) };
+    .capacity = 1U, PN_MULTISET_SLOT(net_marking_t, Supervisor_coordenadas) };
 
 /* initial marking:
  *     (5,
@@ -920,299 +920,299 @@ static bool Supervisor_coordenadas_init(pn_ctx_t *cx, void *marking)
 }
 
 /* place Cell.Supervisor.planned, colour set SEAM: page `Supervisor`, place `planned` (ID1412310097) */
-static const pn_bag_t s_at_Supervisor_planned = {
+static const pn_multiset_t s_at_Supervisor_planned = {
     .origin = "page `Supervisor`, place `planned` (ID1412310097)", .type = &s_SEAM, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_planned) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_planned) };
 
 /* place Cell.Supervisor.approached, colour set SEAM: page `Supervisor`, place `approached` (ID1412310100) */
-static const pn_bag_t s_at_Supervisor_approached = {
+static const pn_multiset_t s_at_Supervisor_approached = {
     .origin = "page `Supervisor`, place `approached` (ID1412310100)", .type = &s_SEAM,
-    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_approached) };
+    .capacity = 1U, PN_MULTISET_SLOT(net_marking_t, Supervisor_approached) };
 
 /* place Cell.Supervisor.verified, colour set VERIFIED: page `Supervisor`, place `verified` (ID1412310103) */
-static const pn_bag_t s_at_Supervisor_verified = {
+static const pn_multiset_t s_at_Supervisor_verified = {
     .origin = "page `Supervisor`, place `verified` (ID1412310103)", .type = &s_VERIFIED,
-    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_verified) };
+    .capacity = 1U, PN_MULTISET_SLOT(net_marking_t, Supervisor_verified) };
 
 /* place Cell.Supervisor.corrected, colour set RIVETING: page `Supervisor`, place `corrected` (ID1412310106) */
-static const pn_bag_t s_at_Supervisor_corrected = {
+static const pn_multiset_t s_at_Supervisor_corrected = {
     .origin = "page `Supervisor`, place `corrected` (ID1412310106)", .type = &s_RIVETING,
-    .capacity = 1U, PN_BAG_SLOT(net_marking_t, Supervisor_corrected) };
+    .capacity = 1U, PN_MULTISET_SLOT(net_marking_t, Supervisor_corrected) };
 
 /* place Cell.Supervisor.ended, colour set UNIT: page `Supervisor`, place `ended` (ID1412310109) */
-static const pn_bag_t s_at_Supervisor_ended = {
+static const pn_multiset_t s_at_Supervisor_ended = {
     .origin = "page `Supervisor`, place `ended` (ID1412310109)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_ended) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_ended) };
 
 /* place Cell.Supervisor.Finished, colour set UNIT: page `Supervisor`, place `Finished` (ID1412310112) */
-static const pn_bag_t s_at_Supervisor_Finished = {
+static const pn_multiset_t s_at_Supervisor_Finished = {
     .origin = "page `Supervisor`, place `Finished` (ID1412310112)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Finished) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Finished) };
 
 /* place Cell.Supervisor.result, colour set REPLY: page `Supervisor`, place `result` (ID1412320001) */
-static const pn_bag_t s_at_Supervisor_result = {
+static const pn_multiset_t s_at_Supervisor_result = {
     .origin = "page `Supervisor`, place `result` (ID1412320001)", .type = &s_REPLY, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_result) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_result) };
 
 /* place Cell.Supervisor.Failed, colour set UNIT: page `Supervisor`, place `Failed` (ID1412320004) */
-static const pn_bag_t s_at_Supervisor_Failed = {
+static const pn_multiset_t s_at_Supervisor_Failed = {
     .origin = "page `Supervisor`, place `Failed` (ID1412320004)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Failed) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Failed) };
 
 /* place Cell.Supervisor.Approach.order, colour set ORDER: page `Approach`, place `order` (ID1412310290) */
-static const pn_bag_t s_at_Supervisor_Approach_order = {
+static const pn_multiset_t s_at_Supervisor_Approach_order = {
     .origin = "page `Approach`, place `order` (ID1412310290)", .type = &s_ORDER, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_order) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Approach_order) };
 
 /* place Cell.Supervisor.Approach.done, colour set UNIT: page `Approach`, place `done` (ID1412310293) */
-static const pn_bag_t s_at_Supervisor_Approach_done = {
+static const pn_multiset_t s_at_Supervisor_Approach_done = {
     .origin = "page `Approach`, place `done` (ID1412310293)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_done) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Approach_done) };
 
 /* place Cell.Supervisor.Approach.seam, colour set SEAM: page `Approach`, place `seam` (ID1412310352) */
-static const pn_bag_t s_at_Supervisor_Approach_seam = {
+static const pn_multiset_t s_at_Supervisor_Approach_seam = {
     .origin = "page `Approach`, place `seam` (ID1412310352)", .type = &s_SEAM, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_seam) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Approach_seam) };
 
 /* place Cell.Supervisor.Approach.Move both.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
-static const pn_bag_t s_at_Supervisor_Approach_Move_both_moving_1 = {
+static const pn_multiset_t s_at_Supervisor_Approach_Move_both_moving_1 = {
     .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_moving_1) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Approach_Move_both_moving_1) };
 
 /* place Cell.Supervisor.Approach.Move both.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
-static const pn_bag_t s_at_Supervisor_Approach_Move_both_there_1 = {
+static const pn_multiset_t s_at_Supervisor_Approach_Move_both_there_1 = {
     .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_there_1) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Approach_Move_both_there_1) };
 
 /* place Cell.Supervisor.Approach.Move both.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
-static const pn_bag_t s_at_Supervisor_Approach_Move_both_moving_2 = {
+static const pn_multiset_t s_at_Supervisor_Approach_Move_both_moving_2 = {
     .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_moving_2) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Approach_Move_both_moving_2) };
 
 /* place Cell.Supervisor.Approach.Move both.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
-static const pn_bag_t s_at_Supervisor_Approach_Move_both_there_2 = {
+static const pn_multiset_t s_at_Supervisor_Approach_Move_both_there_2 = {
     .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Approach_Move_both_there_2) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Approach_Move_both_there_2) };
 
 /* place Cell.Supervisor.Verify.first asked, colour set SEAM: page `Verify`, place `first asked` (ID1412310382) */
-static const pn_bag_t s_at_Supervisor_Verify_first_asked = {
+static const pn_multiset_t s_at_Supervisor_Verify_first_asked = {
     .origin = "page `Verify`, place `first asked` (ID1412310382)", .type = &s_SEAM, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Verify_first_asked) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Verify_first_asked) };
 
 /* place Cell.Supervisor.Verify.last asked, colour set ASKED: page `Verify`, place `last asked` (ID1412310390) */
-static const pn_bag_t s_at_Supervisor_Verify_last_asked = {
+static const pn_multiset_t s_at_Supervisor_Verify_last_asked = {
     .origin = "page `Verify`, place `last asked` (ID1412310390)", .type = &s_ASKED, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Verify_last_asked) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Verify_last_asked) };
 
 /* place Cell.Supervisor.Correct.offset, colour set VECTOR: page `Correct`, place `offset` (ID1412310458) */
-static const pn_bag_t s_at_Supervisor_Correct_offset = {
+static const pn_multiset_t s_at_Supervisor_Correct_offset = {
     .origin = "page `Correct`, place `offset` (ID1412310458)", .type = &s_VECTOR, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_offset) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Correct_offset) };
 
 /* place Cell.Supervisor.Correct.order, colour set ORDER: page `Correct`, place `order` (ID1412310466) */
-static const pn_bag_t s_at_Supervisor_Correct_order = {
+static const pn_multiset_t s_at_Supervisor_Correct_order = {
     .origin = "page `Correct`, place `order` (ID1412310466)", .type = &s_ORDER, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_order) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Correct_order) };
 
 /* place Cell.Supervisor.Correct.done, colour set UNIT: page `Correct`, place `done` (ID1412310475) */
-static const pn_bag_t s_at_Supervisor_Correct_done = {
+static const pn_multiset_t s_at_Supervisor_Correct_done = {
     .origin = "page `Correct`, place `done` (ID1412310475)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_done) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Correct_done) };
 
 /* place Cell.Supervisor.Correct.seam, colour set RIVETING: page `Correct`, place `seam` (ID1412310523) */
-static const pn_bag_t s_at_Supervisor_Correct_seam = {
+static const pn_multiset_t s_at_Supervisor_Correct_seam = {
     .origin = "page `Correct`, place `seam` (ID1412310523)", .type = &s_RIVETING, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_seam) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Correct_seam) };
 
 /* place Cell.Supervisor.Correct.Move both.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
-static const pn_bag_t s_at_Supervisor_Correct_Move_both_moving_1 = {
+static const pn_multiset_t s_at_Supervisor_Correct_Move_both_moving_1 = {
     .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_moving_1) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Correct_Move_both_moving_1) };
 
 /* place Cell.Supervisor.Correct.Move both.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
-static const pn_bag_t s_at_Supervisor_Correct_Move_both_there_1 = {
+static const pn_multiset_t s_at_Supervisor_Correct_Move_both_there_1 = {
     .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_there_1) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Correct_Move_both_there_1) };
 
 /* place Cell.Supervisor.Correct.Move both.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
-static const pn_bag_t s_at_Supervisor_Correct_Move_both_moving_2 = {
+static const pn_multiset_t s_at_Supervisor_Correct_Move_both_moving_2 = {
     .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_moving_2) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Correct_Move_both_moving_2) };
 
 /* place Cell.Supervisor.Correct.Move both.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
-static const pn_bag_t s_at_Supervisor_Correct_Move_both_there_2 = {
+static const pn_multiset_t s_at_Supervisor_Correct_Move_both_there_2 = {
     .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Correct_Move_both_there_2) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Correct_Move_both_there_2) };
 
 /* place Cell.Supervisor.Install.shift, colour set ORDER: page `Install`, place `shift` (ID1412310585) */
-static const pn_bag_t s_at_Supervisor_Install_shift = {
+static const pn_multiset_t s_at_Supervisor_Install_shift = {
     .origin = "page `Install`, place `shift` (ID1412310585)", .type = &s_ORDER, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_shift) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_shift) };
 
 /* place Cell.Supervisor.Install.ready, colour set UNIT: page `Install`, place `ready` (ID1412310588) */
-static const pn_bag_t s_at_Supervisor_Install_ready = {
+static const pn_multiset_t s_at_Supervisor_Install_ready = {
     .origin = "page `Install`, place `ready` (ID1412310588)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_ready) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_ready) };
 
 /* place Cell.Supervisor.Install.riveted, colour set UNIT: page `Install`, place `riveted` (ID1412310591) */
-static const pn_bag_t s_at_Supervisor_Install_riveted = {
+static const pn_multiset_t s_at_Supervisor_Install_riveted = {
     .origin = "page `Install`, place `riveted` (ID1412310591)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_riveted) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_riveted) };
 
 /* place Cell.Supervisor.Install.return, colour set ORDER: page `Install`, place `return` (ID1412310599) */
-static const pn_bag_t s_at_Supervisor_Install_return = {
+static const pn_multiset_t s_at_Supervisor_Install_return = {
     .origin = "page `Install`, place `return` (ID1412310599)", .type = &s_ORDER, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_return) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_return) };
 
 /* place Cell.Supervisor.Install.work, colour set WORK: page `Install`, place `work` (ID1412310629) */
-static const pn_bag_t s_at_Supervisor_Install_work = {
+static const pn_multiset_t s_at_Supervisor_Install_work = {
     .origin = "page `Install`, place `work` (ID1412310629)", .type = &s_WORK, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_work) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_work) };
 
 /* place Cell.Supervisor.Install.Shift.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
-static const pn_bag_t s_at_Supervisor_Install_Shift_moving_1 = {
+static const pn_multiset_t s_at_Supervisor_Install_Shift_moving_1 = {
     .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_moving_1) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Shift_moving_1) };
 
 /* place Cell.Supervisor.Install.Shift.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
-static const pn_bag_t s_at_Supervisor_Install_Shift_there_1 = {
+static const pn_multiset_t s_at_Supervisor_Install_Shift_there_1 = {
     .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_there_1) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Shift_there_1) };
 
 /* place Cell.Supervisor.Install.Shift.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
-static const pn_bag_t s_at_Supervisor_Install_Shift_moving_2 = {
+static const pn_multiset_t s_at_Supervisor_Install_Shift_moving_2 = {
     .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_moving_2) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Shift_moving_2) };
 
 /* place Cell.Supervisor.Install.Shift.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
-static const pn_bag_t s_at_Supervisor_Install_Shift_there_2 = {
+static const pn_multiset_t s_at_Supervisor_Install_Shift_there_2 = {
     .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Shift_there_2) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Shift_there_2) };
 
 /* place Cell.Supervisor.Install.Rivet.advance, colour set ORDER: page `Rivet`, place `advance` (ID1412310721) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_advance = {
+static const pn_multiset_t s_at_Supervisor_Install_Rivet_advance = {
     .origin = "page `Rivet`, place `advance` (ID1412310721)", .type = &s_ORDER, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_advance) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Rivet_advance) };
 
 /* place Cell.Supervisor.Install.Rivet.contact, colour set UNIT: page `Rivet`, place `contact` (ID1412310730) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_contact = {
+static const pn_multiset_t s_at_Supervisor_Install_Rivet_contact = {
     .origin = "page `Rivet`, place `contact` (ID1412310730)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_contact) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Rivet_contact) };
 
 /* place Cell.Supervisor.Install.Rivet.fastened, colour set REPLY: page `Rivet`, place `fastened` (ID1412310739) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_fastened = {
+static const pn_multiset_t s_at_Supervisor_Install_Rivet_fastened = {
     .origin = "page `Rivet`, place `fastened` (ID1412310739)", .type = &s_REPLY, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_fastened) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Rivet_fastened) };
 
 /* place Cell.Supervisor.Install.Rivet.retract, colour set ORDER: page `Rivet`, place `retract` (ID1412310747) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_retract = {
+static const pn_multiset_t s_at_Supervisor_Install_Rivet_retract = {
     .origin = "page `Rivet`, place `retract` (ID1412310747)", .type = &s_ORDER, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_retract) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Rivet_retract) };
 
 /* place Cell.Supervisor.Install.Rivet.Advance.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_moving_1 = {
+static const pn_multiset_t s_at_Supervisor_Install_Rivet_Advance_moving_1 = {
     .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_moving_1) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_moving_1) };
 
 /* place Cell.Supervisor.Install.Rivet.Advance.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_there_1 = {
+static const pn_multiset_t s_at_Supervisor_Install_Rivet_Advance_there_1 = {
     .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_there_1) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_there_1) };
 
 /* place Cell.Supervisor.Install.Rivet.Advance.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_moving_2 = {
+static const pn_multiset_t s_at_Supervisor_Install_Rivet_Advance_moving_2 = {
     .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_moving_2) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_moving_2) };
 
 /* place Cell.Supervisor.Install.Rivet.Advance.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Advance_there_2 = {
+static const pn_multiset_t s_at_Supervisor_Install_Rivet_Advance_there_2 = {
     .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_there_2) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Rivet_Advance_there_2) };
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.pressing, colour set UNIT: page `Fasten`, place `pressing` (ID1412310847) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_pressing = {
+static const pn_multiset_t s_at_Supervisor_Install_Rivet_Fasten_pressing = {
     .origin = "page `Fasten`, place `pressing` (ID1412310847)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_pressing) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_pressing) };
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.drilling, colour set UNIT: page `Fasten`, place `drilling` (ID1412310855) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_drilling = {
+static const pn_multiset_t s_at_Supervisor_Install_Rivet_Fasten_drilling = {
     .origin = "page `Fasten`, place `drilling` (ID1412310855)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_drilling) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_drilling) };
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.inserting, colour set UNIT: page `Fasten`, place `inserting` (ID1412310863) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_inserting = {
+static const pn_multiset_t s_at_Supervisor_Install_Rivet_Fasten_inserting = {
     .origin = "page `Fasten`, place `inserting` (ID1412310863)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_inserting) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_inserting) };
 
 /* place Cell.Supervisor.Install.Rivet.Fasten.releasing, colour set REPLY: page `Fasten`, place `releasing` (ID1412310871) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Fasten_releasing = {
+static const pn_multiset_t s_at_Supervisor_Install_Rivet_Fasten_releasing = {
     .origin = "page `Fasten`, place `releasing` (ID1412310871)", .type = &s_REPLY, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_releasing) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Rivet_Fasten_releasing) };
 
 /* place Cell.Supervisor.Install.Rivet.Retract.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_moving_1 = {
+static const pn_multiset_t s_at_Supervisor_Install_Rivet_Retract_moving_1 = {
     .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_moving_1) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_moving_1) };
 
 /* place Cell.Supervisor.Install.Rivet.Retract.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_there_1 = {
+static const pn_multiset_t s_at_Supervisor_Install_Rivet_Retract_there_1 = {
     .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_there_1) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_there_1) };
 
 /* place Cell.Supervisor.Install.Rivet.Retract.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_moving_2 = {
+static const pn_multiset_t s_at_Supervisor_Install_Rivet_Retract_moving_2 = {
     .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_moving_2) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_moving_2) };
 
 /* place Cell.Supervisor.Install.Rivet.Retract.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
-static const pn_bag_t s_at_Supervisor_Install_Rivet_Retract_there_2 = {
+static const pn_multiset_t s_at_Supervisor_Install_Rivet_Retract_there_2 = {
     .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_there_2) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Rivet_Retract_there_2) };
 
 /* place Cell.Supervisor.Install.Return.moving 1, colour set UNIT: page `MoveBoth`, place `moving 1` (ID1412310959) */
-static const pn_bag_t s_at_Supervisor_Install_Return_moving_1 = {
+static const pn_multiset_t s_at_Supervisor_Install_Return_moving_1 = {
     .origin = "page `MoveBoth`, place `moving 1` (ID1412310959)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_moving_1) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Return_moving_1) };
 
 /* place Cell.Supervisor.Install.Return.there 1, colour set UNIT: page `MoveBoth`, place `there 1` (ID1412310967) */
-static const pn_bag_t s_at_Supervisor_Install_Return_there_1 = {
+static const pn_multiset_t s_at_Supervisor_Install_Return_there_1 = {
     .origin = "page `MoveBoth`, place `there 1` (ID1412310967)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_there_1) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Return_there_1) };
 
 /* place Cell.Supervisor.Install.Return.moving 2, colour set UNIT: page `MoveBoth`, place `moving 2` (ID1412310996) */
-static const pn_bag_t s_at_Supervisor_Install_Return_moving_2 = {
+static const pn_multiset_t s_at_Supervisor_Install_Return_moving_2 = {
     .origin = "page `MoveBoth`, place `moving 2` (ID1412310996)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_moving_2) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Return_moving_2) };
 
 /* place Cell.Supervisor.Install.Return.there 2, colour set UNIT: page `MoveBoth`, place `there 2` (ID1412311004) */
-static const pn_bag_t s_at_Supervisor_Install_Return_there_2 = {
+static const pn_multiset_t s_at_Supervisor_Install_Return_there_2 = {
     .origin = "page `MoveBoth`, place `there 2` (ID1412311004)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Install_Return_there_2) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Install_Return_there_2) };
 
 /* place Cell.Supervisor.Home.leaving 1, colour set UNIT: page `Home`, place `leaving 1` (ID1412311057) */
-static const pn_bag_t s_at_Supervisor_Home_leaving_1 = {
+static const pn_multiset_t s_at_Supervisor_Home_leaving_1 = {
     .origin = "page `Home`, place `leaving 1` (ID1412311057)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Home_leaving_1) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Home_leaving_1) };
 
 /* place Cell.Supervisor.Home.home 1, colour set UNIT: page `Home`, place `home 1` (ID1412311065) */
-static const pn_bag_t s_at_Supervisor_Home_home_1 = {
+static const pn_multiset_t s_at_Supervisor_Home_home_1 = {
     .origin = "page `Home`, place `home 1` (ID1412311065)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Home_home_1) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Home_home_1) };
 
 /* place Cell.Supervisor.Home.leaving 2, colour set UNIT: page `Home`, place `leaving 2` (ID1412311088) */
-static const pn_bag_t s_at_Supervisor_Home_leaving_2 = {
+static const pn_multiset_t s_at_Supervisor_Home_leaving_2 = {
     .origin = "page `Home`, place `leaving 2` (ID1412311088)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Home_leaving_2) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Home_leaving_2) };
 
 /* place Cell.Supervisor.Home.home 2, colour set UNIT: page `Home`, place `home 2` (ID1412311096) */
-static const pn_bag_t s_at_Supervisor_Home_home_2 = {
+static const pn_multiset_t s_at_Supervisor_Home_home_2 = {
     .origin = "page `Home`, place `home 2` (ID1412311096)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Supervisor_Home_home_2) };
+    PN_MULTISET_SLOT(net_marking_t, Supervisor_Home_home_2) };
 
 /* place Cell.Robot1.Waiting, colour set UNIT: page `Robot`, place `Waiting` (ID1412311130) */
-static const pn_bag_t s_at_Robot1_Waiting = {
+static const pn_multiset_t s_at_Robot1_Waiting = {
     .origin = "page `Robot`, place `Waiting` (ID1412311130)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Robot1_Waiting) };
+    PN_MULTISET_SLOT(net_marking_t, Robot1_Waiting) };
 
 /* initial marking:
  *     1`()
@@ -1227,18 +1227,19 @@ static bool Robot1_Waiting_init(pn_ctx_t *cx, void *marking)
 }
 
 /* place Cell.Robot1.Commanded, colour set COMMAND: page `Robot`, place `Commanded` (ID1412311133) */
-static const pn_bag_t s_at_Robot1_Commanded = {
+static const pn_multiset_t s_at_Robot1_Commanded = {
     .origin = "page `Robot`, place `Commanded` (ID1412311133)", .type = &s_COMMAND, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Robot1_Commanded) };
+    PN_MULTISET_SLOT(net_marking_t, Robot1_Commanded) };
 
 /* place Cell.Robot1.Done, colour set REPLY: page `Robot`, place `Done` (ID1412311142) */
-static const pn_bag_t s_at_Robot1_Done = { .origin = "page `Robot`, place `Done` (ID1412311142)",
-    .type = &s_REPLY, .capacity = 1U, PN_BAG_SLOT(net_marking_t, Robot1_Done) };
+static const pn_multiset_t s_at_Robot1_Done = {
+    .origin = "page `Robot`, place `Done` (ID1412311142)", .type = &s_REPLY, .capacity = 1U,
+    PN_MULTISET_SLOT(net_marking_t, Robot1_Done) };
 
 /* place Cell.Robot2.Waiting, colour set UNIT: page `Robot`, place `Waiting` (ID1412311130) */
-static const pn_bag_t s_at_Robot2_Waiting = {
+static const pn_multiset_t s_at_Robot2_Waiting = {
     .origin = "page `Robot`, place `Waiting` (ID1412311130)", .type = &s_UNIT, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Robot2_Waiting) };
+    PN_MULTISET_SLOT(net_marking_t, Robot2_Waiting) };
 
 /* initial marking:
  *     1`()
@@ -1253,24 +1254,25 @@ static bool Robot2_Waiting_init(pn_ctx_t *cx, void *marking)
 }
 
 /* place Cell.Robot2.Commanded, colour set COMMAND: page `Robot`, place `Commanded` (ID1412311133) */
-static const pn_bag_t s_at_Robot2_Commanded = {
+static const pn_multiset_t s_at_Robot2_Commanded = {
     .origin = "page `Robot`, place `Commanded` (ID1412311133)", .type = &s_COMMAND, .capacity = 1U,
-    PN_BAG_SLOT(net_marking_t, Robot2_Commanded) };
+    PN_MULTISET_SLOT(net_marking_t, Robot2_Commanded) };
 
 /* place Cell.Robot2.Done, colour set REPLY: page `Robot`, place `Done` (ID1412311142) */
-static const pn_bag_t s_at_Robot2_Done = { .origin = "page `Robot`, place `Done` (ID1412311142)",
-    .type = &s_REPLY, .capacity = 1U, PN_BAG_SLOT(net_marking_t, Robot2_Done) };
+static const pn_multiset_t s_at_Robot2_Done = {
+    .origin = "page `Robot`, place `Done` (ID1412311142)", .type = &s_REPLY, .capacity = 1U,
+    PN_MULTISET_SLOT(net_marking_t, Robot2_Done) };
 
 /* --- transitions ------------------------------------------------------------------------------- */
 
 /* page MoveBoth: the places that each of its instances has for its own */
 typedef struct MoveBoth_places {
-    const pn_bag_t *order;
-    const pn_bag_t *done;
-    const pn_bag_t *moving_1;
-    const pn_bag_t *there_1;
-    const pn_bag_t *moving_2;
-    const pn_bag_t *there_2;
+    const pn_multiset_t *order;
+    const pn_multiset_t *done;
+    const pn_multiset_t *moving_1;
+    const pn_multiset_t *there_1;
+    const pn_multiset_t *moving_2;
+    const pn_multiset_t *there_2;
 } MoveBoth_places_t;
 
 /* Cell.Supervisor.Approach.Move both */
@@ -1330,14 +1332,14 @@ static const MoveBoth_places_t s_in_Supervisor_Install_Return = {
 
 /* page Robot: the places that each of its instances has for its own */
 typedef struct Robot_places {
-    const pn_bag_t *dadosrobo;
-    const pn_bag_t *flag_interno;
-    const pn_bag_t *flag_externo;
-    const pn_bag_t *referencia;
-    const pn_bag_t *medida;
-    const pn_bag_t *Waiting;
-    const pn_bag_t *Commanded;
-    const pn_bag_t *Done;
+    const pn_multiset_t *dadosrobo;
+    const pn_multiset_t *flag_interno;
+    const pn_multiset_t *flag_externo;
+    const pn_multiset_t *referencia;
+    const pn_multiset_t *medida;
+    const pn_multiset_t *Waiting;
+    const pn_multiset_t *Commanded;
+    const pn_multiset_t *Done;
 } Robot_places_t;
 
 /* Cell.Robot1 */
@@ -1400,7 +1402,7 @@ PN_NET_SEARCH static bool Supervisor_Load_Load_fire(pn_ctx_t *cx, void *marking,
     Supervisor_Load_Load_binding_t *const b = binding;
     pn_begin(cx, "page `Load`, transition `Load` (ID1412310271)", m->now);
     SEAM_t Supervisor_planned_token = (SEAM_t){ .points = b->n, .first = b->p, .last = b->q };
-    pn_bag_check(cx, &s_at_Supervisor_planned, &Supervisor_planned_token);
+    pn_multiset_check(cx, &s_at_Supervisor_planned, &Supervisor_planned_token);
     if (!pn_ok(cx)) {
         return false;
     }
@@ -1532,7 +1534,7 @@ PN_NET_SEARCH static bool MoveBoth_Command_enumerate(pn_ctx_t *cx, const void *m
     MoveBoth_Command_binding_t b = { 0 };
     pn_begin(cx, "page `MoveBoth`, transition `Command` (ID1412310941)", m->now);
     const MoveBoth_places_t *const own = pn_net.transition[self].places;
-    const ORDER_slot_t *const at_order = pn_bag_look(own->order, m);
+    const ORDER_slot_t *const at_order = pn_multiset_look(own->order, m);
     if (!at_order->full) { /* order: (c, p, q) (ID1412310946) */
         return true;
     }
@@ -1548,9 +1550,9 @@ PN_NET_SEARCH static bool MoveBoth_Command_fire(pn_ctx_t *cx, void *marking, uin
     MoveBoth_Command_binding_t *const b = binding;
     pn_begin(cx, "page `MoveBoth`, transition `Command` (ID1412310941)", m->now);
     const MoveBoth_places_t *const own = pn_net.transition[self].places;
-    ORDER_slot_t *const at_order = pn_bag_reach(own->order, m);
-    UNIT_slot_t *const at_moving_1 = pn_bag_reach(own->moving_1, m);
-    UNIT_slot_t *const at_moving_2 = pn_bag_reach(own->moving_2, m);
+    ORDER_slot_t *const at_order = pn_multiset_reach(own->order, m);
+    UNIT_slot_t *const at_moving_1 = pn_multiset_reach(own->moving_1, m);
+    UNIT_slot_t *const at_moving_2 = pn_multiset_reach(own->moving_2, m);
     if (!pn_has_room(cx, at_moving_1->full, own->moving_1)
         || !pn_has_room(cx, m->dadosrobo1.full, &s_at_dadosrobo1)
         || !pn_has_room(cx, m->flag1_interno.full, &s_at_flag1_interno)
@@ -1594,8 +1596,8 @@ PN_NET_SEARCH static bool MoveBoth_Both_enumerate(pn_ctx_t *cx, const void *mark
     MoveBoth_Both_binding_t b = { 0 };
     pn_begin(cx, "page `MoveBoth`, transition `Both` (ID1412310948)", m->now);
     const MoveBoth_places_t *const own = pn_net.transition[self].places;
-    const UNIT_slot_t *const at_there_1 = pn_bag_look(own->there_1, m);
-    const UNIT_slot_t *const at_there_2 = pn_bag_look(own->there_2, m);
+    const UNIT_slot_t *const at_there_1 = pn_multiset_look(own->there_1, m);
+    const UNIT_slot_t *const at_there_2 = pn_multiset_look(own->there_2, m);
     if (!at_there_1->full) { /* there 1: () (ID1412310976) */
         return true;
     }
@@ -1611,9 +1613,9 @@ PN_NET_SEARCH static bool MoveBoth_Both_fire(pn_ctx_t *cx, void *marking, uint32
     (void)binding;
     pn_begin(cx, "page `MoveBoth`, transition `Both` (ID1412310948)", m->now);
     const MoveBoth_places_t *const own = pn_net.transition[self].places;
-    UNIT_slot_t *const at_done = pn_bag_reach(own->done, m);
-    UNIT_slot_t *const at_there_1 = pn_bag_reach(own->there_1, m);
-    UNIT_slot_t *const at_there_2 = pn_bag_reach(own->there_2, m);
+    UNIT_slot_t *const at_done = pn_multiset_reach(own->done, m);
+    UNIT_slot_t *const at_there_1 = pn_multiset_reach(own->there_1, m);
+    UNIT_slot_t *const at_there_2 = pn_multiset_reach(own->there_2, m);
     if (!pn_has_room(cx, at_done->full, own->done)) {
         return false;
     }
@@ -1645,7 +1647,7 @@ PN_NET_SEARCH static bool MoveBoth_Reply_1_enumerate(pn_ctx_t *cx, const void *m
     MoveBoth_Reply_1_binding_t b = { 0 };
     pn_begin(cx, "page `MoveBoth`, transition `Reply 1` (ID1412310962)", m->now);
     const MoveBoth_places_t *const own = pn_net.transition[self].places;
-    const UNIT_slot_t *const at_moving_1 = pn_bag_look(own->moving_1, m);
+    const UNIT_slot_t *const at_moving_1 = pn_multiset_look(own->moving_1, m);
     if (!at_moving_1->full) { /* moving 1: () (ID1412310972) */
         return true;
     }
@@ -1662,8 +1664,8 @@ PN_NET_SEARCH static bool MoveBoth_Reply_1_fire(pn_ctx_t *cx, void *marking, uin
     (void)binding;
     pn_begin(cx, "page `MoveBoth`, transition `Reply 1` (ID1412310962)", m->now);
     const MoveBoth_places_t *const own = pn_net.transition[self].places;
-    UNIT_slot_t *const at_moving_1 = pn_bag_reach(own->moving_1, m);
-    UNIT_slot_t *const at_there_1 = pn_bag_reach(own->there_1, m);
+    UNIT_slot_t *const at_moving_1 = pn_multiset_reach(own->moving_1, m);
+    UNIT_slot_t *const at_there_1 = pn_multiset_reach(own->there_1, m);
     if (!pn_has_room(cx, at_there_1->full, own->there_1)) {
         return false;
     }
@@ -1695,7 +1697,7 @@ PN_NET_SEARCH static bool MoveBoth_Reply_2_enumerate(pn_ctx_t *cx, const void *m
     MoveBoth_Reply_2_binding_t b = { 0 };
     pn_begin(cx, "page `MoveBoth`, transition `Reply 2` (ID1412310999)", m->now);
     const MoveBoth_places_t *const own = pn_net.transition[self].places;
-    const UNIT_slot_t *const at_moving_2 = pn_bag_look(own->moving_2, m);
+    const UNIT_slot_t *const at_moving_2 = pn_multiset_look(own->moving_2, m);
     if (!at_moving_2->full) { /* moving 2: () (ID1412311009) */
         return true;
     }
@@ -1712,8 +1714,8 @@ PN_NET_SEARCH static bool MoveBoth_Reply_2_fire(pn_ctx_t *cx, void *marking, uin
     (void)binding;
     pn_begin(cx, "page `MoveBoth`, transition `Reply 2` (ID1412310999)", m->now);
     const MoveBoth_places_t *const own = pn_net.transition[self].places;
-    UNIT_slot_t *const at_moving_2 = pn_bag_reach(own->moving_2, m);
-    UNIT_slot_t *const at_there_2 = pn_bag_reach(own->there_2, m);
+    UNIT_slot_t *const at_moving_2 = pn_multiset_reach(own->moving_2, m);
+    UNIT_slot_t *const at_there_2 = pn_multiset_reach(own->there_2, m);
     if (!pn_has_room(cx, at_there_2->full, own->there_2)) {
         return false;
     }
@@ -2075,7 +2077,7 @@ PN_NET_SEARCH static bool Supervisor_Correct_Compare_fire(pn_ctx_t *cx, void *ma
     const VECTOR_t token = ml_difference(b->p, b->a);
     RIVETING_t Supervisor_Correct_seam_token = (RIVETING_t){ .c1 = b->n, .c2 = b->p,
         .c3 = ml_pitch(cx, b->n, ml_corrected(b->p, b->a), ml_corrected(b->q, b->b)) };
-    pn_bag_check(cx, &s_at_Supervisor_Correct_seam, &Supervisor_Correct_seam_token);
+    pn_multiset_check(cx, &s_at_Supervisor_Correct_seam, &Supervisor_Correct_seam_token);
     if (!pn_ok(cx)) {
         return false;
     }
@@ -2389,7 +2391,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Next_rivet_fire(pn_ctx_t *cx, void 
         .c2 = ml_inTool(b->p, b->d), .c3 = ml_inTool(ml_facing(b->p), b->d) };
     WORK_t Supervisor_Install_work_token = (WORK_t){ .c1 = b->n, .c2 = pn_int_sub(cx, b->k, 1),
         .c3 = b->p, .c4 = b->d };
-    pn_bag_check(cx, &s_at_Supervisor_Install_work, &Supervisor_Install_work_token);
+    pn_multiset_check(cx, &s_at_Supervisor_Install_work, &Supervisor_Install_work_token);
     if (!pn_ok(cx)) {
         return false;
     }
@@ -2445,7 +2447,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Start_fire(pn_ctx_t *cx, void *mark
     pn_begin(cx, "page `Install`, transition `Start` (ID1412310632)", m->now);
     WORK_t Supervisor_Install_work_token = (WORK_t){ .c1 = b->n, .c2 = pn_int_add(cx, b->n, 2),
         .c3 = b->p, .c4 = b->d };
-    pn_bag_check(cx, &s_at_Supervisor_Install_work, &Supervisor_Install_work_token);
+    pn_multiset_check(cx, &s_at_Supervisor_Install_work, &Supervisor_Install_work_token);
     if (!pn_ok(cx)) {
         return false;
     }
@@ -2817,7 +2819,7 @@ PN_NET_SEARCH static bool Supervisor_Install_Rivet_Fasten_Finish_fire(pn_ctx_t *
     Supervisor_Install_Rivet_Fasten_Finish_binding_t *const b = binding;
     pn_begin(cx, "page `Fasten`, transition `Finish` (ID1412310874)", m->now);
     int64_t Supervisor_Install_Rivet_fastened_token = ml_worse(b->e, b->f);
-    pn_bag_check(cx, &s_at_Supervisor_Install_Rivet_fastened,
+    pn_multiset_check(cx, &s_at_Supervisor_Install_Rivet_fastened,
         &Supervisor_Install_Rivet_fastened_token);
     if (!pn_ok(cx)) {
         return false;
@@ -3144,8 +3146,8 @@ PN_NET_SEARCH static bool Robot_Accept_enumerate(pn_ctx_t *cx, const void *marki
     Robot_Accept_binding_t b = { 0 };
     pn_begin(cx, "page `Robot`, transition `Accept` (ID1412311125)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    const COMMAND_slot_t *const at_flag_interno = pn_bag_look(own->flag_interno, m);
-    const UNIT_slot_t *const at_Waiting = pn_bag_look(own->Waiting, m);
+    const COMMAND_slot_t *const at_flag_interno = pn_multiset_look(own->flag_interno, m);
+    const UNIT_slot_t *const at_Waiting = pn_multiset_look(own->Waiting, m);
     if (!at_Waiting->full) { /* Waiting: () (ID1412311138) */
         return true;
     }
@@ -3162,9 +3164,9 @@ PN_NET_SEARCH static bool Robot_Accept_fire(pn_ctx_t *cx, void *marking, uint32_
     Robot_Accept_binding_t *const b = binding;
     pn_begin(cx, "page `Robot`, transition `Accept` (ID1412311125)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    COMMAND_slot_t *const at_flag_interno = pn_bag_reach(own->flag_interno, m);
-    UNIT_slot_t *const at_Waiting = pn_bag_reach(own->Waiting, m);
-    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
+    COMMAND_slot_t *const at_flag_interno = pn_multiset_reach(own->flag_interno, m);
+    UNIT_slot_t *const at_Waiting = pn_multiset_reach(own->Waiting, m);
+    COMMAND_slot_t *const at_Commanded = pn_multiset_reach(own->Commanded, m);
     if (!pn_has_room(cx, at_Commanded->full, own->Commanded)) {
         return false;
     }
@@ -3195,7 +3197,7 @@ PN_NET_SEARCH static bool Robot_Report_enumerate(pn_ctx_t *cx, const void *marki
     Robot_Report_binding_t b = { 0 };
     pn_begin(cx, "page `Robot`, transition `Report` (ID1412311145)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    const REPLY_slot_t *const at_Done = pn_bag_look(own->Done, m);
+    const REPLY_slot_t *const at_Done = pn_multiset_look(own->Done, m);
     if (!at_Done->full) { /* Done: e (ID1412311154) */
         return true;
     }
@@ -3209,9 +3211,9 @@ PN_NET_SEARCH static bool Robot_Report_fire(pn_ctx_t *cx, void *marking, uint32_
     Robot_Report_binding_t *const b = binding;
     pn_begin(cx, "page `Robot`, transition `Report` (ID1412311145)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    REPLY_slot_t *const at_flag_externo = pn_bag_reach(own->flag_externo, m);
-    UNIT_slot_t *const at_Waiting = pn_bag_reach(own->Waiting, m);
-    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
+    REPLY_slot_t *const at_flag_externo = pn_multiset_reach(own->flag_externo, m);
+    UNIT_slot_t *const at_Waiting = pn_multiset_reach(own->Waiting, m);
+    REPLY_slot_t *const at_Done = pn_multiset_reach(own->Done, m);
     if (!pn_has_room(cx, at_flag_externo->full, own->flag_externo)
         || !pn_has_room(cx, at_Waiting->full, own->Waiting)) {
         return false;
@@ -3247,8 +3249,8 @@ PN_NET_SEARCH static bool Robot_MoveJoint_enumerate(pn_ctx_t *cx, const void *ma
     Robot_MoveJoint_binding_t b = { 0 };
     pn_begin(cx, "page `Robot`, transition `MoveJoint` (ID1412311160)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    const POSE_slot_t *const at_dadosrobo = pn_bag_look(own->dadosrobo, m);
-    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    const POSE_slot_t *const at_dadosrobo = pn_multiset_look(own->dadosrobo, m);
+    const COMMAND_slot_t *const at_Commanded = pn_multiset_look(own->Commanded, m);
     if (!at_Commanded->full) { /* Commanded: c (ID1412311165) */
         return true;
     }
@@ -3269,9 +3271,9 @@ PN_NET_SEARCH static bool Robot_MoveJoint_fire(pn_ctx_t *cx, void *marking, uint
     Robot_MoveJoint_binding_t *const b = binding;
     pn_begin(cx, "page `Robot`, transition `MoveJoint` (ID1412311160)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    POSE_slot_t *const at_dadosrobo = pn_bag_reach(own->dadosrobo, m);
-    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
-    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
+    POSE_slot_t *const at_dadosrobo = pn_multiset_reach(own->dadosrobo, m);
+    COMMAND_slot_t *const at_Commanded = pn_multiset_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_multiset_reach(own->Done, m);
     /* code segment: action moveJoint p */
     ml_moveJoint(b->p);
     const int64_t Done_token = val_DONE;
@@ -3309,8 +3311,8 @@ PN_NET_SEARCH static bool Robot_MoveLinear_enumerate(pn_ctx_t *cx, const void *m
     Robot_MoveLinear_binding_t b = { 0 };
     pn_begin(cx, "page `Robot`, transition `MoveLinear` (ID1412311169)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    const POSE_slot_t *const at_dadosrobo = pn_bag_look(own->dadosrobo, m);
-    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    const POSE_slot_t *const at_dadosrobo = pn_multiset_look(own->dadosrobo, m);
+    const COMMAND_slot_t *const at_Commanded = pn_multiset_look(own->Commanded, m);
     if (!at_Commanded->full) { /* Commanded: c (ID1412311174) */
         return true;
     }
@@ -3331,9 +3333,9 @@ PN_NET_SEARCH static bool Robot_MoveLinear_fire(pn_ctx_t *cx, void *marking, uin
     Robot_MoveLinear_binding_t *const b = binding;
     pn_begin(cx, "page `Robot`, transition `MoveLinear` (ID1412311169)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    POSE_slot_t *const at_dadosrobo = pn_bag_reach(own->dadosrobo, m);
-    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
-    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
+    POSE_slot_t *const at_dadosrobo = pn_multiset_reach(own->dadosrobo, m);
+    COMMAND_slot_t *const at_Commanded = pn_multiset_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_multiset_reach(own->Done, m);
     /* code segment: action moveLinear p */
     ml_moveLinear(b->p);
     const int64_t Done_token = val_DONE;
@@ -3369,7 +3371,7 @@ PN_NET_SEARCH static bool Robot_MoveHome_enumerate(pn_ctx_t *cx, const void *mar
     Robot_MoveHome_binding_t b = { 0 };
     pn_begin(cx, "page `Robot`, transition `MoveHome` (ID1412311178)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    const COMMAND_slot_t *const at_Commanded = pn_multiset_look(own->Commanded, m);
     if (!at_Commanded->full) { /* Commanded: c (ID1412311183) */
         return true;
     }
@@ -3386,8 +3388,8 @@ PN_NET_SEARCH static bool Robot_MoveHome_fire(pn_ctx_t *cx, void *marking, uint3
     (void)binding;
     pn_begin(cx, "page `Robot`, transition `MoveHome` (ID1412311178)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
-    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
+    COMMAND_slot_t *const at_Commanded = pn_multiset_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_multiset_reach(own->Done, m);
     /* code segment: action moveHome () */
     ml_moveHome();
     const int64_t Done_token = val_DONE;
@@ -3427,8 +3429,8 @@ PN_NET_SEARCH static bool Robot_Measure_enumerate(pn_ctx_t *cx, const void *mark
     Robot_Measure_binding_t b = { 0 };
     pn_begin(cx, "page `Robot`, transition `Measure` (ID1412311187)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    const POSE_slot_t *const at_referencia = pn_bag_look(own->referencia, m);
-    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    const POSE_slot_t *const at_referencia = pn_multiset_look(own->referencia, m);
+    const COMMAND_slot_t *const at_Commanded = pn_multiset_look(own->Commanded, m);
     if (!at_Commanded->full) { /* Commanded: c (ID1412311192) */
         return true;
     }
@@ -3456,14 +3458,14 @@ PN_NET_SEARCH static bool Robot_Measure_fire(pn_ctx_t *cx, void *marking, uint32
     Robot_Measure_binding_t *const b = binding;
     pn_begin(cx, "page `Robot`, transition `Measure` (ID1412311187)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    POSE_slot_t *const at_referencia = pn_bag_reach(own->referencia, m);
-    POSE_slot_t *const at_medida = pn_bag_reach(own->medida, m);
-    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
-    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
+    POSE_slot_t *const at_referencia = pn_multiset_reach(own->referencia, m);
+    POSE_slot_t *const at_medida = pn_multiset_reach(own->medida, m);
+    COMMAND_slot_t *const at_Commanded = pn_multiset_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_multiset_reach(own->Done, m);
     /* code segment: action measure r */
     b->m = ml_measure(b->r);
     int64_t Done_token = ml_outcome(b->seen);
-    pn_bag_check(cx, own->Done, &Done_token);
+    pn_multiset_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
     }
@@ -3503,7 +3505,7 @@ PN_NET_SEARCH static bool Robot_Drill_enumerate(pn_ctx_t *cx, const void *markin
     Robot_Drill_binding_t b = { 0 };
     pn_begin(cx, "page `Robot`, transition `Drill` (ID1412311196)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    const COMMAND_slot_t *const at_Commanded = pn_multiset_look(own->Commanded, m);
     if (!at_Commanded->full) { /* Commanded: c (ID1412311201) */
         return true;
     }
@@ -3527,12 +3529,12 @@ PN_NET_SEARCH static bool Robot_Drill_fire(pn_ctx_t *cx, void *marking, uint32_t
     Robot_Drill_binding_t *const b = binding;
     pn_begin(cx, "page `Robot`, transition `Drill` (ID1412311196)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
-    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
+    COMMAND_slot_t *const at_Commanded = pn_multiset_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_multiset_reach(own->Done, m);
     /* code segment: action drill () */
     ml_drill();
     int64_t Done_token = ml_outcome(b->drilled);
-    pn_bag_check(cx, own->Done, &Done_token);
+    pn_multiset_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
     }
@@ -3568,7 +3570,7 @@ PN_NET_SEARCH static bool Robot_Insert_enumerate(pn_ctx_t *cx, const void *marki
     Robot_Insert_binding_t b = { 0 };
     pn_begin(cx, "page `Robot`, transition `Insert` (ID1412311205)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    const COMMAND_slot_t *const at_Commanded = pn_multiset_look(own->Commanded, m);
     if (!at_Commanded->full) { /* Commanded: c (ID1412311210) */
         return true;
     }
@@ -3592,12 +3594,12 @@ PN_NET_SEARCH static bool Robot_Insert_fire(pn_ctx_t *cx, void *marking, uint32_
     Robot_Insert_binding_t *const b = binding;
     pn_begin(cx, "page `Robot`, transition `Insert` (ID1412311205)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
-    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
+    COMMAND_slot_t *const at_Commanded = pn_multiset_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_multiset_reach(own->Done, m);
     /* code segment: action insert () */
     ml_insert();
     int64_t Done_token = ml_outcome(b->inserted);
-    pn_bag_check(cx, own->Done, &Done_token);
+    pn_multiset_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
     }
@@ -3633,7 +3635,7 @@ PN_NET_SEARCH static bool Robot_Press_enumerate(pn_ctx_t *cx, const void *markin
     Robot_Press_binding_t b = { 0 };
     pn_begin(cx, "page `Robot`, transition `Press` (ID1412311214)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    const COMMAND_slot_t *const at_Commanded = pn_multiset_look(own->Commanded, m);
     if (!at_Commanded->full) { /* Commanded: c (ID1412311219) */
         return true;
     }
@@ -3657,12 +3659,12 @@ PN_NET_SEARCH static bool Robot_Press_fire(pn_ctx_t *cx, void *marking, uint32_t
     Robot_Press_binding_t *const b = binding;
     pn_begin(cx, "page `Robot`, transition `Press` (ID1412311214)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
-    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
+    COMMAND_slot_t *const at_Commanded = pn_multiset_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_multiset_reach(own->Done, m);
     /* code segment: action press () */
     ml_press();
     int64_t Done_token = ml_outcome(b->pressed);
-    pn_bag_check(cx, own->Done, &Done_token);
+    pn_multiset_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
     }
@@ -3698,7 +3700,7 @@ PN_NET_SEARCH static bool Robot_Release_enumerate(pn_ctx_t *cx, const void *mark
     Robot_Release_binding_t b = { 0 };
     pn_begin(cx, "page `Robot`, transition `Release` (ID1412311223)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    const COMMAND_slot_t *const at_Commanded = pn_bag_look(own->Commanded, m);
+    const COMMAND_slot_t *const at_Commanded = pn_multiset_look(own->Commanded, m);
     if (!at_Commanded->full) { /* Commanded: c (ID1412311228) */
         return true;
     }
@@ -3722,12 +3724,12 @@ PN_NET_SEARCH static bool Robot_Release_fire(pn_ctx_t *cx, void *marking, uint32
     Robot_Release_binding_t *const b = binding;
     pn_begin(cx, "page `Robot`, transition `Release` (ID1412311223)", m->now);
     const Robot_places_t *const own = pn_net.transition[self].places;
-    COMMAND_slot_t *const at_Commanded = pn_bag_reach(own->Commanded, m);
-    REPLY_slot_t *const at_Done = pn_bag_reach(own->Done, m);
+    COMMAND_slot_t *const at_Commanded = pn_multiset_reach(own->Commanded, m);
+    REPLY_slot_t *const at_Done = pn_multiset_reach(own->Done, m);
     /* code segment: action release () */
     ml_release();
     int64_t Done_token = ml_outcome(b->released);
-    pn_bag_check(cx, own->Done, &Done_token);
+    pn_multiset_check(cx, own->Done, &Done_token);
     if (!pn_ok(cx)) {
         return false;
     }
@@ -3743,164 +3745,176 @@ PN_NET_SEARCH static bool Robot_Release_fire(pn_ctx_t *cx, void *marking, uint32
 /* --- the net as hosts see it ------------------------------------------------------------------- */
 
 static const pn_place_t s_places[] = {
-    { .name = "Cell.dadosrobo1", .colset = "POSE", .owner = -1, .bag = &s_at_dadosrobo1,
+    { .name = "Cell.dadosrobo1", .colset = "POSE", .owner = -1, .multiset = &s_at_dadosrobo1,
         .is_bounded = true, .bound = 1U },
-    { .name = "Cell.flag1_interno", .colset = "COMMAND", .owner = -1, .bag = &s_at_flag1_interno,
+    { .name = "Cell.flag1_interno", .colset = "COMMAND", .owner = -1,
+        .multiset = &s_at_flag1_interno, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.flag1_externo", .colset = "REPLY", .owner = -1, .multiset = &s_at_flag1_externo,
         .is_bounded = true, .bound = 1U },
-    { .name = "Cell.flag1_externo", .colset = "REPLY", .owner = -1, .bag = &s_at_flag1_externo,
+    { .name = "Cell.referencia1", .colset = "POSE", .owner = -1, .multiset = &s_at_referencia1,
         .is_bounded = true, .bound = 1U },
-    { .name = "Cell.referencia1", .colset = "POSE", .owner = -1, .bag = &s_at_referencia1,
+    { .name = "Cell.medida1", .colset = "POSE", .owner = -1, .multiset = &s_at_medida1,
         .is_bounded = true, .bound = 1U },
-    { .name = "Cell.medida1", .colset = "POSE", .owner = -1, .bag = &s_at_medida1,
+    { .name = "Cell.dadosrobo2", .colset = "POSE", .owner = -1, .multiset = &s_at_dadosrobo2,
         .is_bounded = true, .bound = 1U },
-    { .name = "Cell.dadosrobo2", .colset = "POSE", .owner = -1, .bag = &s_at_dadosrobo2,
+    { .name = "Cell.flag2_interno", .colset = "COMMAND", .owner = -1,
+        .multiset = &s_at_flag2_interno, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.flag2_externo", .colset = "REPLY", .owner = -1, .multiset = &s_at_flag2_externo,
         .is_bounded = true, .bound = 1U },
-    { .name = "Cell.flag2_interno", .colset = "COMMAND", .owner = -1, .bag = &s_at_flag2_interno,
-        .is_bounded = true, .bound = 1U },
-    { .name = "Cell.flag2_externo", .colset = "REPLY", .owner = -1, .bag = &s_at_flag2_externo,
-        .is_bounded = true, .bound = 1U },
-    { .name = "Cell.referencia2", .colset = "POSE", .owner = 2, .bag = &s_at_referencia2,
+    { .name = "Cell.referencia2", .colset = "POSE", .owner = 2, .multiset = &s_at_referencia2,
         .is_bounded = true, .bound = 0U },
-    { .name = "Cell.medida2", .colset = "POSE", .owner = 2, .bag = &s_at_medida2,
+    { .name = "Cell.medida2", .colset = "POSE", .owner = 2, .multiset = &s_at_medida2,
         .is_bounded = true, .bound = 0U },
     { .name = "Cell.Supervisor.coordenadas", .colset = "PLAN", .owner = 0,
-        .bag = &s_at_Supervisor_coordenadas, .is_bounded = true, .bound = 1U,
+        .multiset = &s_at_Supervisor_coordenadas, .is_bounded = true, .bound = 1U,
         .initial = Supervisor_coordenadas_init },
     { .name = "Cell.Supervisor.planned", .colset = "SEAM", .owner = 0,
-        .bag = &s_at_Supervisor_planned, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_planned, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.approached", .colset = "SEAM", .owner = 0,
-        .bag = &s_at_Supervisor_approached, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_approached, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.verified", .colset = "VERIFIED", .owner = 0,
-        .bag = &s_at_Supervisor_verified, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_verified, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.corrected", .colset = "RIVETING", .owner = 0,
-        .bag = &s_at_Supervisor_corrected, .is_bounded = true, .bound = 1U },
-    { .name = "Cell.Supervisor.ended", .colset = "UNIT", .owner = 0, .bag = &s_at_Supervisor_ended,
-        .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_corrected, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Supervisor.ended", .colset = "UNIT", .owner = 0,
+        .multiset = &s_at_Supervisor_ended, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Finished", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Finished, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Finished, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.result", .colset = "REPLY", .owner = 0,
-        .bag = &s_at_Supervisor_result, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_result, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Failed", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Failed, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Failed, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Approach.order", .colset = "ORDER", .owner = 0,
-        .bag = &s_at_Supervisor_Approach_order, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Approach_order, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Approach.done", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Approach_done, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Approach_done, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Approach.seam", .colset = "SEAM", .owner = 0,
-        .bag = &s_at_Supervisor_Approach_seam, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Approach_seam, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Approach.Move both.moving 1", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Approach_Move_both_moving_1, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Approach_Move_both_moving_1, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Approach.Move both.there 1", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Approach_Move_both_there_1, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Approach_Move_both_there_1, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Approach.Move both.moving 2", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Approach_Move_both_moving_2, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Approach_Move_both_moving_2, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Approach.Move both.there 2", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Approach_Move_both_there_2, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Approach_Move_both_there_2, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Verify.first asked", .colset = "SEAM", .owner = 0,
-        .bag = &s_at_Supervisor_Verify_first_asked, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Verify_first_asked, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Verify.last asked", .colset = "ASKED", .owner = 0,
-        .bag = &s_at_Supervisor_Verify_last_asked, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Verify_last_asked, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Correct.offset", .colset = "VECTOR", .owner = 0,
-        .bag = &s_at_Supervisor_Correct_offset, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Correct_offset, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Correct.order", .colset = "ORDER", .owner = 0,
-        .bag = &s_at_Supervisor_Correct_order, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Correct_order, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Correct.done", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Correct_done, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Correct_done, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Correct.seam", .colset = "RIVETING", .owner = 0,
-        .bag = &s_at_Supervisor_Correct_seam, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Correct_seam, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Correct.Move both.moving 1", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Correct_Move_both_moving_1, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Correct_Move_both_moving_1, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Correct.Move both.there 1", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Correct_Move_both_there_1, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Correct_Move_both_there_1, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Correct.Move both.moving 2", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Correct_Move_both_moving_2, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Correct_Move_both_moving_2, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Correct.Move both.there 2", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Correct_Move_both_there_2, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Correct_Move_both_there_2, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Install.shift", .colset = "ORDER", .owner = 0,
-        .bag = &s_at_Supervisor_Install_shift, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_shift, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Install.ready", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Install_ready, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_ready, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Install.riveted", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Install_riveted, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_riveted, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Install.return", .colset = "ORDER", .owner = 0,
-        .bag = &s_at_Supervisor_Install_return, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_return, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Install.work", .colset = "WORK", .owner = 0,
-        .bag = &s_at_Supervisor_Install_work, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_work, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Install.Shift.moving 1", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Shift_moving_1, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Shift_moving_1, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Install.Shift.there 1", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Shift_there_1, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Shift_there_1, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Install.Shift.moving 2", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Shift_moving_2, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Shift_moving_2, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Install.Shift.there 2", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Shift_there_2, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Shift_there_2, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Install.Rivet.advance", .colset = "ORDER", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Rivet_advance, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Rivet_advance, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Install.Rivet.contact", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Rivet_contact, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Rivet_contact, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Install.Rivet.fastened", .colset = "REPLY", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Rivet_fastened, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Rivet_fastened, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Install.Rivet.retract", .colset = "ORDER", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Rivet_retract, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Rivet_retract, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Install.Rivet.Advance.moving 1", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Rivet_Advance_moving_1, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Rivet_Advance_moving_1, .is_bounded = true,
+        .bound = 1U },
     { .name = "Cell.Supervisor.Install.Rivet.Advance.there 1", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Rivet_Advance_there_1, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Rivet_Advance_there_1, .is_bounded = true,
+        .bound = 1U },
     { .name = "Cell.Supervisor.Install.Rivet.Advance.moving 2", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Rivet_Advance_moving_2, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Rivet_Advance_moving_2, .is_bounded = true,
+        .bound = 1U },
     { .name = "Cell.Supervisor.Install.Rivet.Advance.there 2", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Rivet_Advance_there_2, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Rivet_Advance_there_2, .is_bounded = true,
+        .bound = 1U },
     { .name = "Cell.Supervisor.Install.Rivet.Fasten.pressing", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Rivet_Fasten_pressing, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Rivet_Fasten_pressing, .is_bounded = true,
+        .bound = 1U },
     { .name = "Cell.Supervisor.Install.Rivet.Fasten.drilling", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Rivet_Fasten_drilling, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Rivet_Fasten_drilling, .is_bounded = true,
+        .bound = 1U },
     { .name = "Cell.Supervisor.Install.Rivet.Fasten.inserting", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Rivet_Fasten_inserting, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Rivet_Fasten_inserting, .is_bounded = true,
+        .bound = 1U },
     { .name = "Cell.Supervisor.Install.Rivet.Fasten.releasing", .colset = "REPLY", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Rivet_Fasten_releasing, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Rivet_Fasten_releasing, .is_bounded = true,
+        .bound = 1U },
     { .name = "Cell.Supervisor.Install.Rivet.Retract.moving 1", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Rivet_Retract_moving_1, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Rivet_Retract_moving_1, .is_bounded = true,
+        .bound = 1U },
     { .name = "Cell.Supervisor.Install.Rivet.Retract.there 1", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Rivet_Retract_there_1, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Rivet_Retract_there_1, .is_bounded = true,
+        .bound = 1U },
     { .name = "Cell.Supervisor.Install.Rivet.Retract.moving 2", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Rivet_Retract_moving_2, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Rivet_Retract_moving_2, .is_bounded = true,
+        .bound = 1U },
     { .name = "Cell.Supervisor.Install.Rivet.Retract.there 2", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Rivet_Retract_there_2, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Rivet_Retract_there_2, .is_bounded = true,
+        .bound = 1U },
     { .name = "Cell.Supervisor.Install.Return.moving 1", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Return_moving_1, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Return_moving_1, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Install.Return.there 1", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Return_there_1, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Return_there_1, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Install.Return.moving 2", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Return_moving_2, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Return_moving_2, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Install.Return.there 2", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Install_Return_there_2, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Install_Return_there_2, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Home.leaving 1", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Home_leaving_1, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Home_leaving_1, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Home.home 1", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Home_home_1, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Home_home_1, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Home.leaving 2", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Home_leaving_2, .is_bounded = true, .bound = 1U },
+        .multiset = &s_at_Supervisor_Home_leaving_2, .is_bounded = true, .bound = 1U },
     { .name = "Cell.Supervisor.Home.home 2", .colset = "UNIT", .owner = 0,
-        .bag = &s_at_Supervisor_Home_home_2, .is_bounded = true, .bound = 1U },
-    { .name = "Cell.Robot1.Waiting", .colset = "UNIT", .owner = 1, .bag = &s_at_Robot1_Waiting,
+        .multiset = &s_at_Supervisor_Home_home_2, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Robot1.Waiting", .colset = "UNIT", .owner = 1, .multiset = &s_at_Robot1_Waiting,
         .is_bounded = true, .bound = 1U, .initial = Robot1_Waiting_init },
     { .name = "Cell.Robot1.Commanded", .colset = "COMMAND", .owner = 1,
-        .bag = &s_at_Robot1_Commanded, .is_bounded = true, .bound = 1U },
-    { .name = "Cell.Robot1.Done", .colset = "REPLY", .owner = 1, .bag = &s_at_Robot1_Done,
+        .multiset = &s_at_Robot1_Commanded, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Robot1.Done", .colset = "REPLY", .owner = 1, .multiset = &s_at_Robot1_Done,
         .is_bounded = true, .bound = 1U },
-    { .name = "Cell.Robot2.Waiting", .colset = "UNIT", .owner = 2, .bag = &s_at_Robot2_Waiting,
+    { .name = "Cell.Robot2.Waiting", .colset = "UNIT", .owner = 2, .multiset = &s_at_Robot2_Waiting,
         .is_bounded = true, .bound = 1U, .initial = Robot2_Waiting_init },
     { .name = "Cell.Robot2.Commanded", .colset = "COMMAND", .owner = 2,
-        .bag = &s_at_Robot2_Commanded, .is_bounded = true, .bound = 1U },
-    { .name = "Cell.Robot2.Done", .colset = "REPLY", .owner = 2, .bag = &s_at_Robot2_Done,
+        .multiset = &s_at_Robot2_Commanded, .is_bounded = true, .bound = 1U },
+    { .name = "Cell.Robot2.Done", .colset = "REPLY", .owner = 2, .multiset = &s_at_Robot2_Done,
         .is_bounded = true, .bound = 1U },
 };
 
-static const uint32_t s_bag_places[] = { 0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 9U, 10U, 11U, 12U, 13U,
-    14U, 15U, 16U, 17U, 18U, 19U, 20U, 21U, 22U, 23U, 24U, 25U, 26U, 27U, 28U, 29U, 30U, 31U, 32U,
-    33U, 34U, 35U, 36U, 37U, 38U, 39U, 40U, 41U, 42U, 43U, 44U, 45U, 46U, 47U, 48U, 49U, 50U, 51U,
-    52U, 53U, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U, 63U, 64U, 65U, 66U, 67U, 68U, 69U, 70U,
-    71U, 72U, 73U, 74U };
+static const uint32_t s_multiset_places[] = { 0U, 1U, 2U, 3U, 4U, 5U, 6U, 7U, 8U, 9U, 10U, 11U, 12U,
+    13U, 14U, 15U, 16U, 17U, 18U, 19U, 20U, 21U, 22U, 23U, 24U, 25U, 26U, 27U, 28U, 29U, 30U, 31U,
+    32U, 33U, 34U, 35U, 36U, 37U, 38U, 39U, 40U, 41U, 42U, 43U, 44U, 45U, 46U, 47U, 48U, 49U, 50U,
+    51U, 52U, 53U, 54U, 55U, 56U, 57U, 58U, 59U, 60U, 61U, 62U, 63U, 64U, 65U, 66U, 67U, 68U, 69U,
+    70U, 71U, 72U, 73U, 74U };
 
 /* For each transition: those that may be enabled in another way when it has occurred, the places that it may change, and the
  * places that decide about it. */
@@ -4394,6 +4408,6 @@ const pn_net_t pn_net = {
     .order = s_order,
     .now_at = offsetof(net_marking_t, now),
     .packed_size = 0U,
-    .bag_count = sizeof s_bag_places / sizeof s_bag_places[0],
-    .bags = s_bag_places,
+    .multiset_count = sizeof s_multiset_places / sizeof s_multiset_places[0],
+    .multisets = s_multiset_places,
 };

@@ -103,7 +103,7 @@ def test_the_same_is_found(
 
     def looked() -> list[Check]:
         d = Diagnostics()
-        plan = Plan(wishes=ExploreOptions(quick=True))
+        plan = Plan(options=ExploreOptions(quick=True))
         found = control.examine(partition, plan, Limits(threads=1), d)
         assert found is not None, [i.message for i in d]
         return [replace(c, evidence=()) for c in found.checks]

@@ -358,7 +358,7 @@ def test_another_scheduler_is_found_out(what: str, judge: Judge) -> None:
 FAULTS = {
     "memory is overwritten": (
         "supervisor_cell.c", "    sup_set_time(sup, sup->t);\n",
-        "    sup_set_time(sup, sup->t);\n    pn_bag_clear(sup->net->place[3].bag, sup->marking);\n",
+        "    sup_set_time(sup, sup->t);\n    pn_multiset_clear(sup->net->place[3].multiset, sup->marking);\n",
         "place `Top.Supervisor.Pieces` has changed"),
     "what is not enabled is fired": (
         "supervisor_play.c", "(void)memcpy(first->binding, binding, first->size);",

@@ -270,7 +270,7 @@ def checks(folder: Path, net: str, plan: Plan, toml: str = TOML) -> dict[str, Ch
     """The answers, by name."""
     partition, config = cell(folder, net, toml)
     plan = replace(
-        plan, order_decides=config.supervisor.order_decides, wishes=ExploreOptions(quick=True)
+        plan, order_decides=config.supervisor.order_decides, options=ExploreOptions(quick=True)
     )
     d = Diagnostics()
     looked = control.examine(partition, plan, Limits(threads=2), d)

@@ -166,7 +166,7 @@ def minimal(
             id="a search cannot be stopped",
         ),
         pytest.param(
-            "    pn_bag_check(cx, &s_at_Supervisor_Next, &Supervisor_Next_token);\n",
+            "    pn_multiset_check(cx, &s_at_Supervisor_Next, &Supervisor_Next_token);\n",
             "    Supervisor_Next_token = 1000;\n",
             "Supervisor.Next: a firing has put there what is not in the colour set",
             id="a colour is not checked",

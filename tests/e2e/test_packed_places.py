@@ -151,7 +151,7 @@ NETS: dict[str, str] = {
             in P : n
             out P : n + 1
     """,
-    "bags beside packed places": """
+    "multisets beside packed places": """
         net Cell
           standard
           colset D = int with 0..3;

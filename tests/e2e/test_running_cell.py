@@ -434,7 +434,7 @@ def examined(folder: Path) -> Looked:
     plan = Plan(
         storage=opened.storage,
         folder=folder,
-        wishes=ExploreOptions(quick=True),
+        options=ExploreOptions(quick=True),
         premises=Premises.of(partition, opened.config),
     )
     found = control.examine(partition, plan, Limits(threads=2, max_states=MOST), d)
@@ -527,15 +527,15 @@ def test_properties_are_about_the_cell(
     wanted = gather(opened, [holds], None, d, found=False)
     limits, evidence = Limits(threads=2), folder / "runs"
     evidence.mkdir()
-    wishes = ExploreOptions(
+    options = ExploreOptions(
         questions=wanted.questions,
         predicates=wanted.properties.predicates,
         evidence=evidence,
         quick=True,
     )
-    found = explore(opened.flat, {}, limits, d, wishes)
+    found = explore(opened.flat, {}, limits, d, options)
     assert found is not None, render.report(d)
-    looked = look(opened, found, limits, wishes, folder, d, wanted.plain)
+    looked = look(opened, found, limits, options, folder, d, wanted.plain)
     never = Deadline.after(None)
     (said,) = answered(wanted, opened, found, (), folder, "x", never, d, looked)
     assert not d.items, render.report(d)

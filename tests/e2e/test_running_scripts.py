@@ -285,8 +285,8 @@ def test_all_messages_are_looked_at_however_few_are_listed(tmp_path: Path) -> No
     d = Diagnostics()
     partition = divide(opened.flat, opened.config, d)
     assert partition is not None
-    wishes = ExploreOptions(quick=True, colours=1)
-    found = control.examine(partition, Plan(wishes=wishes), Limits(threads=2), d)
+    options = ExploreOptions(quick=True, colours=1)
+    found = control.examine(partition, Plan(options=options), Limits(threads=2), d)
     assert found is not None
     (messages,) = [c for c in found.checks if c.name == "messages"]
     assert messages.answer == "no" and "it has 5,002 bytes" in messages.says

@@ -50,35 +50,35 @@ class Remembered:
         self,
         net: FlatNet,
         program: Path,
-        options: Sequence[str],
-        wishes: ExploreOptions,
+        arguments: Sequence[str],
+        options: ExploreOptions,
         limits: Limits,
         d: Diagnostics,
         search: Meanwhile | None,
     ) -> dict[str, Any] | None:
         def explored() -> dict[str, Any] | None:
-            return self._run(net, program, options, wishes, limits, d, search)
+            return self._run(net, program, arguments, options, limits, d, search)
 
-        if search is not None or limits.memory is not None or any(x in OUTSIDE for x in options):
+        if search is not None or limits.memory is not None or any(x in OUTSIDE for x in arguments):
             return explored()
-        key = key_of(program, options)
+        key = key_of(program, arguments)
         with alone(self._folder, key) as kept:  # whoever wants the same waits for it
             if kept.exists():
                 known: dict[str, Any] = json.loads(kept.read_text(encoding="utf-8"))
-                return known if is_answered(known, options, limits) else explored()
-            before = written(options)
+                return known if is_answered(known, arguments, limits) else explored()
+            before = written(arguments)
             found = explored()
-            if found is not None and is_worth_it(found) and written(options) == before:
+            if found is not None and is_worth_it(found) and written(arguments) == before:
                 part = kept.with_suffix(".part")  # whoever is killed leaves nothing half
                 part.write_text(json.dumps(found), encoding="utf-8")
                 part.replace(kept)
             return found
 
 
-def key_of(program: Path, options: Sequence[str]) -> str:
+def key_of(program: Path, arguments: Sequence[str]) -> str:
     """Of all that a complete exploration depends on; the name of a program has the digest of what it was made from."""
     parts = [program.name]
-    passed = iter(options)
+    passed = iter(arguments)
     for option in passed:
         if option in TABLES:
             parts += [option, Path(next(passed)).read_text(encoding="ascii")]
@@ -99,9 +99,9 @@ def is_worth_it(found: Mapping[str, Any]) -> bool:
     )
 
 
-def is_answered(known: Mapping[str, Any], options: Sequence[str], limits: Limits) -> bool:
+def is_answered(known: Mapping[str, Any], arguments: Sequence[str], limits: Limits) -> bool:
     """Whether this exploration would not have come to a limit either."""
-    whole = {int(place) for place in _value("--whole", options, "").split(",") if place}
+    whole = {int(place) for place in _value("--whole", arguments, "").split(",") if place}
     colours = [
         bound[f"{side}_colours"]
         for place, bound in enumerate(known.get("bounds") or ())
@@ -110,21 +110,21 @@ def is_answered(known: Mapping[str, Any], options: Sequence[str], limits: Limits
     ]
     processor_seconds = known["seconds"] * known["threads"]  # at most
     return (
-        known["nodes"] < float(_value("--max-states", options, "inf"))
-        and max(colours, default=0) <= float(_value("--multiset-limit", options, "inf"))
+        known["nodes"] < float(_value("--max-states", arguments, "inf"))
+        and max(colours, default=0) <= float(_value("--multiset-limit", arguments, "inf"))
         and (limits.processor_seconds is None or processor_seconds <= limits.processor_seconds)
     )
 
 
-def written(options: Sequence[str]) -> set[Path]:
+def written(arguments: Sequence[str]) -> set[Path]:
     """The files of runs that are there."""
     found: set[Path] = set()
     for option in RUNS:
-        if option in options:
-            prefix = Path(options[options.index(option) + 1])
+        if option in arguments:
+            prefix = Path(arguments[arguments.index(option) + 1])
             found.update(prefix.parent.glob(f"{prefix.name}*"))
     return found
 
 
-def _value(option: str, options: Sequence[str], without: str) -> str:
-    return options[options.index(option) + 1] if option in options else without
+def _value(option: str, arguments: Sequence[str], without: str) -> str:
+    return arguments[arguments.index(option) + 1] if option in arguments else without

@@ -33,10 +33,10 @@ def wrong_in(a: Analysis, marking: Marking) -> Iterator[str]:
                 yield f"coloured {[(names[p.place], p.steps, w) for p, w in c.terms]}: {found}"
     for b in a.bounds.values():
         tokens = marking.places[b.place]
-        bag = tokens.untimed() if isinstance(tokens, TimedMultiSet) else tokens
+        multiset = tokens.untimed() if isinstance(tokens, TimedMultiSet) else tokens
         if b.bound is not None and not b.lower <= n[b.place] <= b.bound:
             yield f"bound of {names[b.place]}: {n[b.place]}"
-        if b.per_colour is not None and max(bag.counts.values(), default=0) > b.per_colour:
+        if b.per_colour is not None and max(multiset.counts.values(), default=0) > b.per_colour:
             yield f"colour bound of {names[b.place]}"
     for s in a.siphons:
         if s.trap_is_marked and not any(n[p] for p in s.places):

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pn/pn_bag.h"
+#include "pn/pn_multiset.h"
 #include "pn/pn_net.h"
 #include "pn/pn_num.h"
 
@@ -93,9 +93,9 @@ static void colour_of(uint32_t i, void *value) { *(int64_t *)value = (int64_t)i;
 static const pn_type_t s_int = { .kind = PN_KIND_INT, .name = "INT", .size = sizeof(int64_t) };
 static const pn_field_t s_field[] = { { "e", &s_int, 0U, false } };
 static const pn_type_t s_element = { .kind = PN_KIND_RECORD, .name = "T", .size = sizeof(int64_t), .count = 1U, .field = s_field };
-static const pn_bag_t s_bag = { .origin = "P", .type = &s_int, .capacity = PLACES, .is_packed = true, .colours = PLACES, .width = WIDTH, .number_of = number_of, .colour_of = colour_of };
+static const pn_multiset_t s_multiset = { .origin = "P", .type = &s_int, .capacity = PLACES, .is_packed = true, .colours = PLACES, .width = WIDTH, .number_of = number_of, .colour_of = colour_of };
 static const uint32_t s_touched[] = { 0U };
-static const pn_place_t s_place[] = { { .name = "P", .colset = "P", .owner = -1, .bag = &s_bag, .initial = init } };
+static const pn_place_t s_place[] = { { .name = "P", .colset = "P", .owner = -1, .multiset = &s_multiset, .initial = init } };
 static const pn_transition_t s_transition[] = { { .name = "T", .id = "T", .origin = "T", .enumerate = enumerate, .fire = fire, .binding = &s_element,
     .touched_count = 1U, .touched = s_touched } };
 static const uint32_t s_order[] = { 0U };

@@ -21,7 +21,7 @@ from helpers.explored import Explorers
 from pn2code.base.resources import cnative_folder
 from pn2code.emission import c_flags
 from pn2code.unfold.net import UnfoldedTransition
-from pn2code.verify.exploring.irrelevant_elements import useless
+from pn2code.verify.exploring.irrelevant_elements import irrelevant
 
 PLACES = 32
 SOURCE = Path(__file__).with_name("table_net.c")
@@ -45,8 +45,8 @@ class TableNet:
         rows: list[list[Any]] = [["pn2code-elements", 1], [1, PLACES], [len(places)]]
         rows += [[0, i] for i in range(len(places))]
         rows += [[len(self.elements)]]
-        for t, is_useless in zip(self.elements, useless(unfolding), strict=True):
-            row = [0, int(not is_useless)]
+        for t, is_irrelevant in zip(self.elements, irrelevant(unfolding), strict=True):
+            row = [0, int(not is_irrelevant)]
             for tokens in (t.pre, t.post):
                 row += [len(tokens), *itertools.chain.from_iterable(tokens.items())]
             for some in (t.inhibitors, t.resets):

@@ -7,12 +7,12 @@
 #ifndef EXPLORE_COUNTING_H
 #define EXPLORE_COUNTING_H
 
-#include "pn/pn_bag.h"
+#include "pn/pn_multiset.h"
 #include "pn/pn_net.h"
 
 typedef struct pn_count {
-    const pn_bag_t *bag; /* a place with one counter */
-    uint32_t bit;        /* of that counter */
+    const pn_multiset_t *multiset; /* a place with one counter */
+    uint32_t bit;                  /* of that counter */
     uint32_t width;
     uint32_t needs; /* an occurrence is possible if so many tokens are there */
     uint32_t takes; /* not more than it needs */
@@ -53,6 +53,6 @@ bool pn_counting_words(pn_words_t *words, uint32_t self);
         .count = (n), .row = (rows), .key = (bits)                                                     \
     }
 #define PN_COUNT(place, at, bits, needed, taken, added) \
-    { .bag = (place), .bit = (at), .width = (bits), .needs = (needed), .takes = (taken), .puts = (added) }
+    { .multiset = (place), .bit = (at), .width = (bits), .needs = (needed), .takes = (taken), .puts = (added) }
 
 #endif /* EXPLORE_COUNTING_H */

@@ -4,10 +4,10 @@
 #ifndef EXPLORE_TOKENS_H
 #define EXPLORE_TOKENS_H
 
-#include "pn/pn_bag.h"
+#include "pn/pn_multiset.h"
 
 /* All tokens in order, as a list with cells of `list`: colours; of a timed place records of a colour and its stamp.
  * NULL is the empty one, and what is given with PN_ERR_MEMORY. */
-const void *explore_tokens(pn_ctx_t *cx, const pn_bag_t *bag, const pn_type_t *list, const void *marking);
+const void *explore_tokens(pn_ctx_t *cx, const pn_multiset_t *multiset, const pn_type_t *list, const void *marking);
 
 #endif /* EXPLORE_TOKENS_H */

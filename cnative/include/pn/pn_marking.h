@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-#include "pn/pn_bag.h"
+#include "pn/pn_multiset.h"
 #include "pn/pn_net.h"
 
 #ifdef __cplusplus

@@ -22,7 +22,7 @@
 #ifndef PN_PACKED_H
 #define PN_PACKED_H
 
-#include "pn/pn_bag.h"
+#include "pn/pn_multiset.h"
 #include "pn/pn_num.h"
 #include "pn/pn_place.h"
 
@@ -101,7 +101,7 @@ typedef enum pn_sum_state {
 } pn_sum_state_t;
 
 /* Makes a sum of a list with cells of `list`; unknown after an error. */
-pn_sum_state_t pn_sum_make(pn_ctx_t *cx, const pn_bag_t *bag, const pn_type_t *list, const void *multiset,
+pn_sum_state_t pn_sum_make(pn_ctx_t *cx, const pn_multiset_t *multiset, const pn_type_t *list, const void *values,
                            uint64_t *sum);
 
 PN_INLINE bool pn_sum_is_in(const uint64_t *word, uint32_t bit, uint32_t colours, uint32_t width, const uint64_t *sum)
@@ -154,85 +154,85 @@ PN_INLINE void pn_sum_subtract(uint64_t *word, uint32_t bit, uint32_t colours, u
     }
 }
 
-#define PN_PACKED_PLACE(place, marking_t, value_t, number_of, first, colours, width, is_whole, bag) \
-    PN_INLINE uint32_t place##_count_of(const marking_t *m, uint32_t i)                             \
-    {                                                                                               \
-        return pn_counter(m->packed, (first), (width), i);                                          \
-    }                                                                                               \
-    PN_INLINE uint32_t place##_next(const marking_t *m, uint32_t i)                                 \
-    {                                                                                               \
-        return pn_counter_next(m->packed, (first), (colours), (width), i);                          \
-    }                                                                                               \
-    PN_INLINE bool place##_is_empty(const marking_t *m)                                             \
-    {                                                                                               \
-        return place##_next(m, 0U) == (colours);                                                    \
-    }                                                                                               \
-    PN_INLINE uint32_t place##_held(const marking_t *m, const value_t *v)                           \
-    {                                                                                               \
-        const uint32_t i = number_of(v);                                                            \
-        return (i != PN_NO_COLOUR) ? place##_count_of(m, i) : 0U;                                   \
-    }                                                                                               \
-    PN_INLINE bool place##_holds(const marking_t *m, const value_t *v, const value_t *w)            \
-    {                                                                                               \
-        const uint32_t i = number_of(v);                                                            \
-        const uint32_t k = number_of(w);                                                            \
-        if ((i == PN_NO_COLOUR) || (k == PN_NO_COLOUR)) {                                           \
-            return false;                                                                           \
-        }                                                                                           \
-        return (i == k) ? (place##_count_of(m, i) >= 2U)                                            \
-                        : ((place##_count_of(m, i) >= 1U) && (place##_count_of(m, k) >= 1U));       \
-    }                                                                                               \
-    PN_INLINE bool place##_take(marking_t *m, const value_t *v, uint32_t n)                         \
-    {                                                                                               \
-        const uint32_t i = number_of(v);                                                            \
-        if ((i == PN_NO_COLOUR) || (place##_count_of(m, i) < n)) {                                  \
-            return false;                                                                           \
-        }                                                                                           \
-        pn_counter_subtract(m->packed, (first), (width), i, n);                                     \
-        return true;                                                                                \
-    }                                                                                               \
-    PN_INLINE bool place##_add(pn_ctx_t *cx, marking_t *m, const value_t *v, uint32_t n)            \
-    {                                                                                               \
-        const uint32_t i = number_of(v);                                                            \
-        if (n == 0U) {                                                                              \
-            return true;                                                                            \
-        }                                                                                           \
-        if ((i == PN_NO_COLOUR) || (n > (pn_counter_most(width) - place##_count_of(m, i)))) {       \
-            return pn_bag_fail_full(cx, &(bag));                                                    \
-        }                                                                                           \
-        pn_counter_add(m->packed, (first), (width), i, n);                                          \
-        return true;                                                                                \
-    }                                                                                               \
-    PN_INLINE void place##_check(pn_ctx_t *cx, value_t *v)                                          \
-    {                                                                                               \
-        static PN_OF_THREAD bool is_colour[(is_whole) ? 1U : (colours)];                            \
-        const uint32_t i = number_of(v);                                                            \
-        if ((i == PN_NO_COLOUR) || !((is_whole) || is_colour[(is_whole) ? 0U : i])) {               \
-            pn_bag_check(cx, &(bag), v);                                                            \
-            if ((i != PN_NO_COLOUR) && !(is_whole) && pn_ok(cx)) {                                  \
-                is_colour[i] = true;                                                                \
-            }                                                                                       \
-        }                                                                                           \
-    }                                                                                               \
-    PN_INLINE bool place##_has_sum(const marking_t *m, const uint64_t *sum)                         \
-    {                                                                                               \
-        return pn_sum_is_in(m->packed, (first), (colours), (width), sum);                           \
-    }                                                                                               \
-    PN_INLINE bool place##_take_sum(marking_t *m, const uint64_t *sum)                              \
-    {                                                                                               \
-        const bool is_in = pn_sum_is_in(m->packed, (first), (colours), (width), sum);               \
-        if (is_in) {                                                                                \
-            pn_sum_subtract(m->packed, (first), (colours), (width), sum);                           \
-        }                                                                                           \
-        return is_in;                                                                               \
-    }                                                                                               \
-    PN_INLINE bool place##_add_sum(pn_ctx_t *cx, marking_t *m, const uint64_t *sum)                 \
-    {                                                                                               \
-        if (!pn_sum_has_room(m->packed, (first), (colours), (width), sum)) {                        \
-            return pn_bag_fail_full(cx, &(bag));                                                    \
-        }                                                                                           \
-        pn_sum_add(m->packed, (first), (colours), (width), sum);                                    \
-        return true;                                                                                \
+#define PN_PACKED_PLACE(place, marking_t, value_t, number_of, first, colours, width, is_whole, multiset) \
+    PN_INLINE uint32_t place##_count_of(const marking_t *m, uint32_t i)                                  \
+    {                                                                                                    \
+        return pn_counter(m->packed, (first), (width), i);                                               \
+    }                                                                                                    \
+    PN_INLINE uint32_t place##_next(const marking_t *m, uint32_t i)                                      \
+    {                                                                                                    \
+        return pn_counter_next(m->packed, (first), (colours), (width), i);                               \
+    }                                                                                                    \
+    PN_INLINE bool place##_is_empty(const marking_t *m)                                                  \
+    {                                                                                                    \
+        return place##_next(m, 0U) == (colours);                                                         \
+    }                                                                                                    \
+    PN_INLINE uint32_t place##_held(const marking_t *m, const value_t *v)                                \
+    {                                                                                                    \
+        const uint32_t i = number_of(v);                                                                 \
+        return (i != PN_NO_COLOUR) ? place##_count_of(m, i) : 0U;                                        \
+    }                                                                                                    \
+    PN_INLINE bool place##_holds(const marking_t *m, const value_t *v, const value_t *w)                 \
+    {                                                                                                    \
+        const uint32_t i = number_of(v);                                                                 \
+        const uint32_t k = number_of(w);                                                                 \
+        if ((i == PN_NO_COLOUR) || (k == PN_NO_COLOUR)) {                                                \
+            return false;                                                                                \
+        }                                                                                                \
+        return (i == k) ? (place##_count_of(m, i) >= 2U)                                                 \
+                        : ((place##_count_of(m, i) >= 1U) && (place##_count_of(m, k) >= 1U));            \
+    }                                                                                                    \
+    PN_INLINE bool place##_take(marking_t *m, const value_t *v, uint32_t n)                              \
+    {                                                                                                    \
+        const uint32_t i = number_of(v);                                                                 \
+        if ((i == PN_NO_COLOUR) || (place##_count_of(m, i) < n)) {                                       \
+            return false;                                                                                \
+        }                                                                                                \
+        pn_counter_subtract(m->packed, (first), (width), i, n);                                          \
+        return true;                                                                                     \
+    }                                                                                                    \
+    PN_INLINE bool place##_add(pn_ctx_t *cx, marking_t *m, const value_t *v, uint32_t n)                 \
+    {                                                                                                    \
+        const uint32_t i = number_of(v);                                                                 \
+        if (n == 0U) {                                                                                   \
+            return true;                                                                                 \
+        }                                                                                                \
+        if ((i == PN_NO_COLOUR) || (n > (pn_counter_most(width) - place##_count_of(m, i)))) {            \
+            return pn_multiset_fail_full(cx, &(multiset));                                               \
+        }                                                                                                \
+        pn_counter_add(m->packed, (first), (width), i, n);                                               \
+        return true;                                                                                     \
+    }                                                                                                    \
+    PN_INLINE void place##_check(pn_ctx_t *cx, value_t *v)                                               \
+    {                                                                                                    \
+        static PN_OF_THREAD bool is_colour[(is_whole) ? 1U : (colours)];                                 \
+        const uint32_t i = number_of(v);                                                                 \
+        if ((i == PN_NO_COLOUR) || !((is_whole) || is_colour[(is_whole) ? 0U : i])) {                    \
+            pn_multiset_check(cx, &(multiset), v);                                                       \
+            if ((i != PN_NO_COLOUR) && !(is_whole) && pn_ok(cx)) {                                       \
+                is_colour[i] = true;                                                                     \
+            }                                                                                            \
+        }                                                                                                \
+    }                                                                                                    \
+    PN_INLINE bool place##_has_sum(const marking_t *m, const uint64_t *sum)                              \
+    {                                                                                                    \
+        return pn_sum_is_in(m->packed, (first), (colours), (width), sum);                                \
+    }                                                                                                    \
+    PN_INLINE bool place##_take_sum(marking_t *m, const uint64_t *sum)                                   \
+    {                                                                                                    \
+        const bool is_in = pn_sum_is_in(m->packed, (first), (colours), (width), sum);                    \
+        if (is_in) {                                                                                     \
+            pn_sum_subtract(m->packed, (first), (colours), (width), sum);                                \
+        }                                                                                                \
+        return is_in;                                                                                    \
+    }                                                                                                    \
+    PN_INLINE bool place##_add_sum(pn_ctx_t *cx, marking_t *m, const uint64_t *sum)                      \
+    {                                                                                                    \
+        if (!pn_sum_has_room(m->packed, (first), (colours), (width), sum)) {                             \
+            return pn_multiset_fail_full(cx, &(multiset));                                               \
+        }                                                                                                \
+        pn_sum_add(m->packed, (first), (colours), (width), sum);                                         \
+        return true;                                                                                     \
     }
 
 #endif /* PN_PACKED_H */

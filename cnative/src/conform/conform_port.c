@@ -332,7 +332,7 @@ static void answer(const char *ended)
         pn_text_str(&text, between);
         pn_text_json_str(&text, place->name);
         pn_text_str(&text, ": ");
-        pn_bag_json(place->bag, s_sup->marking, &text);
+        pn_multiset_json(place->multiset, s_sup->marking, &text);
         between = ", ";
     }
     pn_text_str(&text, "}, \"fired\": ");

@@ -151,7 +151,7 @@ static void place_entry(pn_text_t *text, const void *table, uint32_t i)
     text_member(text, "name", own->name);
     text_member(text, "colset", own->colset);
     int_member(text, "owner", own->owner);
-    bool_member(text, "timed", own->bag->is_timed);
+    bool_member(text, "timed", own->multiset->is_timed);
     int_member(text, "bound", own->is_bounded ? (int64_t)own->bound : -1);
     pn_text_char(text, '}');
 }

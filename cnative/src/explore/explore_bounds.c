@@ -75,14 +75,14 @@ static size_t packed_words(void)
 
 static uint32_t bits_in(const pn_place_t *place)
 {
-    return place->bag->colours * place->bag->width;
+    return place->multiset->colours * place->multiset->width;
 }
 
 static int by_bit(const void *a, const void *b)
 {
     const pn_place_t *const first = &pn_net.place[*(const uint32_t *)a];
     const pn_place_t *const second = &pn_net.place[*(const uint32_t *)b];
-    return (first->bag->bit > second->bag->bit) - (first->bag->bit < second->bag->bit);
+    return (first->multiset->bit > second->multiset->bit) - (first->multiset->bit < second->multiset->bit);
 }
 
 /* Groups of neighbours, as many in one as possible. */
@@ -95,15 +95,15 @@ static bool make_groups(ex_bounds_t *bounds)
         return false;
     }
     for (uint32_t p = 0U; p < pn_net.place_count; p++) {
-        if (pn_net.place[p].bag->is_packed) {
+        if (pn_net.place[p].multiset->is_packed) {
             bounds->order[count++] = p;
         }
     }
     qsort(bounds->order, count, sizeof *bounds->order, by_bit);
     for (uint32_t k = 0U; k < count; k++) {
         const pn_place_t *const place = &pn_net.place[bounds->order[k]];
-        const uint32_t unit = place->bag->bit / (uint32_t)UNIT_BITS;
-        const uint32_t end = (place->bag->bit % (uint32_t)UNIT_BITS) + bits_in(place);
+        const uint32_t unit = place->multiset->bit / (uint32_t)UNIT_BITS;
+        const uint32_t end = (place->multiset->bit % (uint32_t)UNIT_BITS) + bits_in(place);
         const bool is_small = bits_in(place) <= (uint32_t)SEEN_BITS; /* then it lies in one unit */
         group_t *const last = &bounds->group[(bounds->groups > 0U) ? (bounds->groups - 1U) : 0U];
         if (is_small && (bounds->groups > 0U) && (last->bits > 0U) && (last->unit == unit)
@@ -113,7 +113,7 @@ static bool make_groups(ex_bounds_t *bounds)
             continue;
         }
         bounds->group[bounds->groups] = (group_t){ .unit = unit,
-                                                   .shift = place->bag->bit % (uint32_t)UNIT_BITS,
+                                                   .shift = place->multiset->bit % (uint32_t)UNIT_BITS,
                                                    .bits = is_small ? bits_in(place) : 0U,
                                                    .first = k,
                                                    .places = 1U };
@@ -146,13 +146,13 @@ bool ex_bounds_make(ex_worker_t *worker)
         const pn_place_t *const place = &pn_net.place[p];
         place_bounds_t *const own = &bounds->place[p];
         own->least = UINT64_MAX;
-        if (place->bag->is_packed && (place->bag->width > 1U)) {
-            own->counter_least = calloc(place->bag->colours, sizeof *own->counter_least);
-            own->counter_most = calloc(place->bag->colours, sizeof *own->counter_most);
+        if (place->multiset->is_packed && (place->multiset->width > 1U)) {
+            own->counter_least = calloc(place->multiset->colours, sizeof *own->counter_least);
+            own->counter_most = calloc(place->multiset->colours, sizeof *own->counter_most);
             if ((own->counter_least == NULL) || (own->counter_most == NULL)) {
                 return false;
             }
-            (void)memset(own->counter_least, 0xff, place->bag->colours * sizeof *own->counter_least);
+            (void)memset(own->counter_least, 0xff, place->multiset->colours * sizeof *own->counter_least);
         }
     }
     return make_groups(bounds);
@@ -181,8 +181,8 @@ static uint32_t count_bits(const uint64_t *word, uint32_t bit, uint32_t colours)
 static uint64_t see_counters(place_bounds_t *own, const pn_place_t *place, const uint64_t *word)
 {
     uint64_t total = 0U;
-    for (uint32_t i = 0U; i < place->bag->colours; i++) {
-        const uint32_t count = pn_counter(word, place->bag->bit, place->bag->width, i);
+    for (uint32_t i = 0U; i < place->multiset->colours; i++) {
+        const uint32_t count = pn_counter(word, place->multiset->bit, place->multiset->width, i);
         total += count;
         own->counter_least[i] = (count < own->counter_least[i]) ? count : own->counter_least[i];
         own->counter_most[i] = (count > own->counter_most[i]) ? count : own->counter_most[i];
@@ -194,8 +194,9 @@ static void see_place(ex_bounds_t *bounds, uint32_t p, const uint64_t *word)
 {
     const pn_place_t *const place = &pn_net.place[p];
     place_bounds_t *const own = &bounds->place[p];
-    const uint64_t total = (place->bag->width == 1U) ? count_bits(word, place->bag->bit, place->bag->colours)
-                                                     : see_counters(own, place, word);
+    const uint64_t total = (place->multiset->width == 1U)
+                               ? count_bits(word, place->multiset->bit, place->multiset->colours)
+                               : see_counters(own, place, word);
     own->least = (total < own->least) ? total : own->least;
     own->most = (total > own->most) ? total : own->most;
 }
@@ -252,7 +253,7 @@ static void merge(ex_bounds_t *bounds, const ex_bounds_t *other)
         const place_bounds_t *const theirs = &other->place[p];
         own->least = (theirs->least < own->least) ? theirs->least : own->least;
         own->most = (theirs->most > own->most) ? theirs->most : own->most;
-        for (uint32_t i = 0U; (own->counter_least != NULL) && (i < place->bag->colours); i++) {
+        for (uint32_t i = 0U; (own->counter_least != NULL) && (i < place->multiset->colours); i++) {
             own->counter_least[i] =
                 (theirs->counter_least[i] < own->counter_least[i]) ? theirs->counter_least[i] : own->counter_least[i];
             own->counter_most[i] =
@@ -424,8 +425,9 @@ static bool see_interned(ex_run_t *run, ex_bounds_t *bounds)
         pn_text_init(&text, buffer, TEXT_SIZE);
         size_t length = 0U;
         const unsigned char *byte = ex_multiset_bytes(worker, (uint32_t)i, &length);
-        is_fine = (byte != NULL) && (pn_bag_decode(&worker->cx, place->bag, worker->marking, byte, length) != SIZE_MAX);
-        pn_bag_json(place->bag, worker->marking, &text);
+        is_fine = (byte != NULL)
+                  && (pn_multiset_decode(&worker->cx, place->multiset, worker->marking, byte, length) != SIZE_MAX);
+        pn_multiset_json(place->multiset, worker->marking, &text);
         place_bounds_t *const own = &bounds->place[entry.place];
         const uint64_t bytes = pn_arena_mark(worker->cx.arena) - mark;
         own->arena = (bytes > own->arena) ? bytes : own->arena;
@@ -472,18 +474,18 @@ static int by_text(const void *a, const void *b)
 static void packed_json(const ex_bounds_t *bounds, const pn_place_t *place, const place_bounds_t *own, bool is_upper,
                         list_t *list, char *buffer)
 {
-    for (uint32_t i = 0U; i < place->bag->colours; i++) {
+    for (uint32_t i = 0U; i < place->multiset->colours; i++) {
         pn_text_t text;
         pn_text_init(&text, buffer, TEXT_SIZE);
         uint64_t count = 0U;
-        if (place->bag->width == 1U) {
-            count = pn_counter(is_upper ? bounds->any : bounds->all, place->bag->bit, 1U, i);
+        if (place->multiset->width == 1U) {
+            count = pn_counter(is_upper ? bounds->any : bounds->all, place->multiset->bit, 1U, i);
         } else {
             count = is_upper ? own->counter_most[i] : own->counter_least[i];
         }
         if (count > 0U) {
             if (list_takes(list)) {
-                pn_bag_colour_json(place->bag, i, &text);
+                pn_multiset_colour_json(place->multiset, i, &text);
             }
             list_item(list, count, buffer);
         }
@@ -576,13 +578,13 @@ void ex_bounds_json(ex_run_t *run, FILE *out)
                       own->most);
         for (int is_upper = 0; is_upper <= 1; is_upper++) {
             const char *const which = (is_upper == 1) ? "upper" : "lower";
-            if (!place->bag->is_packed && (own->colours.count > most)) {
+            if (!place->multiset->is_packed && (own->colours.count > most)) {
                 qsort(own->colours.colour, own->colours.count, sizeof *own->colours.colour,
                       by_text); /* found by place from here on */
             }
             list_t list = { .out = out, .most = most };
             (void)fprintf(out, ", \"%s_multiset\": [", which);
-            if (place->bag->is_packed) {
+            if (place->multiset->is_packed) {
                 packed_json(bounds, place, own, is_upper == 1, &list, buffer);
             } else {
                 colours_json(own, is_upper == 1, &list);

@@ -36,7 +36,7 @@ void ex_phase(ex_run_t *run, const char *phase)
 static int64_t place_at(const char *origin)
 {
     for (uint32_t i = 0U; i < pn_net.place_count; i++) {
-        if (strcmp(pn_net.place[i].bag->origin, origin) == 0) {
+        if (strcmp(pn_net.place[i].multiset->origin, origin) == 0) {
             return (int64_t)i;
         }
     }

@@ -264,7 +264,7 @@ static bool write_node(graph_writer_t *w, const ex_key_t *key)
         pn_text_str(&w->text, (i > 0U) ? ", " : "");
         pn_text_json_str(&w->text, pn_net.place[i].name);
         pn_text_str(&w->text, ": ");
-        pn_bag_json(pn_net.place[i].bag, w->worker->marking, &w->text);
+        pn_multiset_json(pn_net.place[i].multiset, w->worker->marking, &w->text);
     }
     pn_text_str(&w->text, "}}\n");
     return write_text(w);

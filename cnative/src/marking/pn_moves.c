@@ -8,9 +8,9 @@
 #include <string.h>
 
 #include "pn/pn_arena.h"
-#include "pn/pn_bag.h"
+#include "pn/pn_multiset.h"
 #include "pn/pn_num.h"
-#include "pn_bag_impl.h"
+#include "pn_multiset_impl.h"
 #include "../value/pn_type_impl.h"
 
 /* The arena of a net without lists and strings is made for moves of this size (emission/arena_size.py). */
@@ -24,14 +24,14 @@ void pn_moves_init(pn_moves_t *moves, pn_ctx_t *cx)
     moves->last = NULL;
 }
 
-static void add(pn_moves_t *moves, pn_move_kind_t kind, const pn_bag_t *bag, const void *value, uint32_t count,
-                pn_time_t time)
+static void add(pn_moves_t *moves, pn_move_kind_t kind, const pn_multiset_t *multiset, const void *value,
+                uint32_t count, pn_time_t time)
 {
     pn_move_t *move = pn_arena_alloc(moves->cx, sizeof *move);
     if (move == NULL) {
         return;
     }
-    *move = (pn_move_t){ NULL, kind, bag, value, count, time, { 0 }, false };
+    *move = (pn_move_t){ NULL, kind, multiset, value, count, time, { 0 }, false };
     if (moves->last == NULL) {
         moves->first = move;
     } else {
@@ -50,54 +50,54 @@ uint32_t pn_token_count(pn_ctx_t *cx, int64_t count)
 }
 
 /* The caller's value may live in a block that ends before the moves are done. */
-static void *copy_of(pn_ctx_t *cx, const pn_bag_t *bag, const void *value)
+static void *copy_of(pn_ctx_t *cx, const pn_multiset_t *multiset, const void *value)
 {
-    void *copy = pn_arena_alloc(cx, bag->type->size);
+    void *copy = pn_arena_alloc(cx, multiset->type->size);
     if (copy != NULL) {
-        (void)memcpy(copy, value, bag->type->size);
+        (void)memcpy(copy, value, multiset->type->size);
     }
     return copy;
 }
 
-void pn_moves_take(pn_moves_t *moves, const pn_bag_t *bag, const void *value, int64_t count, pn_time_t limit)
+void pn_moves_take(pn_moves_t *moves, const pn_multiset_t *multiset, const void *value, int64_t count, pn_time_t limit)
 {
     const uint32_t n = pn_token_count(moves->cx, count);
-    const void *wanted = (n > 0U) ? copy_of(moves->cx, bag, value) : NULL;
+    const void *wanted = (n > 0U) ? copy_of(moves->cx, multiset, value) : NULL;
     /* Timed tokens are taken one by one, since they may have different stamps. */
-    const uint32_t step = bag->is_timed ? 1U : n;
+    const uint32_t step = multiset->is_timed ? 1U : n;
     for (uint32_t done = 0U; (done < n) && pn_ok(moves->cx); done += step) {
-        add(moves, PN_MOVE_TAKE, bag, wanted, step, limit);
+        add(moves, PN_MOVE_TAKE, multiset, wanted, step, limit);
     }
 }
 
-void pn_moves_take_list(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t *list, const void *multiset,
+void pn_moves_take_list(pn_moves_t *moves, const pn_multiset_t *multiset, const pn_type_t *list, const void *values,
                         pn_time_t limit)
 {
-    for (const void *rest = multiset; (rest != NULL) && pn_ok(moves->cx); rest = pn_list_tail(rest)) {
-        add(moves, PN_MOVE_TAKE, bag, pn_list_head(list, rest), 1U, limit);
+    for (const void *rest = values; (rest != NULL) && pn_ok(moves->cx); rest = pn_list_tail(rest)) {
+        add(moves, PN_MOVE_TAKE, multiset, pn_list_head(list, rest), 1U, limit);
     }
 }
 
-void pn_moves_put(pn_moves_t *moves, const pn_bag_t *bag, const void *value, int64_t count, pn_time_t stamp)
+void pn_moves_put(pn_moves_t *moves, const pn_multiset_t *multiset, const void *value, int64_t count, pn_time_t stamp)
 {
     pn_ctx_t *cx = moves->cx;
     const uint32_t n = pn_token_count(cx, count);
     if ((n == 0U) || !pn_ok(cx)) {
         return;
     }
-    void *stored = copy_of(cx, bag, value);
+    void *stored = copy_of(cx, multiset, value);
     if (stored == NULL) {
         return;
     }
-    pn_bag_check(cx, bag, stored);
-    add(moves, PN_MOVE_PUT, bag, stored, n, stamp);
+    pn_multiset_check(cx, multiset, stored);
+    add(moves, PN_MOVE_PUT, multiset, stored, n, stamp);
 }
 
-void pn_moves_put_list(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t *list, const void *multiset,
+void pn_moves_put_list(pn_moves_t *moves, const pn_multiset_t *multiset, const pn_type_t *list, const void *values,
                        pn_time_t stamp)
 {
-    for (const void *rest = multiset; (rest != NULL) && pn_ok(moves->cx); rest = pn_list_tail(rest)) {
-        pn_moves_put(moves, bag, pn_list_head(list, rest), 1, stamp);
+    for (const void *rest = values; (rest != NULL) && pn_ok(moves->cx); rest = pn_list_tail(rest)) {
+        pn_moves_put(moves, multiset, pn_list_head(list, rest), 1, stamp);
     }
 }
 
@@ -112,22 +112,23 @@ static pn_time_t later(pn_ctx_t *cx, bool is_real_time, pn_time_t time, pn_time_
     return sum;
 }
 
-void pn_moves_put_timed(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t *list, const void *multiset,
+void pn_moves_put_timed(pn_moves_t *moves, const pn_multiset_t *multiset, const pn_type_t *list, const void *values,
                         pn_time_t delay)
 {
     const pn_field_t *value = &list->element->field[0];
     const pn_field_t *stamp = &list->element->field[1];
-    for (const void *rest = multiset; (rest != NULL) && pn_ok(moves->cx); rest = pn_list_tail(rest)) {
+    for (const void *rest = values; (rest != NULL) && pn_ok(moves->cx); rest = pn_list_tail(rest)) {
         const void *token = pn_list_head(list, rest);
         pn_time_t time = { 0 };
         (void)memcpy(&time, part(token, stamp->offset), sizeof time);
-        pn_moves_put(moves, bag, part(token, value->offset), 1, later(moves->cx, bag->is_real_time, time, delay));
+        pn_moves_put(moves, multiset, part(token, value->offset), 1,
+                     later(moves->cx, multiset->is_real_time, time, delay));
     }
 }
 
-void pn_moves_reset(pn_moves_t *moves, const pn_bag_t *bag, pn_time_t now)
+void pn_moves_reset(pn_moves_t *moves, const pn_multiset_t *multiset, pn_time_t now)
 {
-    add(moves, PN_MOVE_RESET, bag, NULL, 0U, now);
+    add(moves, PN_MOVE_RESET, multiset, NULL, 0U, now);
 }
 
 /* --- enabling ----------------------------------------------------------------------------------------------------- */
@@ -135,8 +136,8 @@ void pn_moves_reset(pn_moves_t *moves, const pn_bag_t *bag, pn_time_t now)
 /* Whether two moves want the same value of the same place. */
 static bool is_rival(const pn_move_t *a, const pn_move_t *b)
 {
-    return (b->kind == PN_MOVE_TAKE) && (a->bag == b->bag)
-           && ((a->value == b->value) || pn_same(a->bag->type, a->value, b->value));
+    return (b->kind == PN_MOVE_TAKE) && (a->multiset == b->multiset)
+           && ((a->value == b->value) || pn_same(a->multiset->type, a->value, b->value));
 }
 
 bool pn_moves_are_possible(const pn_moves_t *moves, const void *marking)
@@ -151,12 +152,12 @@ bool pn_moves_are_possible(const pn_moves_t *moves, const void *marking)
         }
         uint64_t wanted = 0U;
         for (const pn_move_t *other = moves->first; other != NULL; other = other->next) {
-            const bool counts =
-                is_rival(move, other)
-                && (!move->bag->is_timed || (pn_time_order(move->bag->is_real_time, other->time, move->time) <= 0));
+            const bool counts = is_rival(move, other)
+                                && (!move->multiset->is_timed
+                                    || (pn_time_order(move->multiset->is_real_time, other->time, move->time) <= 0));
             wanted += counts ? other->count : 0U;
         }
-        if (wanted > pn_bag_count(move->bag, marking, move->value, move->time)) {
+        if (wanted > pn_multiset_count(move->multiset, marking, move->value, move->time)) {
             return false;
         }
     }
@@ -175,8 +176,8 @@ static pn_move_t *next_move(const pn_moves_t *moves, pn_move_kind_t kind)
         }
         if (best == NULL) {
             best = move;
-        } else if ((kind == PN_MOVE_TAKE) && (move->bag == best->bag) && move->bag->is_timed
-                   && (pn_time_order(move->bag->is_real_time, move->time, best->time) < 0)) {
+        } else if ((kind == PN_MOVE_TAKE) && (move->multiset == best->multiset) && move->multiset->is_timed
+                   && (pn_time_order(move->multiset->is_real_time, move->time, best->time) < 0)) {
             best = move;
         }
     }
@@ -185,22 +186,22 @@ static pn_move_t *next_move(const pn_moves_t *moves, pn_move_kind_t kind)
 
 static bool take(pn_ctx_t *cx, pn_move_t *move, void *marking)
 {
-    const pn_bag_t *bag = move->bag;
-    if (PN_IS_PACKED(bag)) {
-        const bool is_taken = pn_bag_take_packed(bag, marking, move->value, move->count);
+    const pn_multiset_t *multiset = move->multiset;
+    if (PN_IS_PACKED(multiset)) {
+        const bool is_taken = pn_multiset_take_packed(multiset, marking, move->value, move->count);
         if (!is_taken) {
             pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         }
         return is_taken;
     }
-    uint32_t i = pn_bag_lower_bound(bag, marking, move->value);
-    bool is_there = pn_bag_is_at(bag, marking, i, move->value);
-    if (bag->is_timed) {
+    uint32_t i = pn_multiset_lower_bound(multiset, marking, move->value);
+    bool is_there = pn_multiset_is_at(multiset, marking, i, move->value);
+    if (multiset->is_timed) {
         is_there = false;
         uint32_t at = i;
-        while (pn_bag_is_at(bag, marking, at, move->value)) {
-            const pn_time_t stamp = pn_bag_stamp_of(bag, pn_bag_entry(bag, marking, at));
-            if (pn_time_order(bag->is_real_time, stamp, move->time) > 0) {
+        while (pn_multiset_is_at(multiset, marking, at, move->value)) {
+            const pn_time_t stamp = pn_multiset_stamp_of(multiset, pn_multiset_entry(multiset, marking, at));
+            if (pn_time_order(multiset->is_real_time, stamp, move->time) > 0) {
                 break;
             }
             i = at;
@@ -208,12 +209,12 @@ static bool take(pn_ctx_t *cx, pn_move_t *move, void *marking)
             at++;
         }
     }
-    if (!is_there || (pn_bag_count_of(bag, pn_bag_entry(bag, marking, i)) < move->count)) {
+    if (!is_there || (pn_multiset_count_of(multiset, pn_multiset_entry(multiset, marking, i)) < move->count)) {
         pn_raise(cx, PN_ERR_SUBTRACT, NULL);
         return false;
     }
-    move->taken = pn_bag_stamp_of(bag, pn_bag_entry(bag, marking, i));
-    pn_bag_remove_at(bag, marking, i, move->count);
+    move->taken = pn_multiset_stamp_of(multiset, pn_multiset_entry(multiset, marking, i));
+    pn_multiset_remove_at(multiset, marking, i, move->count);
     return true;
 }
 
@@ -222,25 +223,26 @@ static bool do_move(pn_ctx_t *cx, pn_move_t *move, void *marking)
     if (move->kind == PN_MOVE_TAKE) {
         return take(cx, move, marking);
     }
-    return pn_bag_add(cx, move->bag, marking, move->value, move->count, move->time);
+    return pn_multiset_add(cx, move->multiset, marking, move->value, move->count, move->time);
 }
 
 /* Puts back what was taken: there is room, since it was there before. */
 static void undo_move(pn_ctx_t *cx, const pn_move_t *move, void *marking)
 {
-    const pn_bag_t *bag = move->bag;
+    const pn_multiset_t *multiset = move->multiset;
     if (move->kind == PN_MOVE_TAKE) {
-        (void)pn_bag_add(cx, bag, marking, move->value, move->count, move->taken);
+        (void)pn_multiset_add(cx, multiset, marking, move->value, move->count, move->taken);
         return;
     }
-    if (PN_IS_PACKED(bag)) {
-        (void)pn_bag_take_packed(bag, marking, move->value, move->count);
+    if (PN_IS_PACKED(multiset)) {
+        (void)pn_multiset_take_packed(multiset, marking, move->value, move->count);
         return;
     }
-    for (uint32_t i = pn_bag_lower_bound(bag, marking, move->value); pn_bag_is_at(bag, marking, i, move->value); i++) {
-        const pn_time_t stamp = pn_bag_stamp_of(bag, pn_bag_entry(bag, marking, i));
-        if (!bag->is_timed || (pn_time_order(bag->is_real_time, stamp, move->time) == 0)) {
-            pn_bag_remove_at(bag, marking, i, move->count);
+    for (uint32_t i = pn_multiset_lower_bound(multiset, marking, move->value);
+         pn_multiset_is_at(multiset, marking, i, move->value); i++) {
+        const pn_time_t stamp = pn_multiset_stamp_of(multiset, pn_multiset_entry(multiset, marking, i));
+        if (!multiset->is_timed || (pn_time_order(multiset->is_real_time, stamp, move->time) == 0)) {
+            pn_multiset_remove_at(multiset, marking, i, move->count);
             return;
         }
     }
@@ -263,17 +265,18 @@ static void undo(const pn_moves_t *moves, void *marking)
 
 static void reset(const pn_move_t *move, void *marking)
 {
-    const pn_bag_t *bag = move->bag;
-    if (!bag->is_timed) {
-        pn_bag_clear(bag, marking);
+    const pn_multiset_t *multiset = move->multiset;
+    if (!multiset->is_timed) {
+        pn_multiset_clear(multiset, marking);
         return;
     }
-    for (uint32_t i = pn_bag_used(bag, marking); i > 0U; i--) {
-        const void *entry = pn_bag_entry(bag, marking, i - 1U);
+    for (uint32_t i = pn_multiset_used(multiset, marking); i > 0U; i--) {
+        const void *entry = pn_multiset_entry(multiset, marking, i - 1U);
         const bool stays =
-            bag->is_timed && (pn_time_order(bag->is_real_time, pn_bag_stamp_of(bag, entry), move->time) > 0);
+            multiset->is_timed
+            && (pn_time_order(multiset->is_real_time, pn_multiset_stamp_of(multiset, entry), move->time) > 0);
         if (!stays) {
-            pn_bag_remove_at(bag, marking, i - 1U, pn_bag_count_of(bag, entry));
+            pn_multiset_remove_at(multiset, marking, i - 1U, pn_multiset_count_of(multiset, entry));
         }
     }
 }

@@ -40,7 +40,7 @@ static bool is_sendable(const sup_t *sup, const pn_cell_channel_t *channel)
     static char text[PN_CHANNEL_TEXT];
     pn_leaf_t leaf[PN_CHANNEL_SCALARS];
     const uint32_t count =
-        pn_bag_token(sup->net->place[channel->place].bag, sup->marking, 0U, leaf, PN_CHANNEL_SCALARS);
+        pn_multiset_token(sup->net->place[channel->place].multiset, sup->marking, 0U, leaf, PN_CHANNEL_SCALARS);
     return (count == channel->scalar_count)
            && (pn_channel_compose(channel, leaf, 1U, "00000000", text, sizeof text) > 0U);
 }
@@ -50,7 +50,7 @@ static bool note_messages(sup_t *sup)
 {
     for (uint32_t i = 0U; i < sup->cell->channel_count; i++) {
         const pn_cell_channel_t *const channel = &sup->cell->channel[i];
-        const uint64_t tokens = pn_bag_total(sup->net->place[channel->place].bag, sup->marking);
+        const uint64_t tokens = pn_multiset_total(sup->net->place[channel->place].multiset, sup->marking);
         const char *const peer = sup->cell->peer[channel->peer].name;
         if (tokens > 1U) {
             return sup_stop(sup, SUP_EXIT_MODEL,

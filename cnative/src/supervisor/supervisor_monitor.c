@@ -52,7 +52,7 @@ static uint64_t checksum_of(const uint8_t *bytes, size_t length)
 static bool look(sup_t *sup, uint32_t index, bool *changed)
 {
     const pn_place_t *const place = &sup->net->place[index];
-    const size_t length = pn_bag_encode(place->bag, sup->marking, s_monitor.bytes, PLACE_SIZE);
+    const size_t length = pn_multiset_encode(place->multiset, sup->marking, s_monitor.bytes, PLACE_SIZE);
     if (length > PLACE_SIZE) {
         return sup_stop(sup, SUP_EXIT_MODEL, "monitor: the content of place `%s` is too large to be checked",
                         place->name);
@@ -240,7 +240,7 @@ bool sup_monitor_messages(sup_t *sup, pn_channel_direction_t direction)
             return sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: place `%s` has changed while messages were exchanged",
                             place->name);
         }
-        if (changed && (pn_bag_total(place->bag, sup->marking) > 1U)) {
+        if (changed && (pn_multiset_total(place->multiset, sup->marking) > 1U)) {
             return sup_stop(sup, SUP_EXIT_INTERNAL, "monitor: channel `%s` holds more than one message", place->name);
         }
     }

@@ -113,7 +113,7 @@ def verify(
     with ExitStack() as stack:
         place = traces or Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="pn2code-")))
         folder = stack.enter_context(trace_folder(place, wanted=True, needed=True))
-        wishes = ExploreOptions(
+        options = ExploreOptions(
             traces=folder,
             stem=stem(opened),
             colours=MOST_COLOURS,
@@ -122,7 +122,7 @@ def verify(
             evidence=stack.enter_context(own.unnamed_runs(asked, folder)),
         )
         with playing():
-            looked = look(opened, asked, limits, wishes, folder, d)
+            looked = look(opened, asked, limits, options, folder, d)
         if looked is None:
             raise refuse(d)
         return _told(conclude(looked, opened, asked, limits, folder, d), d, traces is not None)

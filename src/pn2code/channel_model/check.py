@@ -113,7 +113,7 @@ class Run:
 
     limits: Limits
     d: Diagnostics
-    wishes: ExploreOptions = ExploreOptions(quick=True)
+    options: ExploreOptions = ExploreOptions(quick=True)
 
 
 WHOLE_PART = 0.6
@@ -130,7 +130,7 @@ def medium(
     crashes: Crashes = CRASHES,
     cell_states: int | None = 0,
     most: int | None = None,
-    wishes: ExploreOptions | None = None,
+    options: ExploreOptions | None = None,
 ) -> Iterator[Answer]:
     """All checks of a cell; none if it has no channels.
 
@@ -143,21 +143,21 @@ def medium(
         crashes: in the exchanges.
         cell_states: of the cell's own net; None: too many to explore it with its medium.
         most: of them with its medium that are looked at; None: as many as the limits permit.
-        wishes: who is told of the progress, and who may interrupt; None: nobody.
+        options: who is told of the progress, and who may interrupt; None: nobody.
     """
     rules = rules or Rules()
-    run = Run(limits, d, replace(wishes or ExploreOptions(), quick=True))
+    run = Run(limits, d, replace(options or ExploreOptions(), quick=True))
     own = modelled(partition)
     if not own:
         return
     left_out = [c.file for c in partition.channels if c not in own]
     if cell_states is not None:
-        fitting = replace(run.wishes, quick=cell_states <= QUICK_STATES)
+        fitting = replace(run.options, quick=cell_states <= QUICK_STATES)
         ends = [n for n in (limits.max_states, most) if n is not None]
         part = limits.deadline.share(WHOLE_PART)  # the exchanges are small
         own_limits = replace(limits, max_states=min(ends, default=None), deadline=part)
         yield whole(
-            partition, storage, replace(run, limits=own_limits, wishes=fitting), rules, left_out
+            partition, storage, replace(run, limits=own_limits, options=fitting), rules, left_out
         )
     else:
         yield too_large()
@@ -269,14 +269,14 @@ def _explored(
     )
     sizes = Sizes(choose(net.net, [[] for _ in net.net.places], {}))
     with tempfile.TemporaryDirectory(prefix="pn2code-") as folder:
-        wishes = replace(
-            run.wishes,
+        options = replace(
+            run.options,
             traces=Path(folder),
             sizes=sizes,
             questions=choices + (_question(net) if judged else ""),
             evidence=Path(folder),
         )
-        found = explore(net.net, storage, mine, run.d, wishes)
+        found = explore(net.net, storage, mine, run.d, options)
         runs = () if found is None else tuple(_evidence(net, storage, found, judged))
     answer, why = _verdict(net, found, runs, judged)
     if carried is not None and found is not None and answer == "yes":

@@ -304,7 +304,7 @@ def verify(
             is_timed=opened.flat.timed and Reduction.TIME not in limits.reductions,
         )
         with Interrupts() as interrupts, line as progress:
-            wishes = ExploreOptions(
+            options = ExploreOptions(
                 traces=folder if most_traces else None,
                 stem=stem(opened),
                 colours=None if in_full else MOST_COLOURS,
@@ -318,7 +318,7 @@ def verify(
             )
             with playing(form):
                 looked = look(
-                    opened, asked, limits, wishes, folder, d, checks, pictures.wishes(wishes)
+                    opened, asked, limits, options, folder, d, checks, pictures.options(options)
                 )
         if looked is None:
             stop(d, form)

@@ -84,11 +84,11 @@ def compare(
     """
     with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
         graph = Path(name) / "graph.jsonl"
-        wishes = ExploreOptions(graph=graph, graph_limit=most)
+        options = ExploreOptions(graph=graph, graph_limit=most)
         clock = Clock(net)
         reductions = (Reduction.TIME,) if clock.is_relative else ()
         limits = Limits(max_states=most, traces=0, reductions=reductions)
-        found = explore(net, storage, limits, d, wishes)
+        found = explore(net, storage, limits, d, options)
         if found is None:
             return None
         if not found.complete or not graph.exists():

@@ -134,14 +134,14 @@ class _Emitter(Transitions):
     def _place(self, p: ir.Place) -> dict[str, object]:
         s, _, _ = self._printer(p.initial)
         s.body(p.initial)
-        member, bag = self._place_names[p.index], self._names.bag(p.index, p.name)
+        member, multiset = self._place_names[p.index], self._names.multiset(p.index, p.name)
         early = f"s_early_{member}"
         return {
             "mark": self._block(p.name, "place", p.origin),
             "name": p.name,
             "is_only_counted": p.is_only_counted,
             "member": member,
-            "bag": bag,
+            "multiset": multiset,
             "colset": p.colset,
             "origin": p.origin.describe(),
             "type": self._types.name(p.type),
@@ -149,8 +149,8 @@ class _Emitter(Transitions):
             "is_whole": not p.packed or not self._numbers.members(p.table),
             "number_of": self._numbers.number_of(p.table) if p.packed else "",
             "early": c_rows.early(early, p, self._net.real_time) if p.early else [],
-            "bag_lines": c_rows.bag(
-                bag,
+            "multiset_lines": c_rows.multiset(
+                multiset,
                 p,
                 table=self._names.table(p.table),
                 where=self._where_kept(p, member),
@@ -162,7 +162,7 @@ class _Emitter(Transitions):
             ),
             "row": c_rows.place(
                 p,
-                bag,
+                multiset,
                 f"{member}_init" if p.initial else "",
                 f"s_shares_of_{member}" if p.packed and p.packed.shares else "",
             ),
@@ -178,7 +178,7 @@ class _Emitter(Transitions):
         if p.packed:
             return ""
         kind = "SLOT" if p.index in self._slots else "STAMPS" if p.timed else "TOKENS"
-        return f"PN_BAG_{kind}(net_marking_t, {member})"
+        return f"PN_MULTISET_{kind}(net_marking_t, {member})"
 
     def _predicate(self, p: ir.Predicate, number: int) -> dict[str, object]:
         s, _, _ = self._printer(p.body)
@@ -246,8 +246,8 @@ class _Emitter(Transitions):
             "has_words": self._has_words,
             "word_mask": self._word_mask(),
             "inlined": "PN_INLINE" if self._has_inlined else "PN_NET_SEARCH static",
-            "bag_places": c_rows.braces(
-                "static const uint32_t s_bag_places[] = ",
+            "multiset_places": c_rows.braces(
+                "static const uint32_t s_multiset_places[] = ",
                 [f"{p.index}U" for p in net.places if not p.packed],
             )
             if not all(p.packed for p in net.places)

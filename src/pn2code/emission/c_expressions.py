@@ -49,7 +49,7 @@ class Expressions:
         self.tokens: tuple[str, ...] = ()
         self.holders: tuple[str, ...] = ()
         self.kept: tuple[str, ...] = ()
-        self.bags: tuple[str, ...] = ()
+        self.multisets: tuple[str, ...] = ()
         self.slots: frozenset[int] = frozenset()
         self.packed: tuple[PackedPlace | None, ...] = ()
         self.functions: dict[str, ir.Function] = {}
@@ -142,12 +142,10 @@ class Expressions:
             case ir.TokenValue(place=place, index=index):
                 return f"{self.tokens[place]}token[{self.local(index)}].value", _POSTFIX
             case ir.PlaceTokens(place=place, table=table):
-                text = (
-                    f"explore_tokens(cx, {self.bags[place]}, &{self._names.table(table)}, marking)"
-                )
+                text = f"explore_tokens(cx, {self.multisets[place]}, &{self._names.table(table)}, marking)"
                 return text, _POSTFIX
             case ir.PlaceTotal(place=place):
-                return f"(int64_t)pn_bag_total({self.bags[place]}, marking)", _UNARY
+                return f"(int64_t)pn_multiset_total({self.multisets[place]}, marking)", _UNARY
             case ir.Now(type=t):
                 return ("cx->now.real" if t.rep is Rep.REAL else "cx->now.integer"), _POSTFIX
             case ir.FunCall():
@@ -212,7 +210,7 @@ class Expressions:
             name, first = self.place_names[place], ["m"]
         else:
             name, first = self.kept[place], [self.holders[place]]
-            first += [self.bags[place]] if verb == "add" else []
+            first += [self.multisets[place]] if verb == "add" else []
         context = ["cx"] if verb.startswith("add") else []
         return f"{name}_{verb}({', '.join([*context, *first, *operands])})"
 

@@ -47,7 +47,7 @@ class _SlotMove:
     Args:
         is_take: or it is a put.
         tokens: the place, with what leads to its members.
-        bag: a pointer to its table.
+        multiset: a pointer to its table.
         value: a put: the token as C, "" where values say nothing (`()`).
         differs: a take: whether the token is not there, as C; "": the search has found it.
         count: "" for one; otherwise the C variable that says how many tokens.
@@ -57,7 +57,7 @@ class _SlotMove:
 
     is_take: bool
     tokens: str
-    bag: str
+    multiset: str
     value: str
     count: str
     note: str
@@ -175,7 +175,7 @@ class DirectFiring(NetStatements):
                 test = f"({move.count} > 1U) || (({move.count} == 1U) && {full})"
             else:
                 test = full
-            rooms.append(f"!pn_has_room(cx, {test}, {move.bag})")
+            rooms.append(f"!pn_has_room(cx, {test}, {move.multiset})")
         if rooms:
             self.line(f"if ({' || '.join(rooms)}) {{")
             self.line("    return false;")
@@ -281,12 +281,12 @@ class DirectFiring(NetStatements):
         self.line("}")
 
     def _slot_move(self, s: ir.Take | ir.Put) -> None:
-        place, tokens, bag = (
-            texts[s.place] for texts in (self._x.place_names, self._x.tokens, self.bags)
+        place, tokens, multiset = (
+            texts[s.place] for texts in (self._x.place_names, self._x.tokens, self.multisets)
         )
         if isinstance(s, ir.Take):
             self._slot_moves.append(
-                _SlotMove(True, tokens, bag, "", "", s.note, self._is_missing(s))
+                _SlotMove(True, tokens, multiset, "", "", s.note, self._is_missing(s))
             )
             return
         key = ("add", id(s))
@@ -306,7 +306,9 @@ class DirectFiring(NetStatements):
         if must_check:
             self.has_checks = True
             self._check(s, f"&{value}", count or "1U")
-        self._slot_moves.append(_SlotMove(False, tokens, bag, value, count, s.note, is_one=is_one))
+        self._slot_moves.append(
+            _SlotMove(False, tokens, multiset, value, count, s.note, is_one=is_one)
+        )
 
     def _worked_out(self, s: ir.Take | ir.Put, is_nested: bool, must_check: bool) -> str:
         """The variable that holds the value that is taken or put; a check may change it."""
@@ -358,7 +360,7 @@ class DirectFiring(NetStatements):
         if packed and packed.is_pure:
             check = f"{self._x.place_names[s.place]}_check(cx, {value});"
         else:
-            check = f"pn_bag_check(cx, {self.bags[s.place]}, {value});"
+            check = f"pn_multiset_check(cx, {self.multisets[s.place]}, {value});"
         if is_count(s.count):
             self.line(check)
         else:

@@ -34,7 +34,7 @@ class Frame:
             self._names.transition(t.index, t.name)
         for definition in net.definitions:
             self._names.type(definition.name)
-        self._bags = tuple(f"&{self._names.bag(p.index, p.name)}" for p in net.places)
+        self._multisets = tuple(f"&{self._names.multiset(p.index, p.name)}" for p in net.places)
         self._tokens = tuple(f"m->{name}." for name in self._place_names)
         self._holders = tuple(f"&m->{name}" for name in self._place_names)
         self._tables = tuple(self._names.table(p.table) for p in net.places)
@@ -87,12 +87,12 @@ class Frame:
         x.needs_context = self._needs_context
         x.place_names = self._place_names
         x.tokens, x.holders, x.kept = self._tokens, self._holders, self._kept
-        x.bags = self._bags
+        x.multisets = self._multisets
         x.packed = self._packed
         x.slots = self._slots
         x.global_hints = {g.name: g.hint for g in self._net.globals}
         s = NetStatements(self._types, x, scope, self._net.real_time)
-        s.bags = self._bags
+        s.multisets = self._multisets
         s.timed = self._timed
         s.slots = self._slots
         if any(self._packed):
@@ -103,7 +103,7 @@ class Frame:
             own.reserve(scope)
             x.place_names = own.names(x.place_names)
             x.tokens, x.holders = own.tokens(x.tokens), own.holders(x.holders)
-            s.bags = x.bags = own.bags(x.bags)
+            s.multisets = x.multisets = own.multisets(x.multisets)
         return s, x, scope
 
     def _block(self, element: str, kind: str, origin: Origin) -> str:

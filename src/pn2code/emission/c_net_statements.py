@@ -25,7 +25,7 @@ class NetStatements(Statements):
 
     Attributes:
         tables_of_places: C names of the tables of their colour sets.
-        bags: pointers to their own tables, as C.
+        multisets: pointers to their own tables, as C.
         timed: which of them are timed.
         slots: those that are kept as slots.
         token_types: types of their tokens.
@@ -44,7 +44,7 @@ class NetStatements(Statements):
     ) -> None:
         super().__init__(types, expressions, scope, real_time)
         self.tables_of_places: tuple[str, ...] = ()
-        self.bags: tuple[str, ...] = ()
+        self.multisets: tuple[str, ...] = ()
         self.timed: tuple[bool, ...] = ()
         self.slots: frozenset[int] = frozenset()
         self.token_types: tuple[ir.IrType, ...] = ()
@@ -120,8 +120,8 @@ class NetStatements(Statements):
                     self.note(s.note)
                 pointer = self._x.address(s.value)
                 if self.timed[s.place]:
-                    bag = self.bags[s.place]
-                    held = f"pn_bag_count({bag}, m, {pointer}, {self._x.time(s.limit)})"
+                    multiset = self.multisets[s.place]
+                    held = f"pn_multiset_count({multiset}, m, {pointer}, {self._x.time(s.limit)})"
                 else:
                     held = self._x.call(s.place, "held", pointer)
                 self.line(f"if ({held} < {s.count}U) {{")
@@ -129,7 +129,9 @@ class NetStatements(Statements):
             case ir.UnlessEmpty(place=place, note=note):
                 self.note(note)
                 if self.timed[place]:
-                    self.line(f"if (pn_bag_available({self.bags[place]}, m, cx->now) > 0U) {{")
+                    self.line(
+                        f"if (pn_multiset_available({self.multisets[place]}, m, cx->now) > 0U) {{"
+                    )
                 elif self._packed(place):
                     self.line(f"if (!{self._x.place_names[place]}_is_empty(m)) {{")
                 elif place in self.slots:
@@ -147,11 +149,11 @@ class NetStatements(Statements):
                 self._moves(s)
             case ir.Threshold(place=place, delay=delay, note=note):
                 self.note(note)
-                bag, time = self.bags[place], self._x.time(delay)
-                self.line(f"pn_bag_threshold({bag}, m, cx->now, {time}, found, next);")
+                multiset, time = self.multisets[place], self._x.time(delay)
+                self.line(f"pn_multiset_threshold({multiset}, m, cx->now, {time}, found, next);")
             case ir.Reset(place=place, note=note):
                 self.note(note)
-                self.line(f"pn_moves_reset(&{self.moves}, {self.bags[place]}, cx->now);")
+                self.line(f"pn_moves_reset(&{self.moves}, {self.multisets[place]}, cx->now);")
 
     def _packed(self, place: int) -> PackedPlace | None:
         return self._x.packed[place] if self._x.packed else None
@@ -320,7 +322,7 @@ class NetStatements(Statements):
             self.note(s.note)
         verb, time = ("take", s.limit) if isinstance(s, ir.Take) else ("put", s.stamp)
         parts = [
-            f"&{self.moves}", f"{self.bags[s.place]}", self._x.address(s.value), self._x.text(s.count),
+            f"&{self.moves}", f"{self.multisets[s.place]}", self._x.address(s.value), self._x.text(s.count),
             self._x.time(time),
         ]  # fmt: skip
         self.line(f"pn_moves_{verb}({', '.join(parts)});")
@@ -333,7 +335,7 @@ class NetStatements(Statements):
         else:
             verb, time = ("put_timed" if s.timed else "put_list"), s.stamp
         parts = [
-            f"&{self.moves}", f"{self.bags[s.place]}", f"&{self._names.table(s.table)}",
+            f"&{self.moves}", f"{self.multisets[s.place]}", f"&{self._names.table(s.table)}",
             self._x.text(s.multiset), self._x.time(time),
         ]  # fmt: skip
         self.line(f"pn_moves_{verb}({', '.join(parts)});")

@@ -1,7 +1,7 @@
 """How code that several instances of a page share reaches the places that each instance has for its own.
 
 const MoveBoth_places_t *const own = pn_net.transition[self].places;
-const ORDER_slot_t *const at_order = pn_bag_look(own->order, m);
+const ORDER_slot_t *const at_order = pn_multiset_look(own->order, m);
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ class OwnPlaces:
         """Pointers to what holds the tokens."""
         return self._with(others, "at_{}")
 
-    def bags(self, others: Sequence[str]) -> tuple[str, ...]:
+    def multisets(self, others: Sequence[str]) -> tuple[str, ...]:
         """Pointers to the tables of places."""
         return self._with(others, "own->{}")
 
@@ -58,7 +58,7 @@ class OwnPlaces:
         reached = [p for p in self.members if p in access.holders]
         if not reached and not any(p in access.tables for p in self.members):
             return []
-        constant, call = ("const ", "pn_bag_look") if is_const else ("", "pn_bag_reach")
+        constant, call = ("const ", "pn_multiset_look") if is_const else ("", "pn_multiset_reach")
         return [
             f"    const {self.struct}_t *const own = pn_net.transition[self].places;",
             *(

@@ -39,7 +39,7 @@ def early(name: str, p: ir.Place, real_time: bool) -> list[str]:
     return braces(f"static const pn_time_t {name}[] = ", times)
 
 
-def bag(
+def multiset(
     name: str,
     p: ir.Place,
     *,
@@ -79,15 +79,15 @@ def bag(
     members += [where] if where else []
     if p.early:
         members += [f".early_count = {len(p.early)}U", f".early = {early_name}"]
-    return braces(f"static const pn_bag_t {name} = ", members)
+    return braces(f"static const pn_multiset_t {name} = ", members)
 
 
-def place(p: ir.Place, bag_name: str, initial: str, shares: str) -> list[str]:
+def place(p: ir.Place, multiset_name: str, initial: str, shares: str) -> list[str]:
     """What hosts know of a place.
 
     Args:
         p: the place.
-        bag_name: the constant made by `bag`.
+        multiset_name: the constant made by `multiset`.
         initial: the function of its initial marking; "": there is none.
         shares: the constant of its shares; "": it has none.
     """
@@ -95,7 +95,7 @@ def place(p: ir.Place, bag_name: str, initial: str, shares: str) -> list[str]:
         f".name = {c_string(p.name)}",
         f".colset = {c_string(p.colset)}",
         f".owner = {p.owner}",
-        f".bag = &{bag_name}",
+        f".multiset = &{multiset_name}",
     ]
     if p.bound is not None:
         members += [".is_bounded = true", f".bound = {p.bound}U"]
@@ -106,7 +106,7 @@ def place(p: ir.Place, bag_name: str, initial: str, shares: str) -> list[str]:
 
 
 def counts(
-    name: str, t: ir.Transition, places: Sequence[ir.Place], bags: Sequence[str]
+    name: str, t: ir.Transition, places: Sequence[ir.Place], multisets: Sequence[str]
 ) -> list[str]:
     """The table of a transition that only counts; none if there is nothing that it does.
 
@@ -114,14 +114,14 @@ def counts(
         name: of the constant.
         t: the transition.
         places: of the net.
-        bags: by place, where its bag is: "&s_at_P".
+        multisets: by place, where its multiset is: "&s_at_P".
     """
     rows = []
     for c in t.counts or ():
         kept = places[c.place].packed
         assert kept is not None, c
         values = (kept.bit, kept.width, c.needs, c.takes, c.puts)
-        rows.append(f"    PN_COUNT({bags[c.place]}, {', '.join(f'{v}U' for v in values)}),")
+        rows.append(f"    PN_COUNT({multisets[c.place]}, {', '.join(f'{v}U' for v in values)}),")
     return [f"static const pn_count_t {name}[] = {{", *rows, "};"] if rows else []
 
 

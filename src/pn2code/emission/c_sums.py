@@ -28,7 +28,7 @@ def functions(t: ir.Transition, stem: str) -> dict[tuple[int, ir.Ir], SumFunctio
 def function(
     known: SumFunction,
     binding: str,
-    bag: str,
+    multiset: str,
     list_table: str,
     numbers: Numbers,
     text: Callable[[ir.Ir], str],
@@ -39,7 +39,7 @@ def function(
     Args:
         known: its name and the multi-set.
         binding: type of the binding.
-        bag: a pointer to the table of the place.
+        multiset: a pointer to the table of the place.
         list_table: of the list.
         numbers: of colours.
         text: prints an expression over `b->`.
@@ -66,7 +66,7 @@ def function(
     lines += [
         "    if (state[number] == PN_SUM_UNKNOWN) {",
         "        const size_t start = pn_arena_mark(cx->arena);",
-        f"        state[number] = (uint8_t)pn_sum_make(cx, {bag}, &{list_table},",
+        f"        state[number] = (uint8_t)pn_sum_make(cx, {multiset}, &{list_table},",
         f"            {text(s.multiset)}, counters[number]);",
         "        if (pn_ok(cx)) {",
         "            pn_arena_release(cx->arena, start);",

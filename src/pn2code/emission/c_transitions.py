@@ -52,7 +52,7 @@ class Transitions(Frame):
                 {
                     "path": path,
                     "name": self._names.instance(path, struct),
-                    "fields": [(m, self._bags[p]) for m, p in zip(members, row, strict=True)],
+                    "fields": [(m, self._multisets[p]) for m, p in zip(members, row, strict=True)],
                 }
                 for path, row in zip(table.paths, table.rows, strict=True)
             ],
@@ -120,7 +120,7 @@ class Transitions(Frame):
             "title": self._title(shared),
             "guard": c_comment(f"guard [{t.guard_text}]") if t.guard_text else "",
             "is_counting": True,
-            "counts": c_rows.counts(f"s_counts_of_{name}", t, self._net.places, self._bags),
+            "counts": c_rows.counts(f"s_counts_of_{name}", t, self._net.places, self._multisets),
             "is_plain": False,
             "thresholds": [],
             **dict.fromkeys(("looks", "looks_outside", "assigns", "search_assigns"), False),
@@ -195,7 +195,7 @@ class Transitions(Frame):
             else [],
             "lists_use_binding": t.lists_access is not None and t.lists_access.binding,
             "uses_binding": t.fire_access.binding,
-            "touched_bags": [
+            "touched_multisets": [
                 self._place_names[i] for i in t.effects.touched if not self._net.places[i].packed
             ],
             "looks": t.effects.looks,
@@ -228,7 +228,7 @@ class Transitions(Frame):
         return c_sums.function(
             s,
             f"{name}_binding_t",
-            self._bags[s.of.place],
+            self._multisets[s.of.place],
             self._names.table(s.of.table),
             self._numbers,
             x.text,
@@ -254,7 +254,7 @@ class Transitions(Frame):
                 self._net.real_time,
                 puts_back=not self._net.has_successors,
             )
-            direct.bags, direct.timed = printer.bags, printer.timed
+            direct.multisets, direct.timed = printer.multisets, printer.timed
             direct.tables_of_places = printer.tables_of_places
             direct.token_types = printer.token_types
             direct.slots = self._slots

@@ -181,9 +181,9 @@ class Names:
         """`POSE_slot`, `POSE_array_64`: what holds the tokens of a place of a colour set."""
         return self._scope.name_of_type(("kept", key, kind), f"{key}_{kind}")
 
-    def bag(self, index: int, name: str) -> str:
+    def multiset(self, index: int, name: str) -> str:
         """`s_at_Robot1_Waiting`."""
-        return self._scope.name(("bag", index), _path(name), "s_at_{}")
+        return self._scope.name(("multiset", index), _path(name), "s_at_{}")
 
     def place(self, index: int, name: str) -> str:
         """The place's member of the marking, also the stem of its functions: `Robot1_Waiting`."""

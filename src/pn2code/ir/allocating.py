@@ -10,7 +10,8 @@ from pn2code.ir.operations import CONTAINED, OPS, WIDE, Call
 MOVES = frozenset(("pn_moves_put", "pn_moves_reset", "pn_moves_take"))
 """Functions that allocate one move a call, or one a token: their bytes are counted."""
 ALLOCATING = frozenset((
-    "pn_arena_alloc", "pn_arena_copy", "pn_bag_add_bytes", "pn_bag_decode", "pn_bag_put", "pn_bag_relocate",
+    "pn_arena_alloc", "pn_arena_copy", "pn_multiset_add_bytes", "pn_multiset_decode", "pn_multiset_put",
+    "pn_multiset_relocate",
     "pn_big_abs", "pn_big_add", "pn_big_and", "pn_big_copy", "pn_big_difference", "pn_big_div", "pn_big_mod",
     "pn_big_mul", "pn_big_neg", "pn_big_not", "pn_big_of_digits", "pn_big_of_real", "pn_big_or", "pn_big_quot",
     "pn_big_rem", "pn_big_shift_left", "pn_big_shift_right", "pn_big_string", "pn_big_sub", "pn_big_sum",

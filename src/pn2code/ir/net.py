@@ -161,7 +161,7 @@ class Access:
 
     Args:
         holders: places whose slot or array it reads or writes itself, or by an inline function, in order.
-        tables: places whose table (`pn_bag_t`) it gives to the runtime, in order.
+        tables: places whose table (`pn_multiset_t`) it gives to the runtime, in order.
         sums: which of the transition's `sums` it calls, in order.
         binding: whether it looks at the binding, or gives it to a sum.
     """

@@ -33,7 +33,7 @@ INDIRECT: Mapping[str, str] = {
     r"pn_marking_init": r"set_up|\w+_init",
     r"pn_is_legal|is_legal_part": r"is_\w+",
     r"compare\w*": r"pn_real_order|real_order_of_lt|real_differs",
-    r"pn_bag_\w+|packed_\w+": r"number_of\w*|colour_of\w*",
+    r"pn_multiset_\w+|packed_\w+": r"number_of\w*|colour_of\w*",
     r"pn_text_\w+": r"flush\w*",
     r"pn_port_changes": r"on_change",
     r"pn_files_open|clean_channels|discard\w*|clean\w*|await_stale_peers": r"on_notice",

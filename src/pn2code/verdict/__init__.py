@@ -2,7 +2,7 @@
 
     opened = read(path, {}, d)
     asked = question(opened, ["deadlock free"], None, d, found=True)
-    looked = look(opened, asked, limits, wishes, folder, d)
+    looked = look(opened, asked, limits, options, folder, d)
     said = conclude(looked, opened, asked, folder, d)
 
 The command and the library (`pn2code.api`) both go this way, so they cannot answer differently.

@@ -28,7 +28,7 @@ def look(
     opened: OpenNet,
     found: Exploration,
     limits: Limits,
-    wishes: ExploreOptions,
+    options: ExploreOptions,
     d: Diagnostics,
     control: Control | None = None,
 ) -> Answers:
@@ -38,11 +38,11 @@ def look(
         opened: the net.
         found: its own state space. Where that is too large, that with the medium is as well, and a part is seen.
         limits: of each exploration.
-        wishes: who is told of the progress, and who may interrupt.
+        options: who is told of the progress, and who may interrupt.
         d: gets the errors.
         control: the checks of its supervisor; None: they were not asked.
     """
-    if opened.config is None or found.why in ("interrupted", "error") or wishes.interrupted():
+    if opened.config is None or found.why in ("interrupted", "error") or options.interrupted():
         return ()
     partition = divide(opened.flat, opened.config, d)
     if partition is None:
@@ -59,7 +59,7 @@ def look(
             cell_states=None if is_open else found.nodes,
             # All of it will not be seen where the cell was not, but what is wrong in a part is wrong.
             most=None if is_small else max(found.nodes, LEAST_STATES),
-            wishes=ExploreOptions(progress=wishes.progress, interrupted=wishes.interrupted),
+            options=ExploreOptions(progress=options.progress, interrupted=options.interrupted),
         )
     )
     # Each answer says itself that the time was over.

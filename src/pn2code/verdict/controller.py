@@ -31,7 +31,7 @@ def look(
     opened: OpenNet,
     found: Exploration,
     limits: Limits,
-    wishes: ExploreOptions,
+    options: ExploreOptions,
     folder: Path,
     d: Diagnostics,
     asked: m.Properties = m.Properties(),  # noqa: B008 - frozen
@@ -41,7 +41,7 @@ def look(
     Args:
         opened: the net.
         found: its state space. Where that is too large, the one that the checks need is as well, and a part is seen.
-        limits, wishes: of the exploration.
+        limits, options: of the exploration.
         folder: where traces go.
         d: gets the errors.
         asked: the properties.
@@ -54,7 +54,7 @@ def look(
         return None
     # An approximate exploration came to its end; the checks make an exact one of their own.
     arms = Arms.of(config, d)
-    bounds = (wishes.sizes.bounds if wishes.sizes is not None else None) or {}
+    bounds = (options.sizes.bounds if options.sizes is not None else None) or {}
     is_partial = not found.complete and found.why not in ("decided", "approximation")
     if is_partial and (found.why == "interrupted" or limits.deadline.is_over()):
         poses = None if arms is None else Poses(partition, config.primitives, arms, opened.storage)
@@ -73,11 +73,11 @@ def look(
         storage=opened.storage,
         order_decides=config.supervisor.order_decides,
         folder=folder,
-        stem=wishes.stem,
+        stem=options.stem,
         capacities=capacities,
         properties=asked,
-        evidence=wishes.evidence,
-        wishes=replace(wishes, quick=found.nodes <= QUICK_STATES, covering=False),
+        evidence=options.evidence,
+        options=replace(options, quick=found.nodes <= QUICK_STATES, covering=False),
         premises=Premises.of(partition, config, {g.place: g.says for g in opened.given}),
         cut=cut,
         bounds=bounds,

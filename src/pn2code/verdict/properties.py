@@ -53,7 +53,7 @@ def of_bindings(
     opened: OpenNet,
     found: Exploration,
     limits: Limits,
-    wishes: ExploreOptions,
+    options: ExploreOptions,
     d: Diagnostics,
     control: Control | None = None,
 ) -> tuple[Answer, ...]:
@@ -64,7 +64,7 @@ def of_bindings(
         opened: the net.
         found: its state space: if that was interrupted, nothing more is explored.
         limits: of each exploration.
-        wishes: those for the net itself.
+        options: those for the net itself.
         d: gets the errors.
         control: what a cell was looked at in; None: the net is no cell.
     """
@@ -77,7 +77,7 @@ def of_bindings(
         seen: Exploration | None = None
         if found.why not in ("interrupted", "error"):
             own = replace(
-                wishes,
+                options,
                 traces=None,
                 stem=f"bindings-{number}",
                 questions=questions,
@@ -96,7 +96,9 @@ def of_bindings(
                     split.restore(run.trace)
             closed.append(replace(answer, about=of[answer.about.name], node=None))
         group = tuple(of[p.name] for p in about.properties)
-        given += _bindings_of_cell(asked, group, opened, control, closed, number, limits, wishes, d)
+        given += _bindings_of_cell(
+            asked, group, opened, control, closed, number, limits, options, d
+        )
     return tuple(given)
 
 
@@ -108,7 +110,7 @@ def _bindings_of_cell(
     closed: Sequence[Answer],
     number: int,
     limits: Limits,
-    wishes: ExploreOptions,
+    options: ExploreOptions,
     d: Diagnostics,
 ) -> Sequence[Answer]:
     """Those of a cell as it runs: its net is made of the parts of the transitions."""
@@ -132,7 +134,7 @@ def _bindings_of_cell(
         )
         lines = running.lines(first=not is_choosing, names=split.names)
         own = replace(
-            wishes,
+            options,
             traces=None,
             stem=f"cell-bindings-{number}",
             questions="".join(f"{x}\n" for x in lines) + as_text(split.properties, d),

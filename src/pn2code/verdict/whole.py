@@ -161,11 +161,11 @@ def look(
     opened: OpenNet,
     asked: Asked,
     limits: Limits,
-    wishes: ExploreOptions,
+    options: ExploreOptions,
     folder: Path,
     d: Diagnostics,
     checks: Checks = Checks(),
-    own_wishes: ExploreOptions | None = None,
+    own_options: ExploreOptions | None = None,
 ) -> Looked | None:
     """Explores everything that the answers need; None after an error that was reported.
 
@@ -173,25 +173,25 @@ def look(
         opened: the net.
         asked: what is asked of it.
         limits: of each exploration.
-        wishes: of all explorations.
+        options: of all explorations.
         folder: where traces go.
         d: gets the errors.
         checks: what is looked at in a cell.
-        own_wishes: those of the exploration of the net itself, where it has more.
+        own_options: those of the exploration of the net itself, where it has more.
 
     Raises:
         GameError: a declaration or an initial marking raises an exception.
     """
-    wishes = replace(wishes, initial=opened.initial)
-    own_wishes = None if own_wishes is None else replace(own_wishes, initial=opened.initial)
+    options = replace(options, initial=opened.initial)
+    own_options = None if own_options is None else replace(own_options, initial=opened.initial)
     # What the places hold is worked out once for all explorations of the net.
     with suppress(TimeIsOverError), limits.deadline.enforced():
         sizes = Sizes.start(opened.flat, opened.storage)
-        wishes = replace(wishes, sizes=sizes)
-        own_wishes = replace(own_wishes, sizes=sizes) if own_wishes is not None else None
+        options = replace(options, sizes=sizes)
+        own_options = replace(own_options, sizes=sizes) if own_options is not None else None
     is_cell = opened.config is not None and bool(checks.controller or checks.medium or asked)
     part = replace(limits, deadline=limits.deadline.share(NET_PART)) if is_cell else limits
-    of_net = own_wishes or wishes
+    of_net = own_options or options
     if is_cell and of_net.covering and of_net.sizes is not None:
         of_net = replace(of_net, heaps=_open_channels(opened, of_net.sizes))
     found = explore(opened.flat, opened.storage, part, d, of_net)
@@ -200,17 +200,17 @@ def look(
     control: Control | None = None
     if checks.controller or asked:
         if opened.config is not None:
-            wishes.stage("exploring the cell as its programs run ...")
+            options.stage("exploring the cell as its programs run ...")
         has_more = checks.medium and is_cell
         part = replace(limits, deadline=limits.deadline.share(CELL_PART)) if has_more else limits
-        control = controller.look(opened, found, part, wishes, folder, d, asked.plain)
-    more = properties.of_bindings(asked, opened, found, limits, wishes, d, control)
+        control = controller.look(opened, found, part, options, folder, d, asked.plain)
+    more = properties.of_bindings(asked, opened, found, limits, options, d, control)
     seen: medium.Answers = ()
     if checks.medium:
         if opened.config is not None:
-            wishes.stage("exploring the cell together with its shared files ...")
+            options.stage("exploring the cell together with its shared files ...")
         looked = control if checks.controller else None
-        seen = medium.look(opened, found, limits, wishes, d, looked)
+        seen = medium.look(opened, found, limits, options, d, looked)
     return Looked(found, control, more, seen)
 
 

@@ -71,7 +71,7 @@ def test_kinds_of_names_do_not_meet() -> None:
         names.function("floor/1", "floor"),
         names.value("floor", "floor"),
         names.place(0, "Top.floor"),
-        names.bag(0, "Top.floor"),
+        names.multiset(0, "Top.floor"),
     }
     assert made == {"floor_t", "s_floor", "ml_floor", "val_floor", "floor", "s_at_floor"}
 

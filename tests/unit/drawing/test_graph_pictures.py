@@ -173,8 +173,8 @@ def test_what_is_not_drawn(
 ) -> None:
     d = Diagnostics()
     with Pictures(tmp_path / name, None) as pictures:
-        wishes = pictures.wishes(ExploreOptions())
-        assert wishes.graph is not None and wishes.graph_limit == (300 if "svg" in name else 2000)
+        options = pictures.options(ExploreOptions())
+        assert options.graph is not None and options.graph_limit == (300 if "svg" in name else 2000)
         pictures.write(net, explored(**found), d)
     (warning,) = d.sorted()
     assert warning.code == "graph-not-drawn" and said in warning.message
@@ -184,7 +184,7 @@ def test_what_is_not_drawn(
 def test_a_folder_that_is_missing_is_an_error(net: FlatNet, tmp_path: Path) -> None:
     d = Diagnostics()
     with Pictures(tmp_path / "no" / "g.svg", None) as pictures:
-        graph = pictures.wishes(ExploreOptions()).graph
+        graph = pictures.options(ExploreOptions()).graph
         assert graph is not None
         written(net, graph)
         pictures.write(net, explored(), d)

@@ -1,4 +1,4 @@
-"""Which nets permit partial order and symmetry; which symmetries are found; what is useless on ways to dead ones."""
+"""Which nets permit partial order and symmetry; which symmetries are found; what is irrelevant on ways to dead ones."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from helpers.netbuilder import flat
 from pn2code.diagnostics import Diagnostics
 from pn2code.unfold.unfold import unfold
 from pn2code.verify.exploring.elements import NotPossibleError, colours, elements, ordinal
-from pn2code.verify.exploring.irrelevant_elements import useless
+from pn2code.verify.exploring.irrelevant_elements import irrelevant
 from pn2code.verify.exploring.limits import Reduction
 from pn2code.verify.exploring.reductions import possible
 from pn2code.verify.exploring.symmetry import Symmetries, symmetries
@@ -46,7 +46,7 @@ def found(text: str) -> Symmetries:
 def useless_names(text: str) -> set[str]:
     u = unfold(flat(text), Diagnostics())
     assert u is not None
-    return {t.name for t, own in zip(u.transitions, useless(u), strict=True) if own}
+    return {t.name for t, own in zip(u.transitions, irrelevant(u), strict=True) if own}
 
 
 def test_two_colour_sets_turn_together_with_a_reflection() -> None:

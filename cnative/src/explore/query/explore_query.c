@@ -57,7 +57,7 @@ bool ex_leaf_holds(ex_worker_t *worker, const ex_item_t *item, uint64_t *tokens,
     pn_ctx_t *const cx = &worker->cx;
     *raised = false;
     if (item->kind == EX_ITEM_WITHIN) {
-        *tokens = pn_bag_total(pn_net.place[item->number].bag, worker->marking);
+        *tokens = pn_multiset_total(pn_net.place[item->number].multiset, worker->marking);
         return (*tokens >= item->low) && (*tokens <= item->high);
     }
     const size_t mark = pn_arena_mark(&worker->scratch->arena);
@@ -390,7 +390,7 @@ static void answer_invariant(ex_queries_t *queries, ex_question_t *question)
         question->value = (double)item->most;
         if ((node != EX_NO_NODE) && ex_store_fetch(&queries->run->store, graph->slot[node], &key)
             && ex_load(worker, &key)) {
-            question->value = (double)pn_bag_total(pn_net.place[item->number].bag, worker->marking);
+            question->value = (double)pn_multiset_total(pn_net.place[item->number].multiset, worker->marking);
         }
     }
 }

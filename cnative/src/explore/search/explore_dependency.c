@@ -285,7 +285,7 @@ const bool *ex_persistent_choose(ex_worker_t *worker, int32_t priority)
         most += own->is_enabled[t] ? 1U : 0U;
     }
     for (uint32_t p = 0U; (most > 1U) && (p < pn_net.place_count); p++) {
-        own->total[p] = pn_bag_total(pn_net.place[p].bag, worker->marking);
+        own->total[p] = pn_multiset_total(pn_net.place[p].multiset, worker->marking);
     }
     for (uint32_t t = 0U; (most > 1U) && (t < pn_net.transition_count); t++) {
         if (own->is_enabled[t] && is_closed(own, t, most)) {

@@ -53,11 +53,11 @@ static bool read_places(reader_t *r)
     if (number(r, UINT32_MAX) != pn_net.place_count) {
         return refuse(r, "the table of elements has other places");
     }
-    if ((pn_net.bag_count > 0U) || pn_net.timed || (pn_net.root_count > 0U)) {
+    if ((pn_net.multiset_count > 0U) || pn_net.timed || (pn_net.root_count > 0U)) {
         return refuse(r, "a place is not packed");
     }
     for (uint32_t i = 0U; i < pn_net.place_count; i++) {
-        if (number(r, UINT32_MAX) != pn_net.place[i].bag->colours) {
+        if (number(r, UINT32_MAX) != pn_net.place[i].multiset->colours) {
             return refuse(r, "a place has another number of colours");
         }
     }
@@ -71,10 +71,10 @@ static bool read_counters(reader_t *r, ex_reduction_t *reduction)
     reduction->counter = table(r, reduction->counters, sizeof *reduction->counter);
     for (uint32_t c = 0U; (r->problem == NULL) && (c < reduction->counters); c++) {
         const pn_place_t *place = &pn_net.place[number(r, pn_net.place_count)];
-        const uint32_t bit = place->bag->bit + (number(r, place->bag->colours) * place->bag->width);
+        const uint32_t bit = place->multiset->bit + (number(r, place->multiset->colours) * place->multiset->width);
         reduction->counter[c].word = bit / 64U;
         reduction->counter[c].shift = bit % 64U;
-        reduction->counter[c].mask = ((uint64_t)1U << place->bag->width) - 1U;
+        reduction->counter[c].mask = ((uint64_t)1U << place->multiset->width) - 1U;
     }
     return r->problem == NULL;
 }

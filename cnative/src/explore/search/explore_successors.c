@@ -42,7 +42,7 @@ bool ex_is_repeatable(void)
 static void age(void *marking, pn_time_t by)
 {
     for (uint32_t i = 0U; i < pn_net.place_count; i++) {
-        pn_bag_age(pn_net.place[i].bag, marking, by);
+        pn_multiset_age(pn_net.place[i].multiset, marking, by);
     }
 }
 
@@ -51,7 +51,7 @@ static void settle(void *next, uint32_t transition)
 {
     for (uint32_t k = 0U; k < pn_net.transition[transition].touched_count; k++) {
         const pn_place_t *place = &pn_net.place[pn_net.transition[transition].touched[k]];
-        pn_bag_age(place->bag, next, (pn_time_t){ .integer = 0 });
+        pn_multiset_age(place->multiset, next, (pn_time_t){ .integer = 0 });
     }
 }
 
@@ -182,7 +182,7 @@ static bool load_places(ex_worker_t *worker, const uint32_t *place, uint32_t cou
 {
     bool is_fine = true;
     for (uint32_t i = 0U; is_fine && (i < count); i++) {
-        if (!pn_net.place[place[i]].bag->is_packed) {
+        if (!pn_net.place[place[i]].multiset->is_packed) {
             is_fine = ex_load_place(worker, place[i], worker->scratch->cell[worker->run->codec->word_of[place[i]]]);
         }
     }

@@ -267,7 +267,7 @@ bool ex_encode_time(ex_worker_t *worker)
     const bool is_reduced = worker->run->options.is_time_reduced;
     uint32_t number;
     for (uint32_t i = 0U; is_reduced && (i < pn_net.place_count); i++) {
-        if (pn_net.place[i].bag->is_timed && (codec->word_of[i] != NONE)) {
+        if (pn_net.place[i].multiset->is_timed && (codec->word_of[i] != NONE)) {
             if (!intern_place(worker, i, worker->marking, &number)) {
                 return false;
             }
@@ -306,7 +306,7 @@ static inline bool encode_direct(ex_worker_t *worker, const ex_node_t *node, con
     return (difference == 0U) || number_lanes(worker, node->table, lane, number);
 }
 
-/* A part of the key of a successor: a node over words, of which those of bags are in the cells already. */
+/* A part of the key of a successor: a node over words, of which those of multisets are in the cells already. */
 static inline bool encode_part(ex_worker_t *worker, const ex_node_t *node, const void *next, bool is_different,
                                uint32_t *number)
 {
@@ -331,8 +331,8 @@ static EX_APART bool encode_flat(ex_worker_t *worker, uint32_t transition, const
     uint32_t *cell = scratch->cell;
     uint32_t word[EX_KEY_WORDS] = { 0U, 0U, 0U, 0U };
     bool is_fine = true;
-    for (uint32_t k = 0U; is_fine && (k < codec->touched_bag_count[transition]); k++) {
-        const uint32_t place = codec->touched_bags[transition][k];
+    for (uint32_t k = 0U; is_fine && (k < codec->touched_multiset_count[transition]); k++) {
+        const uint32_t place = codec->touched_multisets[transition][k];
         const uint32_t c = codec->word_of[place];
         uint32_t number;
         is_fine = intern_place(worker, place, next, &number);
@@ -375,8 +375,8 @@ static EX_APART bool encode_cells(ex_worker_t *worker, uint32_t transition, cons
             set_cell(worker, 0U, number);
         }
     }
-    for (uint32_t k = 0U; is_fine && (k < codec->touched_bag_count[transition]); k++) {
-        const uint32_t place = codec->touched_bags[transition][k];
+    for (uint32_t k = 0U; is_fine && (k < codec->touched_multiset_count[transition]); k++) {
+        const uint32_t place = codec->touched_multisets[transition][k];
         is_fine = intern_place(worker, place, next, &number);
         if (is_fine) {
             set_cell(worker, codec->word_of[place], number);
@@ -497,7 +497,8 @@ static bool decode_word(ex_worker_t *worker, uint32_t w, uint32_t number)
         size_t length = 0U;
         const unsigned char *byte = ex_multiset_bytes(worker, number, &length);
         is_fine = (byte != NULL)
-                  && (pn_bag_decode(&worker->cx, pn_net.place[place].bag, worker->marking, byte, length) != SIZE_MAX);
+                  && (pn_multiset_decode(&worker->cx, pn_net.place[place].multiset, worker->marking, byte, length)
+                      != SIZE_MAX);
     }
     *decoded = is_fine ? number : EX_NO_NUMBER;
     if (!is_fine) {
@@ -562,7 +563,7 @@ bool ex_load_place(ex_worker_t *worker, uint32_t place, uint32_t number)
 void ex_clear_place(ex_worker_t *worker, uint32_t place)
 {
     const ex_codec_t *codec = worker->run->codec;
-    pn_bag_clear(pn_net.place[place].bag, worker->marking);
+    pn_multiset_clear(pn_net.place[place].multiset, worker->marking);
     worker->scratch->decoded[codec->word_of[place] - codec->packed_words] = EX_NO_NUMBER;
 }
 

@@ -49,7 +49,7 @@ typedef struct ex_derived {
 /* The shape of the vectors: found once, from the tables of the net.
  *
  * A vector consists of cells: slices of the packed part (of one long place, or of several short ones), a word for each
- * bag (the number of its bytes), one for the time if the net is timed, one for what its references hold if it changes
+ * multiset (the number of its bytes), one for the time if the net is timed, one for what its references hold if it changes
  * them. Where places cannot be encoded one by one, there is one word for the whole marking. */
 typedef struct ex_codec {
     bool is_whole;
@@ -74,8 +74,8 @@ typedef struct ex_codec {
     bool *is_heap;            /* by place: whether more than `most_heaped` tokens end the exploration; NULL: none */
     uint32_t **touched_words; /* by transition: words of the packed part that an occurrence may change */
     uint32_t *touched_count;
-    uint32_t **touched_bags; /* by transition: places */
-    uint32_t *touched_bag_count;
+    uint32_t **touched_multisets; /* by transition: places */
+    uint32_t *touched_multiset_count;
     uint32_t *part_of;      /* by word: the part of the key in which it is */
     uint8_t *touched_parts; /* by transition: a bit for each of them */
     bool is_flat;           /* no part is more than one node over words */

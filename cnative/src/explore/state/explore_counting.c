@@ -36,7 +36,7 @@ static bool is_possible(pn_ctx_t *cx, const pn_count_t *c, const uint64_t *word)
     if (held < c->takes) {
         return pn_fail_missing(cx);
     }
-    return (c->puts <= (pn_counter_most(c->width) - (held - c->takes))) || pn_bag_fail_full(cx, c->bag);
+    return (c->puts <= (pn_counter_most(c->width) - (held - c->takes))) || pn_multiset_fail_full(cx, c->multiset);
 }
 
 static void change(const pn_count_t *c, uint64_t *word)

@@ -9,8 +9,8 @@ enum { UNIT_BITS = 64 };
 /* The counters of a place within one unit. */
 static ex_term_t term_of(const pn_place_t *place, uint32_t piece, uint32_t weight)
 {
-    const uint32_t bits = place->bag->colours * place->bag->width;
-    const uint32_t from = place->bag->bit + (piece * (uint32_t)UNIT_BITS);
+    const uint32_t bits = place->multiset->colours * place->multiset->width;
+    const uint32_t from = place->multiset->bit + (piece * (uint32_t)UNIT_BITS);
     const uint32_t left = bits - (piece * (uint32_t)UNIT_BITS);
     return (ex_term_t){ .unit = from / (uint32_t)UNIT_BITS,
                         .shift = from % (uint32_t)UNIT_BITS,
@@ -21,7 +21,7 @@ static ex_term_t term_of(const pn_place_t *place, uint32_t piece, uint32_t weigh
 /* Large places begin with a unit, small ones lie in one. */
 static uint32_t pieces_of(const pn_place_t *place)
 {
-    return ((place->bag->colours * place->bag->width) + (uint32_t)UNIT_BITS - 1U) / (uint32_t)UNIT_BITS;
+    return ((place->multiset->colours * place->multiset->width) + (uint32_t)UNIT_BITS - 1U) / (uint32_t)UNIT_BITS;
 }
 
 bool ex_derived_make(ex_run_t *run)

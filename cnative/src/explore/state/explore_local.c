@@ -109,11 +109,11 @@ static void add_packed(const ex_codec_t *codec, word_t *word, uint32_t *count, u
     for (uint32_t i = 0U; follows && (i < place->share_count); i++) {
         add_packed(codec, word, count, place->share[i].place, follows);
     }
-    const uint32_t end = place->bag->bit + (place->bag->colours * place->bag->width);
+    const uint32_t end = place->multiset->bit + (place->multiset->colours * place->multiset->width);
     for (uint32_t w = 0U; w < codec->packed_words; w++) {
         const uint32_t from = codec->slice_bit[w];
         const uint32_t to = from + codec->slice_width[w];
-        const uint32_t first = (place->bag->bit > from) ? place->bag->bit : from;
+        const uint32_t first = (place->multiset->bit > from) ? place->multiset->bit : from;
         const uint32_t last = (end < to) ? end : to;
         if (first < last) {
             add_bits(word, count, w, (uint32_t)((((uint64_t)1U << (last - first)) - 1U) << (first - from)));
@@ -136,14 +136,14 @@ static uint32_t list_reads(const ex_codec_t *codec, const pn_transition_t *trans
     uint32_t count = 0U;
     for (uint32_t i = 0U; i < transition->read_count; i++) {
         const uint32_t p = transition->read[i];
-        if (pn_net.place[p].bag->is_packed) {
+        if (pn_net.place[p].multiset->is_packed) {
             add_packed(codec, word, &count, p, true);
         } else {
             word[count++] = (word_t){ .cell = codec->word_of[p], .mask = UINT32_MAX, .kind = WORD_PLACE, .place = p };
         }
     }
     for (uint32_t i = 0U; i < transition->touched_count; i++) {
-        if (pn_net.place[transition->touched[i]].bag->is_packed) {
+        if (pn_net.place[transition->touched[i]].multiset->is_packed) {
             add_packed(codec, word, &count, transition->touched[i],
                        false); /* what becomes of counters depends on them */
         }
@@ -160,7 +160,7 @@ static uint32_t list_changes(const ex_codec_t *codec, const pn_transition_t *tra
     uint32_t count = 0U;
     for (uint32_t i = 0U; i < transition->touched_count; i++) {
         const uint32_t p = transition->touched[i];
-        if (pn_net.place[p].bag->is_packed) {
+        if (pn_net.place[p].multiset->is_packed) {
             add_packed(codec, word, &count, p, false);
         } else {
             const word_kind_t kind = reads(transition, p) ? WORD_PLACE : WORD_ADDED;
@@ -211,7 +211,7 @@ bool ex_local_make(ex_worker_t *worker)
     ex_run_t *run = worker->run;
     const bool is_reduced = (run->reduction != NULL) || run->options.is_time_reduced;
     const uint64_t most = run->options.memory / ((uint64_t)SHARE_OF_MEMORY * run->options.threads * sizeof(uint32_t));
-    if (!run->options.has_notes || is_reduced || (pn_net.bag_count == 0U) || run->codec->is_whole
+    if (!run->options.has_notes || is_reduced || (pn_net.multiset_count == 0U) || run->codec->is_whole
         || (pn_net.root_count > 0U) || (most < (uint64_t)PAGE_WORDS)) {
         return true;
     }
@@ -355,7 +355,7 @@ static bool write_change(const ex_local_t *own, const word_t *word, const void *
     case WORD_ADDED:
     default:
         *value = EX_NO_NUMBER;
-        return (pn_bag_total(pn_net.place[word->place].bag, next) == 0U)
+        return (pn_multiset_total(pn_net.place[word->place].multiset, next) == 0U)
                || ex_number_place(worker, word->place, EX_ADDED + word->place, next, value);
     }
 }
@@ -510,7 +510,8 @@ static bool add_up(ex_local_t *own, const word_t *word, uint32_t t, uint32_t add
         return false;
     }
     const size_t mark = pn_arena_mark(&worker->scratch->arena);
-    const size_t length = pn_bag_add_bytes(&worker->cx, pn_net.place[word->place].bag, worker->marking, byte, size);
+    const size_t length =
+        pn_multiset_add_bytes(&worker->cx, pn_net.place[word->place].multiset, worker->marking, byte, size);
     const bool is_fine =
         (length != SIZE_MAX) && ex_number_place(worker, word->place, word->place, worker->marking, value);
     ex_clear_place(worker, word->place);

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "pn/pn_bag.h"
+#include "pn/pn_multiset.h"
 #include "../../value/pn_bytes_impl.h"
 
 enum {
@@ -155,7 +155,7 @@ static bool is_heaped(const ex_run_t *run, uint32_t place, const void *marking)
 {
     const bool *const is_heap = run->codec->is_heap;
     return (is_heap != NULL) && is_heap[place]
-           && (pn_bag_total(pn_net.place[place].bag, marking) > run->options.most_heaped);
+           && (pn_multiset_total(pn_net.place[place].multiset, marking) > run->options.most_heaped);
 }
 
 static void fail_heaped(ex_worker_t *worker, uint32_t place)
@@ -179,15 +179,15 @@ bool ex_number_place(ex_worker_t *worker, uint32_t place, uint32_t kind, const v
         fail_heaped(worker, place);
         return false;
     }
-    size_t length = pn_bag_encode(pn_net.place[place].bag, marking, scratch->buffer, scratch->buffer_size);
+    size_t length = pn_multiset_encode(pn_net.place[place].multiset, marking, scratch->buffer, scratch->buffer_size);
     while (length > scratch->buffer_size) {
         if (!ex_buffer_grow(worker, length)) {
             return false;
         }
-        length = pn_bag_encode(pn_net.place[place].bag, marking, scratch->buffer, scratch->buffer_size);
+        length = pn_multiset_encode(pn_net.place[place].multiset, marking, scratch->buffer, scratch->buffer_size);
     }
-    return pn_net.place[place].bag->is_timed ? intern_timed(worker, place, kind, length, number)
-                                             : ex_intern(worker, kind, scratch->buffer, length, number);
+    return pn_net.place[place].multiset->is_timed ? intern_timed(worker, place, kind, length, number)
+                                                  : ex_intern(worker, kind, scratch->buffer, length, number);
 }
 
 const unsigned char *ex_multiset_bytes(ex_worker_t *worker, uint32_t number, size_t *length)
@@ -199,7 +199,7 @@ const unsigned char *ex_multiset_bytes(ex_worker_t *worker, uint32_t number, siz
     const uint32_t place = (of->place >= EX_ADDED) ? (of->place - EX_ADDED) : of->place;
     uint32_t values = 0U;
     *length = of->length;
-    if (!pn_net.place[place].bag->is_timed) {
+    if (!pn_net.place[place].multiset->is_timed) {
         return byte;
     }
     (void)memcpy(&values, byte, sizeof values);

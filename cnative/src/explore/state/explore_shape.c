@@ -21,7 +21,9 @@ static uint32_t rounded_up(uint32_t bits, uint32_t unit)
 /* Of what is part of a vector: not of what follows from it. */
 static uint32_t bits_in(const pn_place_t *place)
 {
-    return (place->bag->is_packed && (place->share_count == 0U)) ? (place->bag->colours * place->bag->width) : 0U;
+    return (place->multiset->is_packed && (place->share_count == 0U))
+               ? (place->multiset->colours * place->multiset->width)
+               : 0U;
 }
 
 /* The end of the packed part without what follows from it. */
@@ -30,8 +32,8 @@ static uint32_t kept_end(void)
     uint32_t end = 0U;
     for (uint32_t i = 0U; i < pn_net.place_count; i++) {
         const pn_place_t *place = &pn_net.place[i];
-        if ((bits_in(place) > 0U) && ((place->bag->bit + bits_in(place)) > end)) {
-            end = place->bag->bit + bits_in(place);
+        if ((bits_in(place) > 0U) && ((place->multiset->bit + bits_in(place)) > end)) {
+            end = place->multiset->bit + bits_in(place);
         }
     }
     return end;
@@ -41,7 +43,7 @@ static int by_bit(const void *a, const void *b)
 {
     const pn_place_t *first = &pn_net.place[*(const uint32_t *)a];
     const pn_place_t *second = &pn_net.place[*(const uint32_t *)b];
-    return (first->bag->bit > second->bag->bit) - (first->bag->bit < second->bag->bit);
+    return (first->multiset->bit > second->multiset->bit) - (first->multiset->bit < second->multiset->bit);
 }
 
 static void add_slice(ex_codec_t *codec, uint32_t bit, uint32_t width)
@@ -55,9 +57,9 @@ static void add_slice(ex_codec_t *codec, uint32_t bit, uint32_t width)
  * part. */
 static bool is_short(const pn_place_t *place)
 {
-    const uint32_t last = place->bag->bit + bits_in(place) - 1U;
+    const uint32_t last = place->multiset->bit + bits_in(place) - 1U;
     return (bits_in(place) <= (uint32_t)WORD_BITS)
-           && ((place->bag->bit / (uint32_t)UNIT_BITS) == (last / (uint32_t)UNIT_BITS));
+           && ((place->multiset->bit / (uint32_t)UNIT_BITS) == (last / (uint32_t)UNIT_BITS));
 }
 
 /* Slices of the packed part: first those of short places, as many in one as possible, then those of long ones. `order`
@@ -73,7 +75,7 @@ static void lay_slices(ex_codec_t *codec, uint32_t *order)
     qsort(order, count, sizeof *order, by_bit);
     for (uint32_t k = 0U; k < count; k++) {
         const pn_place_t *place = &pn_net.place[order[k]];
-        const uint32_t end = place->bag->bit + bits_in(place);
+        const uint32_t end = place->multiset->bit + bits_in(place);
         const uint32_t last = codec->packed_words - 1U;
         if (!is_short(place)) {
             continue;
@@ -83,15 +85,15 @@ static void lay_slices(ex_codec_t *codec, uint32_t *order)
             codec->slice_width[last] =
                 end - codec->slice_bit[last]; /* what lies between, if anything, belongs to nobody else */
         } else {
-            add_slice(codec, place->bag->bit, bits_in(place));
+            add_slice(codec, place->multiset->bit, bits_in(place));
         }
     }
     for (uint32_t k = 0U; k < count; k++) {
         const pn_place_t *place = &pn_net.place[order[k]];
-        const uint32_t end = place->bag->bit + bits_in(place);
-        for (uint32_t at = place->bag->bit; !is_short(place) && (at < end);) {
+        const uint32_t end = place->multiset->bit + bits_in(place);
+        for (uint32_t at = place->multiset->bit; !is_short(place) && (at < end);) {
             const uint32_t next = ((at / (uint32_t)WORD_BITS) + 1U) * (uint32_t)WORD_BITS;
-            codec->is_joined[codec->packed_words] = at > place->bag->bit;
+            codec->is_joined[codec->packed_words] = at > place->multiset->bit;
             add_slice(codec, at, ((end < next) ? end : next) - at);
             at = next;
         }
@@ -106,7 +108,7 @@ static void lay_plain(ex_codec_t *codec, uint32_t words)
     }
     for (uint32_t i = 0U; i < pn_net.place_count; i++) {
         const pn_place_t *place = &pn_net.place[i];
-        for (uint32_t k = place->bag->bit; k < (place->bag->bit + bits_in(place)); k++) {
+        for (uint32_t k = place->multiset->bit; k < (place->multiset->bit + bits_in(place)); k++) {
             uint32_t *width = &codec->slice_width[k / (uint32_t)WORD_BITS];
             const uint32_t needed = (k % (uint32_t)WORD_BITS) + 1U;
             *width = (needed > *width) ? needed : *width;
@@ -135,7 +137,7 @@ static void lay_words(ex_codec_t *codec)
     codec->root_word = NONE;
     for (uint32_t i = 0U; i < pn_net.place_count; i++) {
         codec->word_of[i] = NONE;
-        if (!codec->is_whole && !pn_net.place[i].bag->is_packed) {
+        if (!codec->is_whole && !pn_net.place[i].multiset->is_packed) {
             codec->place_of[word - codec->packed_words] = i;
             codec->word_of[i] = word++;
         }
@@ -202,8 +204,8 @@ static void find_parts(ex_codec_t *codec)
         for (uint32_t k = 0U; k < codec->touched_count[t]; k++) {
             parts |= 1U << codec->part_of[codec->touched_words[t][k]];
         }
-        for (uint32_t k = 0U; k < codec->touched_bag_count[t]; k++) {
-            parts |= 1U << codec->part_of[codec->word_of[codec->touched_bags[t][k]]];
+        for (uint32_t k = 0U; k < codec->touched_multiset_count[t]; k++) {
+            parts |= 1U << codec->part_of[codec->word_of[codec->touched_multisets[t][k]]];
         }
         codec->touched_parts[t] = (uint8_t)parts;
     }
@@ -276,22 +278,22 @@ static bool lay_touched(ex_run_t *run, ex_codec_t *codec, uint32_t t)
 {
     const pn_transition_t *transition = &pn_net.transition[t];
     codec->touched_words[t] = ex_table(&run->memory, codec->packed_words, sizeof(uint32_t));
-    codec->touched_bags[t] = ex_table(&run->memory, transition->touched_count, sizeof(uint32_t));
-    if ((codec->touched_words[t] == NULL) || (codec->touched_bags[t] == NULL)) {
+    codec->touched_multisets[t] = ex_table(&run->memory, transition->touched_count, sizeof(uint32_t));
+    if ((codec->touched_words[t] == NULL) || (codec->touched_multisets[t] == NULL)) {
         return false;
     }
     for (uint32_t k = 0U; k < transition->touched_count; k++) {
         const uint32_t p = transition->touched[k];
-        if (!pn_net.place[p].bag->is_packed) {
-            codec->touched_bags[t][codec->touched_bag_count[t]++] = p;
+        if (!pn_net.place[p].multiset->is_packed) {
+            codec->touched_multisets[t][codec->touched_multiset_count[t]++] = p;
         }
     }
     for (uint32_t w = 0U; w < codec->packed_words; w++) {
         bool is_touched = false;
         for (uint32_t k = 0U; !is_touched && (k < transition->touched_count); k++) {
             const pn_place_t *place = &pn_net.place[transition->touched[k]];
-            is_touched = (place->bag->bit < (codec->slice_bit[w] + codec->slice_width[w]))
-                         && (codec->slice_bit[w] < (place->bag->bit + bits_in(place)));
+            is_touched = (place->multiset->bit < (codec->slice_bit[w] + codec->slice_width[w]))
+                         && (codec->slice_bit[w] < (place->multiset->bit + bits_in(place)));
         }
         if (is_touched) {
             codec->touched_words[t][codec->touched_count[t]++] = w;
@@ -317,8 +319,8 @@ bool ex_codec_make(ex_run_t *run)
     codec->place_of = ex_table(&run->memory, most, sizeof(uint32_t));
     codec->touched_words = ex_table(&run->memory, pn_net.transition_count, sizeof(uint32_t *));
     codec->touched_count = ex_table(&run->memory, pn_net.transition_count, sizeof(uint32_t));
-    codec->touched_bags = ex_table(&run->memory, pn_net.transition_count, sizeof(uint32_t *));
-    codec->touched_bag_count = ex_table(&run->memory, pn_net.transition_count, sizeof(uint32_t));
+    codec->touched_multisets = ex_table(&run->memory, pn_net.transition_count, sizeof(uint32_t *));
+    codec->touched_multiset_count = ex_table(&run->memory, pn_net.transition_count, sizeof(uint32_t));
     codec->touched_parts = ex_table(&run->memory, pn_net.transition_count, sizeof(uint8_t));
     codec->part_of = ex_table(&run->memory, most, sizeof(uint32_t));
     codec->node = ex_table(&run->memory, most, sizeof *codec->node);
@@ -328,12 +330,12 @@ bool ex_codec_make(ex_run_t *run)
     if ((codec->slice_bit == NULL) || (codec->slice_width == NULL) || (codec->is_joined == NULL)
         || (codec->word_of == NULL) || (codec->place_of == NULL) || (codec->touched_words == NULL)
         || (codec->touched_parts == NULL) || (codec->part_of == NULL) || (codec->touched_count == NULL)
-        || (codec->touched_bags == NULL) || (codec->touched_bag_count == NULL) || (codec->node == NULL)
+        || (codec->touched_multisets == NULL) || (codec->touched_multiset_count == NULL) || (codec->node == NULL)
         || (codec->parent == NULL) || (cell == NULL)) {
         return false;
     }
     const uint32_t kept_words = rounded_up(kept_end(), (uint32_t)WORD_BITS);
-    codec->is_plain = !codec->is_whole && !pn_net.timed && (pn_net.root_count == 0U) && (pn_net.bag_count == 0U)
+    codec->is_plain = !codec->is_whole && !pn_net.timed && (pn_net.root_count == 0U) && (pn_net.multiset_count == 0U)
                       && (kept_words > 0U) && (kept_words <= EX_KEY_WORDS);
     if (codec->is_plain) {
         lay_plain(codec, kept_words);

@@ -6,7 +6,7 @@
  */
 #include "explore_local.h"
 
-#include "pn/pn_bag.h"
+#include "pn/pn_multiset.h"
 
 enum { WAKES = 1 << 12 };
 
@@ -45,7 +45,7 @@ static const ex_wake_t *wake_of(ex_worker_t *worker, uint32_t place, uint32_t nu
         return NULL;
     }
     *wake = (ex_wake_t){ .multiset = number + 1U, .from = now };
-    pn_bag_next_time(pn_net.place[place].bag, worker->marking, now, &wake->is_some, &wake->next);
+    pn_multiset_next_time(pn_net.place[place].multiset, worker->marking, now, &wake->is_some, &wake->next);
     return wake;
 }
 
@@ -60,7 +60,7 @@ bool ex_next_time(ex_worker_t *worker, pn_time_t *next)
     for (uint32_t w = codec->packed_words; w < codec->words; w++) {
         const bool is_place = (w != codec->time_word) && (w != codec->root_word);
         const uint32_t place = is_place ? codec->place_of[w - codec->packed_words] : 0U;
-        if (!is_place || !pn_net.place[place].bag->is_timed) {
+        if (!is_place || !pn_net.place[place].multiset->is_timed) {
             continue;
         }
         const ex_wake_t *wake = wake_of(worker, place, worker->scratch->cell[w], now);

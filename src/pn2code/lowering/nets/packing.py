@@ -55,7 +55,7 @@ KEY_BITS = _WORD - 1
 """States with no more bits than that have the shortest keys."""
 _MOST_SHARES = 12
 _COLOUR_BYTES = 256
-"""What `pn_colour_t` of pn_bag.h has room for."""
+"""What `pn_colour_t` of pn_multiset.h has room for."""
 
 
 @frozen

@@ -98,7 +98,7 @@ class Game:
             )
         self.colours = self.evaluator.colours
         self.enabling = Enabling(net, self.evaluator)
-        self._remembered = EnablingCache(net, self.enabling)
+        self._enabling_cache = EnablingCache(net, self.enabling)
         self._by_priority = sorted(net.transitions, key=lambda t: t.priority)
         self._references, self._assigning = tracked(net, self.evaluator)
         self._present: Held = (
@@ -174,7 +174,7 @@ class Game:
         for t in self._by_priority:
             if best is not None and t.priority > best:
                 break
-            for binding in self._remembered.enabled(t, marking):
+            for binding in self._enabling_cache.enabled(t, marking):
                 best = t.priority
                 elements.append(BindingElement.make(t, binding))
         return elements
@@ -182,7 +182,7 @@ class Game:
     def bindings(self, t: FlatTransition, marking: Marking) -> Iterator[Binding]:
         """The bindings with which a transition is enabled at the marking's time, whatever other transitions are."""
         self._enter(marking)
-        return iter(self._remembered.enabled(t, marking))
+        return iter(self._enabling_cache.enabled(t, marking))
 
     def enabled_transitions(self, marking: Marking) -> list[FlatTransition]:
         """The transitions of which `enabled_in` lists elements; no more than one binding of each is looked for."""
@@ -191,7 +191,7 @@ class Game:
         for t in self._by_priority:
             if found and t.priority > found[0].priority:
                 break
-            if self._remembered.is_enabled(t, marking):
+            if self._enabling_cache.is_enabled(t, marking):
                 found.append(t)
         return found
 

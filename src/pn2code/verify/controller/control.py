@@ -187,8 +187,8 @@ def examine(
     is_asked_at_once = not nondeterminism.draws(running.net)
     at_once = f"orders\n{_asked_of_orders(plan.firings)}" if is_asked_at_once else ""
     with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
-        wishes = replace(
-            plan.wishes,
+        options = replace(
+            plan.options,
             sizes=Sizes.start(running.net, plan.storage),
             generated=made,
             traces=Path(name),
@@ -201,7 +201,7 @@ def examine(
         )
         # Where the whole is too large, there is time left to see how it comes to what is wrong.
         part = replace(limits, deadline=limits.deadline.share(CELL_PART))
-        found = explore(running.net, plan.storage, part, d, wishes)
+        found = explore(running.net, plan.storage, part, d, options)
         if found is None:
             return None
         if plan.cut and found.why == "states":
@@ -209,14 +209,14 @@ def examine(
                 found, why=plan.cut, answers=tuple(_cut(a, plan.cut) for a in found.answers)
             )
         count = len(plan.properties.properties)
-        wishes = replace(wishes, evidence=Path(name))
+        options = replace(options, evidence=Path(name))
 
         def again(moves: Sequence[Bad], *, first: bool = True) -> Exploration | None:
             other = Running.of(partition, (), moves)
             lines = other.lines(first=True)
             own = replace(
-                wishes,
-                sizes=made.sizes or wishes.sizes,  # its places are those of the cell
+                options,
+                sizes=made.sizes or options.sizes,  # its places are those of the cell
                 generated=Generated(),
                 questions="".join(f"{x}\n" for x in lines)
                 if first
@@ -243,7 +243,7 @@ def examine(
             if is_choiceless:
                 orders = found
             elif not ruled_out:
-                own = replace(wishes, questions=of_orders(running, plan.firings), stem="orders")
+                own = replace(options, questions=of_orders(running, plan.firings), stem="orders")
                 orders = explore(running.net, plan.storage, limits, d, own)
         if orders is None:
             return None

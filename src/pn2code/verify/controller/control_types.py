@@ -173,7 +173,7 @@ class Plan:
         capacities: place -> most tokens, as cell.toml declares.
         properties: what is asked about the cell besides.
         evidence: a folder for the runs that answer these; None: they are not kept.
-        wishes: of the exploration. What it is asked, and the files it writes, are ours.
+        options: of the exploration. What it is asked, and the files it writes, are ours.
         premises: what answers rest on besides.
         cut: why no more states of the cell are looked at than its closed net has shown; "": as many as the limits say.
         bounds: by place, most tokens, where the structure of the net proves it.
@@ -188,7 +188,7 @@ class Plan:
     capacities: Mapping[int, int] = field(default_factory=dict)
     properties: m.Properties = m.Properties()
     evidence: Path | None = None
-    wishes: ExploreOptions = ExploreOptions()
+    options: ExploreOptions = ExploreOptions()
     premises: Premises = Premises()
     cut: str = ""
     bounds: Mapping[int, int] = field(default_factory=dict)

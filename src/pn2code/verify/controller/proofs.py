@@ -182,7 +182,7 @@ def _look(partition: Partition, config: CellConfig, plan: Plan, d: Diagnostics) 
         threads=cores(),
         traces=0,
     )
-    plan = replace(plan, wishes=ExploreOptions(quick=True))
+    plan = replace(plan, options=ExploreOptions(quick=True))
     try:
         found = control.examine(partition, plan, limits, own)
         if found is not None and limits.threads > 1 and any(c.why == "states" for c in found.open):

@@ -22,7 +22,7 @@ from pn2code.semantics.values.data import Value
 from pn2code.unfold.codes import UNFOLDING_FAULT
 from pn2code.unfold.net import UnfoldedTransition, Unfolding
 from pn2code.unfold.unfold import unfold
-from pn2code.verify.exploring.irrelevant_elements import useless
+from pn2code.verify.exploring.irrelevant_elements import irrelevant
 from pn2code.verify.exploring.symmetry import Symmetries, symmetries
 
 MAGIC = "pn2code-elements 1"
@@ -40,12 +40,12 @@ class Elements:
 
     Args:
         unfolding: the unfolded net.
-        useless: for each element whether the ways to dead markings can do without.
+        irrelevant: for each element whether the ways to dead markings can do without.
         symmetries: groups of permutations that are proved to be symmetries of it; None: were not looked for.
     """
 
     unfolding: Unfolding
-    useless: tuple[bool, ...]
+    irrelevant: tuple[bool, ...]
     symmetries: Symmetries | None
 
     def text(self) -> str:
@@ -61,8 +61,8 @@ class Elements:
         for p in u.places:
             yield _row(p.place, ordinal(u.net.places[p.place].colset, p.colour))
         yield _row(len(u.transitions))
-        for t, is_useless in zip(u.transitions, self.useless, strict=True):
-            yield _row(t.transition, int(not is_useless), *_arcs(t))
+        for t, is_irrelevant in zip(u.transitions, self.irrelevant, strict=True):
+            yield _row(t.transition, int(not is_irrelevant), *_arcs(t))
         found = self.symmetries
         yield _row(len(found.rotations) if found else 0)
         for r in found.rotations if found else ():
@@ -109,7 +109,7 @@ def elements(net: FlatNet, *, wants_symmetry: bool = False) -> Elements:
     for fault in d.items:
         if fault.code == UNFOLDING_FAULT:
             raise NotPossibleError(f"an exception might be missed: {fault.message}")
-    return Elements(u, useless(u), symmetries(u) if wants_symmetry else None)
+    return Elements(u, irrelevant(u), symmetries(u) if wants_symmetry else None)
 
 
 def _check(net: FlatNet) -> None:

@@ -127,7 +127,7 @@ def explore(
     storage: Mapping[str, str],
     limits: Limits,
     d: Diagnostics,
-    wishes: ExploreOptions | None = None,
+    options: ExploreOptions | None = None,
 ) -> Exploration | None:
     """Explores a net; None after an error that was reported.
 
@@ -136,29 +136,29 @@ def explore(
         storage: as for `Game`.
         limits: how far.
         d: gets the errors.
-        wishes: what else.
+        options: what else.
 
     Raises:
         GameError: a declaration or an initial marking raises an exception.
     """
-    wishes = wishes or ExploreOptions()
-    bounds = wishes.sizes.bounds if wishes.sizes is not None else None
+    options = options or ExploreOptions()
+    bounds = options.sizes.bounds if options.sizes is not None else None
     open_places = None
     if bounds is not None:
         open_places = [p.index for p in net.places if p.index not in bounds]
         if not open_places:
-            wishes = replace(wishes, covering=False)  # no place can grow without bound
+            options = replace(options, covering=False)  # no place can grow without bound
     is_limited = limits.max_states is not None
     with Meanwhile(net, storage, open_places, is_limited=is_limited) as search:
-        found = _explored(net, storage, limits, d, wishes, search if wishes.covering else None)
+        found = _explored(net, storage, limits, d, options, search if options.covering else None)
         is_open = found is not None and not found.seen.markings and found.why in _LIMITS
-        if found is None or not wishes.covering or not is_open:
+        if found is None or not options.covering or not is_open:
             return found
-        run = search.last(lambda: wishes.interrupted() or limits.deadline.is_over())
+        run = search.last(lambda: options.interrupted() or limits.deadline.is_over())
     if run is None:
         return found
-    if wishes.traces is not None:
-        trace = wishes.traces / f"{wishes.stem}.unbounded.trace.jsonl"
+    if options.traces is not None:
+        trace = options.traces / f"{options.stem}.unbounded.trace.jsonl"
         run = covering.kept(run, net, storage, trace)
     return replace(found, why=INFINITE, covering=run)
 
@@ -168,7 +168,7 @@ def _explored(
     storage: Mapping[str, str],
     limits: Limits,
     d: Diagnostics,
-    wishes: ExploreOptions,
+    options: ExploreOptions,
     search: Meanwhile | None,
 ) -> Exploration | None:
     deadline = limits.deadline
@@ -177,17 +177,17 @@ def _explored(
         with deadline.enforced():
             if nondeterminism.refuse(net, d):
                 return None
-            chosen = possible(net, limits.reductions, d, wishes.predicates)
-            made = wishes.generated or Generated()
-            sizes = made.sizes or wishes.sizes or Sizes.start(net, storage)
+            chosen = possible(net, limits.reductions, d, options.predicates)
+            made = options.generated or Generated()
+            sizes = made.sizes or options.sizes or Sizes.start(net, storage)
     except TimeIsOverError:
         return _too_late(net, limits, time.perf_counter() - began, d)
 
     def interrupted() -> bool:
-        return wishes.interrupted() or deadline.is_over()
+        return options.interrupted() or deadline.is_over()
 
     # Most spaces of large nets are small: it does not pay to have the compiler work for long before that is known.
-    is_first = wishes.quick or len(net.transitions) > programs.MANY
+    is_first = options.quick or len(net.transitions) > programs.MANY
     first: Mapping[str, Any] | None = None
     compiling = 0.0
     while True:
@@ -198,7 +198,7 @@ def _explored(
                 storage,
                 sizes,
                 d,
-                wishes.predicates,
+                options.predicates,
                 interrupted=interrupted,
                 quick=is_first,
                 made=made,
@@ -210,23 +210,23 @@ def _explored(
             if program is None:
                 if d.has_errors or not interrupted():
                     return None
-                if not wishes.interrupted() and first is not None:
+                if not options.interrupted() and first is not None:
                     # The compiler was not done in time: what the program before has seen is what is known.
                     seen = {**first, "why": "seconds"}
                     return Exploration.of(net, seen, compiling)
-                if not wishes.interrupted():
+                if not options.interrupted():
                     return _too_late(net, limits, compiling, d)
                 return Exploration.of(net, nothing(net, limits), compiling)
             own = limits
             is_limited = is_first and made.is_quick
-            is_first = is_limited or (is_first and wishes.quick)
+            is_first = is_limited or (is_first and options.quick)
             if is_limited:
                 most = limits.max_states or programs.FIRST_STATES
                 own = replace(limits, max_states=min(most, programs.FIRST_STATES))
-            options = _options(own, chosen, sizes, wishes)
-            options += ["--still"] if nondeterminism.draws(net) else []
-            telling = replace(wishes, progress=_nothing) if is_limited else wishes
-            found = _run_with_tables(net, program, options, chosen, telling, limits, d, search)
+            arguments = _arguments(own, chosen, sizes, options)
+            arguments += ["--still"] if nondeterminism.draws(net) else []
+            telling = replace(options, progress=_nothing) if is_limited else options
+            found = _run_with_tables(net, program, arguments, chosen, telling, limits, d, search)
         if found is None:
             return None
         if is_limited and _is_too_much(found, own, limits):
@@ -257,7 +257,7 @@ def _explored(
         place = net.places[error["place"]] if error["kind"] == "capacity" else None
         if (
             place is not None
-            and place.index in wishes.heaps
+            and place.index in options.heaps
             and sizes.held(place.name) >= MOST_HEAPED
         ):
             return Exploration.of(net, {**found, "error": None, "why": HEAPED}, compiling)
@@ -312,7 +312,7 @@ def nothing(net: FlatNet, limits: Limits, why: str = "interrupted") -> dict[str,
     }
 
 
-def _options(limits: Limits, chosen: Chosen, sizes: Sizes, wishes: ExploreOptions) -> list[str]:
+def _arguments(limits: Limits, chosen: Chosen, sizes: Sizes, options: ExploreOptions) -> list[str]:
     left = limits.deadline.left
     late = None if left is None else max(left, LEAST_SECONDS)
     # What was seen has to be told within the deadline, too.
@@ -328,30 +328,30 @@ def _options(limits: Limits, chosen: Chosen, sizes: Sizes, wishes: ExploreOption
         ("--parent", os.getpid()),
         ("--approximate", limits.approximation.value if limits.approximation else None),
         ("--spill", limits.spill),
-        ("--trace-to", wishes.traces and wishes.traces / f"{wishes.stem}.dead-"),
-        ("--traces", limits.traces if wishes.traces else None),
-        ("--error-trace-to", wishes.traces and wishes.traces / f"{wishes.stem}.error-"),
-        ("--query-trace-to", wishes.evidence and wishes.evidence / f"{wishes.stem}.query-"),
-        ("--initial", wishes.initial),
-        ("--write-graph", wishes.graph),
-        ("--write-limit", wishes.graph_limit),
-        ("--multiset-limit", wishes.colours),
-        ("--whole", ",".join(map(str, wishes.whole)) or None),
-        ("--heaps", ",".join(map(str, sorted(wishes.heaps))) or None),
-        ("--most-heaped", MOST_HEAPED if wishes.heaps else None),
-        ("--progress-every", wishes.pace),
+        ("--trace-to", options.traces and options.traces / f"{options.stem}.dead-"),
+        ("--traces", limits.traces if options.traces else None),
+        ("--error-trace-to", options.traces and options.traces / f"{options.stem}.error-"),
+        ("--query-trace-to", options.evidence and options.evidence / f"{options.stem}.query-"),
+        ("--initial", options.initial),
+        ("--write-graph", options.graph),
+        ("--write-limit", options.graph_limit),
+        ("--multiset-limit", options.colours),
+        ("--whole", ",".join(map(str, options.whole)) or None),
+        ("--heaps", ",".join(map(str, sorted(options.heaps))) or None),
+        ("--most-heaped", MOST_HEAPED if options.heaps else None),
+        ("--progress-every", options.pace),
         *(("--reduce", reduction.value) for reduction in chosen.reductions),
     ]
-    options = [text for name, value in given if value is not None for text in (name, str(value))]
-    return options + ["--progress"] + ([] if limits.graph else ["--no-graph"])
+    arguments = [text for name, value in given if value is not None for text in (name, str(value))]
+    return arguments + ["--progress"] + ([] if limits.graph else ["--no-graph"])
 
 
 def _run_with_tables(
     net: FlatNet,
     program: Path,
-    options: Sequence[str],
+    arguments: Sequence[str],
     chosen: Chosen,
-    wishes: ExploreOptions,
+    options: ExploreOptions,
     limits: Limits,
     d: Diagnostics,
     search: Meanwhile | None,
@@ -360,10 +360,10 @@ def _run_with_tables(
     tables = {
         "--elements": chosen.elements.text() if chosen.elements else "",
         "--dependency": chosen.dependency.text() if chosen.dependency else "",
-        "--queries": wishes.questions,
+        "--queries": options.questions,
     }
     made: list[Path] = []
-    options = list(options)
+    arguments = list(arguments)
     try:
         for option, text in tables.items():
             if not text:
@@ -382,8 +382,8 @@ def _run_with_tables(
                     hint="explore with `--no-reduction`, or set TMPDIR",
                 )
                 return None
-            options += [option, name]
-        return _run(net, program, options, wishes, limits, d, search)
+            arguments += [option, name]
+        return _run(net, program, arguments, options, limits, d, search)
     finally:
         for table in made:
             table.unlink(missing_ok=True)
@@ -403,15 +403,15 @@ def _differs(net: FlatNet, error: Mapping[str, Any], d: Diagnostics) -> None:
 def _run(
     net: FlatNet,
     program: Path,
-    options: Sequence[str],
-    wishes: ExploreOptions,
+    arguments: Sequence[str],
+    options: ExploreOptions,
     limits: Limits,
     d: Diagnostics,
     search: Meanwhile | None,
 ) -> dict[str, Any] | None:
     """One process from its start to its last word; it ends when `search` has found a covering run."""
     process = subprocess.Popen(
-        [str(program), *options],
+        [str(program), *arguments],
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
@@ -422,7 +422,7 @@ def _run(
     said: list[str] = []
     report: list[bytes] = []
     listeners = (
-        threading.Thread(target=_listen, args=(process.stderr, wishes, said, search), daemon=True),
+        threading.Thread(target=_listen, args=(process.stderr, options, said, search), daemon=True),
         threading.Thread(target=_read, args=(process.stdout, report), daemon=True),
     )
     for listener in listeners:
@@ -439,7 +439,7 @@ def _run(
             with suppress(subprocess.TimeoutExpired):
                 process.wait(0.05)
                 break
-            if not told and wishes.interrupted():
+            if not told and options.interrupted():
                 told = True
                 process.send_signal(signal.SIGINT)
             if search is not None and search.found and search.is_heard and not is_endless:
@@ -454,14 +454,14 @@ def _run(
     except BaseException:
         process.kill()
         process.wait()
-        _tidy(wishes, process.pid)
+        _tidy(options, process.pid)
         raise
     for listener in listeners:
         listener.join()
     try:
         found: dict[str, Any] = json.loads(b"".join(report).decode("utf-8", "surrogateescape"))
     except ValueError:
-        _tidy(wishes, process.pid)
+        _tidy(options, process.pid)
         if told and process.returncode == -signal.SIGINT:  # before it could listen
             return nothing(net, Limits())
         if is_long:
@@ -479,10 +479,10 @@ def _run(
     return found
 
 
-def _tidy(wishes: ExploreOptions, pid: int) -> None:
+def _tidy(options: ExploreOptions, pid: int) -> None:
     """Removes what an explorer that came to a bad end was writing."""
-    if wishes.traces is not None:
-        for part in wishes.traces.glob(f"*.{pid}.part"):
+    if options.traces is not None:
+        for part in options.traces.glob(f"*.{pid}.part"):
             with suppress(OSError):
                 part.unlink()
 
@@ -493,7 +493,7 @@ def _read(stream: IO[bytes], report: list[bytes]) -> None:
 
 
 def _listen(
-    stream: IO[bytes], wishes: ExploreOptions, said: list[str], search: Meanwhile | None
+    stream: IO[bytes], options: ExploreOptions, said: list[str], search: Meanwhile | None
 ) -> None:
     with stream:
         for line in stream:
@@ -503,7 +503,7 @@ def _listen(
             except ValueError:
                 progress = None
             if isinstance(progress, dict):
-                wishes.progress(progress)
+                options.progress(progress)
                 if search is not None:
                     search.note(int(progress.get("states", 0)))
             elif text and len(said) < KEPT_ERRORS:

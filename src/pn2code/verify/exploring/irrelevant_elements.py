@@ -1,6 +1,6 @@
 """Binding elements that no shortest way to a dead marking has in it.
 
-found = useless(unfolding)      # for each element; the stubborn sets look at the others only
+found = irrelevant(unfolding)      # for each element; the stubborn sets look at the others only
 
 A shortest way has nothing in it that could be left out with the same end. Three rules find elements of which each
 occurrence could be left out, or cannot be on a way to a dead marking:
@@ -10,8 +10,8 @@ occurrence could be left out, or cannot be on a way to a dead marking:
   back to where it began, all these occurrences together change nothing, and until then they have only taken tokens
   (a philosopher takes one fork, the other one, and puts both back). Inner places are empty at first and nobody only
   looks at their tokens, so nobody misses the round when it is left out: there are at least as many tokens as before;
-* it puts a token where only useless elements take it away, and where one of them needs no other token: the marking at
-  the end would not be dead.
+* it puts a token where only irrelevant elements take it away, and where one of them needs no other token: the marking
+  at the end would not be dead.
 
 Nets with inhibitor or reset arcs, for which more tokens are not always better, have none here.
 """
@@ -24,7 +24,7 @@ from pn2code.unfold.net import UnfoldedTransition, Unfolding
 
 LONGEST_ROUND = 8
 WORK = 2_000_000
-"""Steps back that are looked at in all; a net that needs more has no useless elements, so that it is the same for
+"""Steps back that are looked at in all; a net that needs more has no irrelevant elements, so that it is the same for
 elements that are symmetric."""
 
 
@@ -32,8 +32,8 @@ class _TooMuchError(Exception):
     pass
 
 
-def useless(u: Unfolding) -> tuple[bool, ...]:
-    """For each element whether it is useless."""
+def irrelevant(u: Unfolding) -> tuple[bool, ...]:
+    """For each element whether it is irrelevant."""
     if any(t.inhibitors or t.resets for t in u.transitions):
         return (False,) * len(u.transitions)
     try:

@@ -78,7 +78,7 @@ def token_run(
     """
     with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
         file = Path(name) / "graph.jsonl"
-        wishes = ExploreOptions(
+        options = ExploreOptions(
             graph=file,
             graph_limit=MOST_NODES,
             questions=questions,
@@ -86,7 +86,7 @@ def token_run(
             quick=True,
         )
         limits = Limits(max_states=MOST_NODES, graph=True, traces=0)
-        found = explore(net, storage, limits, d, wishes)
+        found = explore(net, storage, limits, d, options)
         if found is None or not file.exists():
             return None
         graph = _read(file, [(net.places[place].name, value) for place, value in tokens])

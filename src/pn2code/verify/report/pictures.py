@@ -1,7 +1,7 @@
 """What `verify` draws besides its report: the graph of a small state space, how the exploration of a large one went.
 
 with Pictures(Path("graph.html"), None) as pictures:
-    found = explore(net, storage, limits, d, pictures.wishes(wishes))
+    found = explore(net, storage, limits, d, pictures.options(options))
     pictures.write(net, found, d)
 """
 
@@ -74,18 +74,20 @@ class Pictures:
         """Nodes in a picture."""
         return MOST_SVG if self._graph and self._graph.suffix.lower() == ".svg" else MOST_HTML
 
-    def wishes(self, wishes: ExploreOptions) -> ExploreOptions:
+    def options(self, options: ExploreOptions) -> ExploreOptions:
         """Those given, and what the pictures need."""
         if self._plot is not None:
-            wishes = replace(wishes, pace=_PACE, progress=_both(wishes.progress, self._record.add))
-        return replace(wishes, graph=self._lines, graph_limit=self._most if self._graph else None)
+            options = replace(
+                options, pace=_PACE, progress=_both(options.progress, self._record.add)
+            )
+        return replace(options, graph=self._lines, graph_limit=self._most if self._graph else None)
 
     def write(self, net: FlatNet, found: Exploration, d: Diagnostics) -> None:
         """Writes the files.
 
         Args:
             net: the net.
-            found: its state space, explored with these wishes.
+            found: its state space, explored with these options.
             d: is told what is not drawn, and why.
         """
         for path, write in ((self._graph, self._write_graph), (self._plot, self._write_plot)):

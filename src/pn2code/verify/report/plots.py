@@ -1,7 +1,7 @@
 """How a long exploration went: states, waiting states, rate and memory, over time and over depth.
 
 record = Record()
-explore(net, storage, limits, d, Wishes(progress=record.add, pace=0.1))
+explore(net, storage, limits, d, ExploreOptions(progress=record.add, pace=0.1))
 plot(record, found, "net.cpn", Path("net.svg"))
 """
 

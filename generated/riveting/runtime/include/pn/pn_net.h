@@ -3,7 +3,7 @@
  *
  * A generated net is one constant table, `const pn_net_t pn_net`, and a marking type whose size the table gives. Hosts
  * (supervisor, simulate, explore, the program under test of `conform`) know nets only through this table. What is done
- * with markings in the same way in every net is in pn_marking.h, and with the multi-set of one place in pn_bag.h.
+ * with markings in the same way in every net is in pn_marking.h, and with the multi-set of one place in pn_multiset.h.
  *
  * Several objects are made from a net, all with the same flags for the standard and for floating-point numbers:
  *
@@ -103,7 +103,7 @@ typedef struct pn_share {
     uint32_t weight;
 } pn_share_t;
 
-struct pn_bag;
+struct pn_multiset;
 struct pn_type;
 
 typedef struct pn_place {
@@ -117,7 +117,8 @@ typedef struct pn_place {
      * this place can hold. */
     uint32_t share_count;
     const pn_share_t *share;
-    const struct pn_bag *bag; /* where its tokens are in a marking; what to do with them is in pn_bag.h */
+    const struct pn_multiset
+        *multiset; /* where its tokens are in a marking; what to do with them is in pn_multiset.h */
     /* Puts the tokens of the initial marking. False on error. NULL: it is empty. */
     bool (*initial)(pn_ctx_t *cx, void *marking);
 } pn_place_t;
@@ -228,7 +229,7 @@ typedef struct pn_net {
     void (*set_up)(pn_ctx_t *cx);
     /* Of nets in which delays of input arcs are computed: lets *next be the earliest time after now at which a token
      * becomes available to such an arc, if it is before *next or *found is false. NULL: stamps and constant delays
-     * (pn_bag_t.early) say it. */
+     * (pn_multiset_t.early) say it. */
     void (*thresholds)(pn_ctx_t *cx, const void *marking, bool *found, pn_time_t *next);
     uint32_t refer_count; /* the places whose values refer into the arena */
     const uint32_t *refer;
@@ -236,8 +237,8 @@ typedef struct pn_net {
     const pn_root_t *held;
     size_t packed_size; /* bytes of the packed part, with which a marking begins, a multiple of 4; equal markings, equal
                            bytes */
-    uint32_t bag_count; /* the places that are not packed */
-    const uint32_t *bags;
+    uint32_t multiset_count; /* the places that are not packed */
+    const uint32_t *multisets;
     uint32_t root_count; /* state outside the marking: the references that the net changes. 0: there is none */
     const pn_root_t *root;
     uint32_t predicate_count; /* 0: none was generated with the net */

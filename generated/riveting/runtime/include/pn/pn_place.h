@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * pn_place.h - the untimed place with the types known: what pn_bag.h does through tables, as inline functions.
+ * pn_place.h - the untimed place with the types known: what pn_multiset.h does through tables, as inline functions.
  *
  * PN_UNTIMED_ARRAY makes, for places whose tokens are in an `array_t`,
  *
@@ -7,7 +7,7 @@
  *     array_held(p, v)             the number of tokens of that value
  *     array_holds(p, v, w)         whether there is a token v and another token w
  *     array_take(p, v, n)          takes n of them; false, and nothing taken, when there are fewer
- *     array_add(cx, p, bag, v, n)  puts n of them; false (PN_ERR_CAPACITY) when there are now more than the place may
+ *     array_add(cx, p, multiset, v, n)  puts n of them; false (PN_ERR_CAPACITY) when there are now more than the place may
  *                                  hold
  *     array_undo(p, v, n)          takes them out again, also where they are now more than can be counted
  *
@@ -19,7 +19,7 @@
 
 #include <string.h>
 
-#include "pn/pn_bag.h"
+#include "pn/pn_multiset.h"
 
 #if defined(__GNUC__)
 #define PN_MAYBE_UNUSED __attribute__((unused))
@@ -44,75 +44,75 @@
 /* The order of values that C compares itself. */
 #define PN_LESS(a, b) (*(a) < *(b))
 
-#define PN_UNTIMED_ARRAY(array, value_t, less)                                                                        \
-    PN_MAYBE_UNUSED static inline uint32_t array##_find(const array##_t *p, const value_t *v)                         \
-    {                                                                                                                 \
-        uint32_t low = 0U;                                                                                            \
-        uint32_t high = p->used;                                                                                      \
-        while (low < high) {                                                                                          \
-            const uint32_t middle = low + ((high - low) / 2U);                                                        \
-            if (less(&p->token[middle].value, v)) {                                                                   \
-                low = middle + 1U;                                                                                    \
-            } else {                                                                                                  \
-                high = middle;                                                                                        \
-            }                                                                                                         \
-        }                                                                                                             \
-        return low;                                                                                                   \
-    }                                                                                                                 \
-    PN_MAYBE_UNUSED static inline uint32_t array##_held(const array##_t *p, const value_t *v)                         \
-    {                                                                                                                 \
-        const uint32_t i = array##_find(p, v);                                                                        \
-        const bool is_there = (i < p->used) && !less(v, &p->token[i].value);                                          \
-        return is_there ? p->token[i].count : 0U;                                                                     \
-    }                                                                                                                 \
-    PN_MAYBE_UNUSED static inline bool array##_holds(const array##_t *p, const value_t *v, const value_t *w)          \
-    {                                                                                                                 \
-        const bool is_same = !less(v, w) && !less(w, v);                                                              \
-        return is_same ? (array##_held(p, v) >= 2U) : ((array##_held(p, v) >= 1U) && (array##_held(p, w) >= 1U));     \
-    }                                                                                                                 \
-    PN_MAYBE_UNUSED static inline bool array##_take(array##_t *p, const value_t *v, uint32_t n)                       \
-    {                                                                                                                 \
-        const uint32_t i = array##_find(p, v);                                                                        \
-        const uint32_t used = p->used;                                                                                \
-        if ((i >= used) || less(v, &p->token[i].value) || (p->token[i].count < n)) {                                  \
-            return false;                                                                                             \
-        }                                                                                                             \
-        p->token[i].count -= n;                                                                                       \
-        if (p->token[i].count == 0U) {                                                                                \
-            for (uint32_t k = i + 1U; k < used; k++) {                                                                \
-                p->token[k - 1U] = p->token[k];                                                                       \
-            }                                                                                                         \
-            p->used = used - 1U;                                                                                      \
-        }                                                                                                             \
-        return true;                                                                                                  \
-    }                                                                                                                 \
-    PN_MAYBE_UNUSED static inline bool array##_add(pn_ctx_t *cx, array##_t *p, const pn_bag_t *bag, const value_t *v, \
-                                                   uint32_t n)                                                        \
-    {                                                                                                                 \
-        const uint32_t i = array##_find(p, v);                                                                        \
-        const uint32_t used = p->used;                                                                                \
-        if (n == 0U) {                                                                                                \
-            return true;                                                                                              \
-        }                                                                                                             \
-        if ((i < used) && !less(v, &p->token[i].value)) {                                                             \
-            p->token[i].count += n;                                                                                   \
-            return (p->token[i].count >= n) || pn_bag_fail_full(cx, bag);                                             \
-        }                                                                                                             \
-        for (uint32_t k = used; k > i; k--) {                                                                         \
-            p->token[k] = p->token[k - 1U];                                                                           \
-        }                                                                                                             \
-        p->token[i].value = *v;                                                                                       \
-        p->token[i].count = n;                                                                                        \
-        p->used = used + 1U;                                                                                          \
-        return (used < bag->capacity) || pn_bag_fail_full(cx, bag);                                                   \
-    }                                                                                                                 \
-    PN_MAYBE_UNUSED static inline void array##_undo(array##_t *p, const value_t *v, uint32_t n)                       \
-    {                                                                                                                 \
-        const uint32_t i = array##_find(p, v);                                                                        \
-        if (n > 0U) {                                                                                                 \
-            p->token[i].count -= n;                                                                                   \
-            (void)((p->token[i].count == 0U) && array##_take(p, v, 0U));                                              \
-        }                                                                                                             \
+#define PN_UNTIMED_ARRAY(array, value_t, less)                                                                    \
+    PN_MAYBE_UNUSED static inline uint32_t array##_find(const array##_t *p, const value_t *v)                     \
+    {                                                                                                             \
+        uint32_t low = 0U;                                                                                        \
+        uint32_t high = p->used;                                                                                  \
+        while (low < high) {                                                                                      \
+            const uint32_t middle = low + ((high - low) / 2U);                                                    \
+            if (less(&p->token[middle].value, v)) {                                                               \
+                low = middle + 1U;                                                                                \
+            } else {                                                                                              \
+                high = middle;                                                                                    \
+            }                                                                                                     \
+        }                                                                                                         \
+        return low;                                                                                               \
+    }                                                                                                             \
+    PN_MAYBE_UNUSED static inline uint32_t array##_held(const array##_t *p, const value_t *v)                     \
+    {                                                                                                             \
+        const uint32_t i = array##_find(p, v);                                                                    \
+        const bool is_there = (i < p->used) && !less(v, &p->token[i].value);                                      \
+        return is_there ? p->token[i].count : 0U;                                                                 \
+    }                                                                                                             \
+    PN_MAYBE_UNUSED static inline bool array##_holds(const array##_t *p, const value_t *v, const value_t *w)      \
+    {                                                                                                             \
+        const bool is_same = !less(v, w) && !less(w, v);                                                          \
+        return is_same ? (array##_held(p, v) >= 2U) : ((array##_held(p, v) >= 1U) && (array##_held(p, w) >= 1U)); \
+    }                                                                                                             \
+    PN_MAYBE_UNUSED static inline bool array##_take(array##_t *p, const value_t *v, uint32_t n)                   \
+    {                                                                                                             \
+        const uint32_t i = array##_find(p, v);                                                                    \
+        const uint32_t used = p->used;                                                                            \
+        if ((i >= used) || less(v, &p->token[i].value) || (p->token[i].count < n)) {                              \
+            return false;                                                                                         \
+        }                                                                                                         \
+        p->token[i].count -= n;                                                                                   \
+        if (p->token[i].count == 0U) {                                                                            \
+            for (uint32_t k = i + 1U; k < used; k++) {                                                            \
+                p->token[k - 1U] = p->token[k];                                                                   \
+            }                                                                                                     \
+            p->used = used - 1U;                                                                                  \
+        }                                                                                                         \
+        return true;                                                                                              \
+    }                                                                                                             \
+    PN_MAYBE_UNUSED static inline bool array##_add(pn_ctx_t *cx, array##_t *p, const pn_multiset_t *multiset,     \
+                                                   const value_t *v, uint32_t n)                                  \
+    {                                                                                                             \
+        const uint32_t i = array##_find(p, v);                                                                    \
+        const uint32_t used = p->used;                                                                            \
+        if (n == 0U) {                                                                                            \
+            return true;                                                                                          \
+        }                                                                                                         \
+        if ((i < used) && !less(v, &p->token[i].value)) {                                                         \
+            p->token[i].count += n;                                                                               \
+            return (p->token[i].count >= n) || pn_multiset_fail_full(cx, multiset);                               \
+        }                                                                                                         \
+        for (uint32_t k = used; k > i; k--) {                                                                     \
+            p->token[k] = p->token[k - 1U];                                                                       \
+        }                                                                                                         \
+        p->token[i].value = *v;                                                                                   \
+        p->token[i].count = n;                                                                                    \
+        p->used = used + 1U;                                                                                      \
+        return (used < multiset->capacity) || pn_multiset_fail_full(cx, multiset);                                \
+    }                                                                                                             \
+    PN_MAYBE_UNUSED static inline void array##_undo(array##_t *p, const value_t *v, uint32_t n)                   \
+    {                                                                                                             \
+        const uint32_t i = array##_find(p, v);                                                                    \
+        if (n > 0U) {                                                                                             \
+            p->token[i].count -= n;                                                                               \
+            (void)((p->token[i].count == 0U) && array##_take(p, v, 0U));                                          \
+        }                                                                                                         \
     }
 
 #endif /* PN_PLACE_H */

@@ -4,7 +4,7 @@
 #ifndef EXERCISE_IMPL_H
 #define EXERCISE_IMPL_H
 
-#include "../marking/pn_bag_impl.h"
+#include "../marking/pn_multiset_impl.h"
 #include "pn/pn_marking.h"
 #include "pn/pn_net.h"
 
@@ -106,13 +106,13 @@ static inline uint32_t ex_read_place(const pn_transition_t *t, uint32_t i)
 }
 
 /* Entries of a place: none of one that is packed, which nets of generated programs do not have. */
-static inline uint32_t ex_entries(const pn_bag_t *bag, const void *marking)
+static inline uint32_t ex_entries(const pn_multiset_t *multiset, const void *marking)
 {
-    return bag->is_packed ? 0U : pn_bag_used(bag, marking);
+    return multiset->is_packed ? 0U : pn_multiset_used(multiset, marking);
 }
-static inline const void *ex_value_at(const pn_bag_t *bag, const void *marking, uint32_t i)
+static inline const void *ex_value_at(const pn_multiset_t *multiset, const void *marking, uint32_t i)
 {
-    return (const unsigned char *)pn_bag_entry(bag, marking, i) + bag->value;
+    return (const unsigned char *)pn_multiset_entry(multiset, marking, i) + multiset->value;
 }
 
 #endif /* EXERCISE_IMPL_H */

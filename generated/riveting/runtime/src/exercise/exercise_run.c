@@ -63,7 +63,8 @@ static void try_if_new(ex_t *ex, uint32_t transition, uint32_t most)
         return;
     }
     for (uint32_t i = 0U; i < ex_read_count(t); i++) {
-        const size_t length = pn_bag_encode(pn_net.place[ex_read_place(t, i)].bag, ex->situation, s_bytes, EX_BYTES);
+        const size_t length =
+            pn_multiset_encode(pn_net.place[ex_read_place(t, i)].multiset, ex->situation, s_bytes, EX_BYTES);
         for (size_t k = 0U; (k < length) && (k < (size_t)EX_BYTES); k++) {
             hash = (hash ^ s_bytes[k]) * UINT64_C(0x100000001B3);
         }
@@ -180,15 +181,15 @@ bool ex_run(ex_t *ex)
 static void fill_places(ex_t *ex, const pn_transition_t *t)
 {
     for (uint32_t i = 0U; i < pn_net.place_count; i++) {
-        pn_bag_clear(pn_net.place[i].bag, ex->situation);
+        pn_multiset_clear(pn_net.place[i].multiset, ex->situation);
     }
     for (uint32_t i = 0U; i < ex_read_count(t); i++) {
-        const pn_bag_t *bag = pn_net.place[ex_read_place(t, i)].bag;
-        const uint32_t values = ex_values_count(bag->type);
+        const pn_multiset_t *multiset = pn_net.place[ex_read_place(t, i)].multiset;
+        const uint32_t values = ex_values_count(multiset->type);
         void *value = ex_values_room();
         if ((values > 0U) && (pn_random_pick(&ex->random, 8U) > 0U)
-            && ex_values_get(ex, bag->type, NULL, (uint32_t)pn_random_pick(&ex->random, values), value)) {
-            (void)pn_bag_add(&ex->cx, bag, ex->situation, value, 1U, pn_now(&pn_net, ex->situation));
+            && ex_values_get(ex, multiset->type, NULL, (uint32_t)pn_random_pick(&ex->random, values), value)) {
+            (void)pn_multiset_add(&ex->cx, multiset, ex->situation, value, 1U, pn_now(&pn_net, ex->situation));
         }
         pn_clear_error(&ex->cx);
     }

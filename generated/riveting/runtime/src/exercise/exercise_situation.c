@@ -56,31 +56,34 @@ static bool is_read(const pn_transition_t *t, uint32_t place)
     return (t->read == NULL) || has(t->read, t->read_count, place);
 }
 
-static bool is_same_entry(const pn_bag_t *bag, const void *a, const void *b, uint32_t i, uint32_t k)
+static bool is_same_entry(const pn_multiset_t *multiset, const void *a, const void *b, uint32_t i, uint32_t k)
 {
-    const void *first = pn_bag_entry(bag, a, i);
-    const void *second = pn_bag_entry(bag, b, k);
-    return pn_same(bag->type, ex_value_at(bag, a, i), ex_value_at(bag, b, k))
-           && (pn_time_order(bag->is_real_time, pn_bag_stamp_of(bag, first), pn_bag_stamp_of(bag, second)) == 0);
+    const void *first = pn_multiset_entry(multiset, a, i);
+    const void *second = pn_multiset_entry(multiset, b, k);
+    return pn_same(multiset->type, ex_value_at(multiset, a, i), ex_value_at(multiset, b, k))
+           && (pn_time_order(multiset->is_real_time, pn_multiset_stamp_of(multiset, first),
+                             pn_multiset_stamp_of(multiset, second))
+               == 0);
 }
 
-static bool is_same_place(const pn_bag_t *bag, const void *a, const void *b)
+static bool is_same_place(const pn_multiset_t *multiset, const void *a, const void *b)
 {
-    const uint32_t used = ex_entries(bag, a);
-    bool is_same = used == ex_entries(bag, b);
+    const uint32_t used = ex_entries(multiset, a);
+    bool is_same = used == ex_entries(multiset, b);
     for (uint32_t i = 0U; is_same && (i < used); i++) {
-        is_same = is_same_entry(bag, a, b, i, i)
-                  && (pn_bag_count_of(bag, pn_bag_entry(bag, a, i)) == pn_bag_count_of(bag, pn_bag_entry(bag, b, i)));
+        is_same = is_same_entry(multiset, a, b, i, i)
+                  && (pn_multiset_count_of(multiset, pn_multiset_entry(multiset, a, i))
+                      == pn_multiset_count_of(multiset, pn_multiset_entry(multiset, b, i)));
     }
     return is_same;
 }
 
 /* How many tokens there are as those of an entry of another marking. */
-static uint32_t count_like(const pn_bag_t *bag, const void *marking, const void *other, uint32_t entry)
+static uint32_t count_like(const pn_multiset_t *multiset, const void *marking, const void *other, uint32_t entry)
 {
-    for (uint32_t i = 0U; i < ex_entries(bag, marking); i++) {
-        if (is_same_entry(bag, marking, other, i, entry)) {
-            return pn_bag_count_of(bag, pn_bag_entry(bag, marking, i));
+    for (uint32_t i = 0U; i < ex_entries(multiset, marking); i++) {
+        if (is_same_entry(multiset, marking, other, i, entry)) {
+            return pn_multiset_count_of(multiset, pn_multiset_entry(multiset, marking, i));
         }
     }
     return 0U;
@@ -97,11 +100,11 @@ static void forget_error(ex_t *ex)
     ex->cx.depth = 0U;
 }
 
-static bool is_legal(ex_t *ex, const pn_bag_t *bag, const void *marking)
+static bool is_legal(ex_t *ex, const pn_multiset_t *multiset, const void *marking)
 {
     bool is_fine = true;
-    for (uint32_t i = 0U; is_fine && (i < ex_entries(bag, marking)); i++) {
-        is_fine = pn_is_legal(&ex->cx, bag->type, ex_value_at(bag, marking, i)) && pn_ok(&ex->cx);
+    for (uint32_t i = 0U; is_fine && (i < ex_entries(multiset, marking)); i++) {
+        is_fine = pn_is_legal(&ex->cx, multiset->type, ex_value_at(multiset, marking, i)) && pn_ok(&ex->cx);
     }
     forget_error(ex);
     return is_fine;
@@ -111,7 +114,7 @@ static bool reads_legal(ex_t *ex, const pn_transition_t *t, const void *marking)
 {
     bool is_fine = true;
     for (uint32_t i = 0U; is_fine && (i < ex_read_count(t)); i++) {
-        is_fine = is_legal(ex, pn_net.place[ex_read_place(t, i)].bag, marking);
+        is_fine = is_legal(ex, pn_net.place[ex_read_place(t, i)].multiset, marking);
     }
     return is_fine;
 }
@@ -184,7 +187,7 @@ static ex_outcome_t outcome_of(pn_error_t error)
 static void check_unchanged(ex_t *ex, uint32_t transition, const void *before)
 {
     for (uint32_t p = 0U; p < pn_net.place_count; p++) {
-        if (!is_same_place(pn_net.place[p].bag, before, ex->after)) {
+        if (!is_same_place(pn_net.place[p].multiset, before, ex->after)) {
             ex_complain(ex, transition, p, "a firing was refused, and has changed it");
         }
     }
@@ -194,12 +197,12 @@ static void check_changed(ex_t *ex, uint32_t transition, const void *before, boo
 {
     const pn_transition_t *t = &pn_net.transition[transition];
     for (uint32_t p = 0U; p < pn_net.place_count; p++) {
-        const pn_bag_t *bag = pn_net.place[p].bag;
+        const pn_multiset_t *multiset = pn_net.place[p].multiset;
         if (!has(t->touched, t->touched_count, p)) {
-            if (!is_same_place(bag, before, ex->after)) {
+            if (!is_same_place(multiset, before, ex->after)) {
                 ex_complain(ex, transition, p, "a firing has changed it, which the table does not say");
             }
-        } else if (is_strict && !is_legal(ex, bag, ex->after)) {
+        } else if (is_strict && !is_legal(ex, multiset, ex->after)) {
             ex_complain(ex, transition, p, "a firing has put there what is not in the colour set");
         }
     }
@@ -244,17 +247,18 @@ static void fire_changed(ex_t *ex, uint32_t transition)
 /* --- one thing changed -------------------------------------------------------------------------------------------- */
 
 /* Leaves one token less than the firing took. Of tokens with stamps another one may serve, so none is left. */
-static void take_away(ex_t *ex, const pn_bag_t *bag, uint32_t entry, uint32_t lost)
+static void take_away(ex_t *ex, const pn_multiset_t *multiset, uint32_t entry, uint32_t lost)
 {
-    const void *value = ex_value_at(bag, ex->situation, entry);
+    const void *value = ex_value_at(multiset, ex->situation, entry);
     copy(ex->changed, ex->situation);
-    const uint32_t first = pn_bag_lower_bound(bag, ex->changed, value);
-    while (bag->is_timed && pn_bag_is_at(bag, ex->changed, first, value)) {
-        pn_bag_remove_at(bag, ex->changed, first, pn_bag_count_of(bag, pn_bag_entry(bag, ex->changed, first)));
+    const uint32_t first = pn_multiset_lower_bound(multiset, ex->changed, value);
+    while (multiset->is_timed && pn_multiset_is_at(multiset, ex->changed, first, value)) {
+        pn_multiset_remove_at(multiset, ex->changed, first,
+                              pn_multiset_count_of(multiset, pn_multiset_entry(multiset, ex->changed, first)));
     }
-    if (!bag->is_timed) {
-        const uint32_t count = pn_bag_count_of(bag, pn_bag_entry(bag, ex->changed, entry));
-        pn_bag_remove_at(bag, ex->changed, entry, count - lost + 1U);
+    if (!multiset->is_timed) {
+        const uint32_t count = pn_multiset_count_of(multiset, pn_multiset_entry(multiset, ex->changed, entry));
+        pn_multiset_remove_at(multiset, ex->changed, entry, count - lost + 1U);
     }
 }
 
@@ -264,15 +268,15 @@ static void check_taken(ex_t *ex, uint32_t transition, const void *binding)
     const pn_transition_t *t = &pn_net.transition[transition];
     const uint64_t wanted = hash_of(transition, binding);
     for (uint32_t k = 0U; k < t->touched_count; k++) {
-        const pn_bag_t *bag = pn_net.place[t->touched[k]].bag;
+        const pn_multiset_t *multiset = pn_net.place[t->touched[k]].multiset;
         ex_need_t *need = &ex->need[transition][k];
-        for (uint32_t i = 0U; i < ex_entries(bag, ex->situation); i++) {
-            const uint32_t before = pn_bag_count_of(bag, pn_bag_entry(bag, ex->situation, i));
-            const uint32_t left = count_like(bag, ex->result, ex->situation, i);
+        for (uint32_t i = 0U; i < ex_entries(multiset, ex->situation); i++) {
+            const uint32_t before = pn_multiset_count_of(multiset, pn_multiset_entry(multiset, ex->situation, i));
+            const uint32_t left = count_like(multiset, ex->result, ex->situation, i);
             if (left >= before) {
                 continue;
             }
-            take_away(ex, bag, i, before - left);
+            take_away(ex, multiset, i, before - left);
             const bool is_enabled = look_for(ex, transition, ex->changed, wanted, false).is_there;
             need->is_needed = need->is_needed || !is_enabled;
             need->is_reset = need->is_reset || is_enabled;
@@ -290,7 +294,7 @@ static void expect_no_room(ex_t *ex, uint32_t transition, uint32_t place, const 
     const ex_outcome_t outcome = fire(ex, transition, ex->changed, binding, false);
     if (outcome != EX_NO_ROOM) {
         ex_complain(ex, transition, place, "a firing was not refused when it was full");
-    } else if (strcmp(ex->said, pn_net.place[place].bag->origin) != 0) {
+    } else if (strcmp(ex->said, pn_net.place[place].multiset->origin) != 0) {
         ex_complain(ex, transition, place, "a firing was refused when it was full, and said that another place was");
     }
     ex->filled++;
@@ -299,20 +303,20 @@ static void expect_no_room(ex_t *ex, uint32_t transition, uint32_t place, const 
 /* As many tokens as can be counted, or as many colours as can be held, other than those that the firing puts. */
 static void fill_array(ex_t *ex, uint32_t transition, uint32_t place, uint32_t entry, const void *binding)
 {
-    const pn_bag_t *bag = pn_net.place[place].bag;
-    const pn_time_t stamp = pn_bag_stamp_of(bag, pn_bag_entry(bag, ex->result, entry));
-    const uint32_t before = count_like(bag, ex->situation, ex->result, entry);
-    const void *put = ex_value_at(bag, ex->result, entry);
+    const pn_multiset_t *multiset = pn_net.place[place].multiset;
+    const pn_time_t stamp = pn_multiset_stamp_of(multiset, pn_multiset_entry(multiset, ex->result, entry));
+    const uint32_t before = count_like(multiset, ex->situation, ex->result, entry);
+    const void *put = ex_value_at(multiset, ex->result, entry);
     copy(ex->changed, ex->situation);
-    if (pn_bag_add(&ex->cx, bag, ex->changed, put, UINT32_MAX - before, stamp)) {
+    if (pn_multiset_add(&ex->cx, multiset, ex->changed, put, UINT32_MAX - before, stamp)) {
         expect_no_room(ex, transition, place, binding);
     }
     copy(ex->changed, ex->situation);
     bool is_full = before > 0U;
-    for (uint32_t k = 0U; !is_full && (k < ex_values_count(bag->type)); k++) {
+    for (uint32_t k = 0U; !is_full && (k < ex_values_count(multiset->type)); k++) {
         void *value = ex_values_room();
-        if (ex_values_get(ex, bag->type, put, k, value) && !pn_same(bag->type, value, put)) {
-            is_full = !pn_bag_add(&ex->cx, bag, ex->changed, value, 1U, stamp);
+        if (ex_values_get(ex, multiset->type, put, k, value) && !pn_same(multiset->type, value, put)) {
+            is_full = !pn_multiset_add(&ex->cx, multiset, ex->changed, value, 1U, stamp);
         }
     }
     forget_error(ex);
@@ -327,15 +331,16 @@ static void check_filled(ex_t *ex, uint32_t transition, const void *binding)
     const pn_transition_t *t = &pn_net.transition[transition];
     for (uint32_t k = 0U; k < t->touched_count; k++) {
         const uint32_t place = t->touched[k];
-        const pn_bag_t *bag = pn_net.place[place].bag;
-        for (uint32_t i = 0U; !is_read(t, place) && (i < ex_entries(bag, ex->result)); i++) {
-            const uint32_t put = pn_bag_count_of(bag, pn_bag_entry(bag, ex->result, i));
-            if (put <= count_like(bag, ex->situation, ex->result, i)) {
+        const pn_multiset_t *multiset = pn_net.place[place].multiset;
+        for (uint32_t i = 0U; !is_read(t, place) && (i < ex_entries(multiset, ex->result)); i++) {
+            const uint32_t put = pn_multiset_count_of(multiset, pn_multiset_entry(multiset, ex->result, i));
+            if (put <= count_like(multiset, ex->situation, ex->result, i)) {
                 continue;
             }
-            if (bag->is_slot) {
+            if (multiset->is_slot) {
                 copy(ex->changed, ex->situation);
-                (void)pn_bag_add(&ex->cx, bag, ex->changed, ex_value_at(bag, ex->result, i), 1U, PN_NO_TIME);
+                (void)pn_multiset_add(&ex->cx, multiset, ex->changed, ex_value_at(multiset, ex->result, i), 1U,
+                                      PN_NO_TIME);
                 expect_no_room(ex, transition, place, binding);
             } else {
                 fill_array(ex, transition, place, i, binding);
@@ -357,7 +362,7 @@ static void check_memory(ex_t *ex, uint32_t transition, const void *binding)
         ex->cx.arena = arena;
         bool is_same = outcome == EX_ACCEPTED;
         for (uint32_t k = 0U; is_same && (k < t->touched_count); k++) {
-            is_same = is_same_place(pn_net.place[t->touched[k]].bag, ex->result, ex->after);
+            is_same = is_same_place(pn_net.place[t->touched[k]].multiset, ex->result, ex->after);
         }
         if (!is_same && (outcome != EX_NO_MEMORY)) {
             ex_complain(ex, transition, -1, "a firing did something else with little memory");
@@ -387,7 +392,7 @@ static void check_unread(ex_t *ex, uint32_t transition, uint64_t hash)
     copy(ex->changed, ex->situation);
     for (uint32_t p = 0U; p < pn_net.place_count; p++) {
         if (!is_read(t, p)) {
-            pn_bag_clear(pn_net.place[p].bag, ex->changed);
+            pn_multiset_clear(pn_net.place[p].multiset, ex->changed);
         }
     }
     if (look(ex, transition, ex->changed).hash != hash) {
@@ -400,20 +405,20 @@ static void try_others(ex_t *ex, uint32_t transition)
 {
     const pn_transition_t *t = &pn_net.transition[transition];
     for (uint32_t k = 0U; k < ex_read_count(t); k++) {
-        const pn_bag_t *bag = pn_net.place[ex_read_place(t, k)].bag;
-        const uint32_t used = ex_entries(bag, ex->situation);
+        const pn_multiset_t *multiset = pn_net.place[ex_read_place(t, k)].multiset;
+        const uint32_t used = ex_entries(multiset, ex->situation);
         copy(ex->changed, ex->situation);
-        pn_bag_clear(bag, ex->changed);
+        pn_multiset_clear(multiset, ex->changed);
         fire_changed(ex, transition);
         for (uint32_t i = 0U; (i < used) && (i < (uint32_t)EX_ENTRIES); i++) {
-            for (uint32_t v = 0U; v < ex_values_count(bag->type); v++) {
+            for (uint32_t v = 0U; v < ex_values_count(multiset->type); v++) {
                 void *value = ex_values_room();
                 const size_t mark = pn_arena_mark(ex->cx.arena);
-                const pn_time_t stamp = pn_bag_stamp_of(bag, pn_bag_entry(bag, ex->situation, i));
+                const pn_time_t stamp = pn_multiset_stamp_of(multiset, pn_multiset_entry(multiset, ex->situation, i));
                 copy(ex->changed, ex->situation);
-                pn_bag_remove_at(bag, ex->changed, i, 1U);
-                if (ex_values_get(ex, bag->type, ex_value_at(bag, ex->situation, i), v, value)
-                    && pn_bag_add(&ex->cx, bag, ex->changed, value, 1U, stamp)) {
+                pn_multiset_remove_at(multiset, ex->changed, i, 1U);
+                if (ex_values_get(ex, multiset->type, ex_value_at(multiset, ex->situation, i), v, value)
+                    && pn_multiset_add(&ex->cx, multiset, ex->changed, value, 1U, stamp)) {
                     fire_changed(ex, transition);
                     ex->replaced++;
                 }

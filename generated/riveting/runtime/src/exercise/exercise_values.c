@@ -47,7 +47,7 @@ void ex_values_prepare(void)
     s_pool = ex_reserve(pn_net.place_count, sizeof *s_pool);
     s_bytes = ex_reserve(EX_BYTES, 1U);
     for (uint32_t i = 0U; i < pn_net.place_count; i++) {
-        const pn_type_t *type = pn_net.place[i].bag->type;
+        const pn_type_t *type = pn_net.place[i].multiset->type;
         most = (type->size > most) ? type->size : most;
         if (pool_of(type) == NULL) {
             s_pool[s_pools].type = type;
@@ -81,10 +81,10 @@ static void note(pool_t *pool, const void *value)
 
 void ex_values_note(uint32_t place, const void *marking)
 {
-    const pn_bag_t *bag = pn_net.place[place].bag;
-    pool_t *pool = pool_of(bag->type);
-    for (uint32_t i = 0U; i < ex_entries(bag, marking); i++) {
-        note(pool, ex_value_at(bag, marking, i));
+    const pn_multiset_t *multiset = pn_net.place[place].multiset;
+    pool_t *pool = pool_of(multiset->type);
+    for (uint32_t i = 0U; i < ex_entries(multiset, marking); i++) {
+        note(pool, ex_value_at(multiset, marking, i));
     }
 }
 

@@ -10,8 +10,8 @@ static void make_empty(const pn_net_t *net, void *marking)
 {
     (void)memset(marking, 0, ((net->packed_size + 7U) / 8U) * 8U); /* the packed part is whole 64-bit words */
     pn_set_now(net, marking, (pn_time_t){ .integer = 0 });
-    for (uint32_t i = 0U; i < net->bag_count; i++) {
-        pn_bag_begin(net->place[net->bags[i]].bag, marking);
+    for (uint32_t i = 0U; i < net->multiset_count; i++) {
+        pn_multiset_begin(net->place[net->multisets[i]].multiset, marking);
     }
 }
 
@@ -49,14 +49,14 @@ bool pn_marking_put(const pn_net_t *net, pn_ctx_t *cx, void *marking, uint32_t p
                     uint32_t leaves)
 {
     cx->now = pn_now(net, marking);
-    return pn_bag_put(cx, net->place[place].bag, marking, leaf, leaves);
+    return pn_multiset_put(cx, net->place[place].multiset, marking, leaf, leaves);
 }
 
 bool pn_next_time(const pn_net_t *net, pn_ctx_t *cx, const void *marking, pn_time_t *next)
 {
     bool found = false;
     for (uint32_t i = 0U; i < net->place_count; i++) {
-        pn_bag_next_time(net->place[i].bag, marking, pn_now(net, marking), &found, next);
+        pn_multiset_next_time(net->place[i].multiset, marking, pn_now(net, marking), &found, next);
     }
     if (net->thresholds != NULL) {
         net->thresholds(cx, marking, &found, next);
@@ -74,7 +74,7 @@ size_t pn_marking_encode(const pn_net_t *net, const void *marking, uint8_t *out,
     (void)memcpy(out, &now, at);
     for (uint32_t i = 0U; i < net->place_count; i++) {
         const size_t room = (at < capacity) ? (capacity - at) : 0U;
-        at += pn_bag_encode(net->place[i].bag, marking, &out[(room > 0U) ? at : 0U], room);
+        at += pn_multiset_encode(net->place[i].multiset, marking, &out[(room > 0U) ? at : 0U], room);
     }
     return (at <= capacity) ? at : 0U;
 }
@@ -90,7 +90,7 @@ bool pn_marking_decode(const pn_net_t *net, pn_ctx_t *cx, void *marking, const u
     (void)memcpy(&now, in, at);
     pn_set_now(net, marking, now);
     for (uint32_t i = 0U; i < net->place_count; i++) {
-        const size_t size = pn_bag_decode(cx, net->place[i].bag, marking, &in[at], length - at);
+        const size_t size = pn_multiset_decode(cx, net->place[i].multiset, marking, &in[at], length - at);
         if (size == SIZE_MAX) {
             return false;
         }
@@ -103,7 +103,7 @@ void pn_marking_collect(const pn_net_t *net, pn_ctx_t *cx, void *marking)
 {
     pn_arena_flip(cx->arena);
     for (uint32_t i = 0U; i < net->refer_count; i++) {
-        pn_bag_relocate(cx, net->place[net->refer[i]].bag, marking);
+        pn_multiset_relocate(cx, net->place[net->refer[i]].multiset, marking);
     }
     for (uint32_t i = 0U; i < net->held_count; i++) {
         pn_relocate(cx, net->held[i].type, net->held[i].variable);

@@ -65,7 +65,7 @@ bool sim_print_marking(const void *marking, FILE *out)
         pn_text_str(&text, (i > 0U) ? ", " : "");
         pn_text_json_str(&text, pn_net.place[i].name);
         pn_text_str(&text, ": ");
-        pn_bag_json(pn_net.place[i].bag, marking, &text);
+        pn_multiset_json(pn_net.place[i].multiset, marking, &text);
         is_fine = put(&text, out) && is_fine;
     }
     pn_text_char(&text, '}');

@@ -93,12 +93,12 @@ bool sim_watch_is_needed(void)
  * token. */
 static int64_t list_length(const sim_t *sim, uint32_t place)
 {
-    if (pn_bag_total(pn_net.place[place].bag, sim->marking) != 1U) {
+    if (pn_multiset_total(pn_net.place[place].multiset, sim->marking) != 1U) {
         return -1;
     }
     pn_text_t text;
     pn_text_init(&text, sim_text_buffer, SIM_TEXT_SIZE);
-    pn_bag_json(pn_net.place[place].bag, sim->marking, &text);
+    pn_multiset_json(pn_net.place[place].multiset, sim->marking, &text);
     int64_t length = 0;
     uint32_t depth = 0U;
     bool is_string = false;
@@ -132,7 +132,7 @@ static sim_number_t number_in(const sim_t *sim, uint32_t place, bool is_real)
     static const char START[] = "[[1, ";
     pn_text_t text;
     pn_text_init(&text, sim_text_buffer, SIM_TEXT_SIZE);
-    pn_bag_json(pn_net.place[place].bag, sim->marking, &text);
+    pn_multiset_json(pn_net.place[place].multiset, sim->marking, &text);
     const char *const at = &text.buffer[sizeof START - 1U];
     sim_number_t found = { 0 };
     if (is_real) {
@@ -157,15 +157,15 @@ static bool collect(sim_t *sim, watch_t *watch)
 {
     sim_number_t value = { .integer = 1 };
     switch (watch->kind) {
-    case 's': value.integer = (int64_t)pn_bag_total(pn_net.place[watch->index].bag, sim->marking); break;
+    case 's': value.integer = (int64_t)pn_multiset_total(pn_net.place[watch->index].multiset, sim->marking); break;
     case 'l': value.integer = list_length(sim, watch->index); break;
     case 'i':
     case 'r':
-        if (pn_bag_total(pn_net.place[watch->index].bag, sim->marking) == 0U) {
+        if (pn_multiset_total(pn_net.place[watch->index].multiset, sim->marking) == 0U) {
             return true;
         }
         value = number_in(sim, watch->index, watch->kind == 'r');
-        pn_bag_clear(pn_net.place[watch->index].bag, sim->marking);
+        pn_multiset_clear(pn_net.place[watch->index].multiset, sim->marking);
         break;
     case 'c':
     default: break;
@@ -185,7 +185,7 @@ static bool is_collector(const watch_t *watch)
 static bool is_reached(sim_t *sim, const watch_t *watch)
 {
     if ((watch->kind == 'e') || (watch->kind == 'f')) {
-        return (pn_bag_total(pn_net.place[watch->index].bag, sim->marking) == 0U) == (watch->kind == 'e');
+        return (pn_multiset_total(pn_net.place[watch->index].multiset, sim->marking) == 0U) == (watch->kind == 'e');
     }
     bool is_enabled = false;
     for (uint32_t i = 0U; i < sim->enabled_count; i++) {

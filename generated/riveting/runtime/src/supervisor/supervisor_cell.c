@@ -157,7 +157,8 @@ static bool clear_consumed(sup_t *sup)
 {
     for (uint32_t i = 0U; i < sup->cell->channel_count; i++) {
         channel_state_t *const state = &s_cell.channel[i];
-        if (state->pending && (pn_bag_total(sup->net->place[sup->cell->channel[i].place].bag, sup->marking) == 0U)) {
+        if (state->pending
+            && (pn_multiset_total(sup->net->place[sup->cell->channel[i].place].multiset, sup->marking) == 0U)) {
             state->pending = false;
             if (!s_cell.transport.clear(s_cell.transport.self, i)) {
                 return stop_for_transport(sup);
@@ -173,7 +174,7 @@ static bool publish_token(sup_t *sup, uint32_t index)
     const pn_cell_channel_t *const channel = &sup->cell->channel[index];
     const pn_place_t *const place = &sup->net->place[channel->place];
     peer_state_t *const peer = &s_cell.peer[channel->peer];
-    const uint64_t tokens = pn_bag_total(place->bag, sup->marking);
+    const uint64_t tokens = pn_multiset_total(place->multiset, sup->marking);
     if (tokens == 0U) {
         return true;
     }
@@ -182,7 +183,7 @@ static bool publish_token(sup_t *sup, uint32_t index)
                         "channel-overrun: %" PRIu64 " messages for %s in one cycle; it can hold one", tokens,
                         channel->file);
     }
-    if (pn_bag_token(place->bag, sup->marking, 0U, leaf, PN_CHANNEL_SCALARS) != channel->scalar_count) {
+    if (pn_multiset_token(place->multiset, sup->marking, 0U, leaf, PN_CHANNEL_SCALARS) != channel->scalar_count) {
         return sup_stop(sup, SUP_EXIT_CHANNEL,
                         "the token of place `%s` cannot be written to %s: an integer in it does not fit into 64 "
                         "bits",
@@ -198,7 +199,7 @@ static bool publish_token(sup_t *sup, uint32_t index)
     }
     /* From here on the token lives in the file. Its writer has only output arcs on the place, so nothing can miss it
      * here. */
-    pn_bag_clear(place->bag, sup->marking);
+    pn_multiset_clear(place->multiset, sup->marking);
     s_cell.sent++;
     if ((channel->kind == PN_CHANNEL_FLAG) && !peer->owes) {
         peer->owes = true;

@@ -90,7 +90,7 @@ static const char *labels(const pn_scalar_t *scalar, uint32_t count, char *out, 
 
 static bool parse(sup_t *sup, const pn_cell_input_t *input, input_text_t *text, pn_message_t *token)
 {
-    const pn_type_t *const type = sup->net->place[input->place].bag->type;
+    const pn_type_t *const type = sup->net->place[input->place].multiset->type;
     const uint32_t lines = pn_line_count(type);
     const char *line = NULL;
     size_t length = 0U;
@@ -154,8 +154,8 @@ static bool stop_for_colour(sup_t *sup, const pn_cell_input_t *input, const inpu
 static void compare_with_checked(const sup_t *sup, const pn_cell_input_t *input, input_text_t *text)
 {
     pn_leaf_t leaf[PN_CHANNEL_SCALARS];
-    const pn_bag_t *const bag = sup->net->place[input->place].bag;
-    const uint32_t count = pn_bag_token(bag, sup->marking, 0U, leaf, PN_CHANNEL_SCALARS);
+    const pn_multiset_t *const multiset = sup->net->place[input->place].multiset;
+    const uint32_t count = pn_multiset_token(multiset, sup->marking, 0U, leaf, PN_CHANNEL_SCALARS);
     const size_t length = pn_scalars_format(input->scalar, count, leaf, text->bytes, sizeof text->bytes);
     if (pn_crc32(0U, text->bytes, length) != input->checked) {
         sup_warn("%s: not the token that the cell was checked with: `pn2code verify --input` checks it with this one",
@@ -173,7 +173,7 @@ bool sup_read_inputs(sup_t *sup)
         if (!read_file(sup, input, &text) || !parse(sup, input, &text, &token)) {
             return false;
         }
-        pn_bag_clear(place->bag, sup->marking);
+        pn_multiset_clear(place->multiset, sup->marking);
         if (!pn_marking_put(sup->net, &sup->cx, sup->marking, input->place, token.leaf, token.count)) {
             if (sup->cx.error != PN_ERR_COLOUR) {
                 return sup_stop_error(sup, "putting the token of an input file");

@@ -74,7 +74,7 @@ static bool keeps_bounds(sup_t *sup, const pn_transition_t *fired)
         if (!place->is_bounded || (place->owner < 0)) {
             continue;
         }
-        const uint64_t tokens = pn_bag_total(place->bag, sup->marking);
+        const uint64_t tokens = pn_multiset_total(place->multiset, sup->marking);
         if (tokens > (uint64_t)place->bound) {
             return sup_stop(sup, SUP_EXIT_MODEL,
                             "place `%s` is full: it would hold %" PRIu64 " tokens after `%s`, and its bound is %" PRIu32
@@ -213,7 +213,7 @@ bool sup_next_time(sup_t *sup, double *t)
 bool sup_is_final(const sup_t *sup)
 {
     for (uint32_t i = 0U; i < sup->cell->final_count; i++) {
-        if (pn_bag_total(sup->net->place[sup->cell->final_place[i]].bag, sup->marking) > 0U) {
+        if (pn_multiset_total(sup->net->place[sup->cell->final_place[i]].multiset, sup->marking) > 0U) {
             return true;
         }
     }
@@ -225,7 +225,7 @@ void sup_final_places(const sup_t *sup, pn_text_t *text)
     bool is_first = true;
     for (uint32_t i = 0U; i < sup->cell->final_count; i++) {
         const pn_place_t *const place = &sup->net->place[sup->cell->final_place[i]];
-        if (pn_bag_total(place->bag, sup->marking) == 0U) {
+        if (pn_multiset_total(place->multiset, sup->marking) == 0U) {
             continue;
         }
         if (!is_first) {
@@ -240,7 +240,7 @@ const char *sup_token_text(const sup_t *sup, const pn_cell_channel_t *channel, c
 {
     pn_leaf_t leaf[PN_CHANNEL_SCALARS];
     const uint32_t count =
-        pn_bag_token(sup->net->place[channel->place].bag, sup->marking, 0U, leaf, PN_CHANNEL_SCALARS);
+        pn_multiset_token(sup->net->place[channel->place].multiset, sup->marking, 0U, leaf, PN_CHANNEL_SCALARS);
     if ((count != channel->scalar_count)
         || (pn_scalars_format(channel->scalar, channel->scalar_count, leaf, out, capacity) == 0U)) {
         (void)snprintf(out, capacity, "?");

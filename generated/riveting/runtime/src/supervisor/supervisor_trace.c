@@ -24,7 +24,7 @@ static void describe_inputs(const sup_t *sup, pn_text_t *json)
         pn_text_str(json, (i > 0U) ? ", " : "");
         pn_text_json_str(json, place->name);
         pn_text_str(json, ": ");
-        pn_bag_json(place->bag, sup->marking, json);
+        pn_multiset_json(place->multiset, sup->marking, json);
     }
     pn_text_char(json, '}');
 }
@@ -71,7 +71,7 @@ static void final_places(const sup_t *sup, pn_text_t *text)
     const char *separator = "";
     for (uint32_t i = 0U; i < sup->cell->final_count; i++) {
         const pn_place_t *const place = &sup->net->place[sup->cell->final_place[i]];
-        if (pn_bag_total(place->bag, sup->marking) > 0U) {
+        if (pn_multiset_total(place->multiset, sup->marking) > 0U) {
             pn_text_str(text, separator);
             pn_text_json_str(text, place->name);
             separator = ", ";
@@ -104,9 +104,9 @@ void sup_trace_marking(const sup_t *sup)
     sup_say(sup, 1, "marking at the end:");
     for (uint32_t i = 0U; i < sup->net->place_count; i++) {
         const pn_place_t *const place = &sup->net->place[i];
-        if (pn_bag_total(place->bag, sup->marking) > 0U) {
+        if (pn_multiset_total(place->multiset, sup->marking) > 0U) {
             pn_text_init(&json, text, sizeof text);
-            pn_bag_json(place->bag, sup->marking, &json);
+            pn_multiset_json(place->multiset, sup->marking, &json);
             sup_say(sup, 1, "  %s  %s%s", place->name, text, json.truncated ? "..." : "");
         }
     }

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * pn_bag.h - the multi-set of a place inside a marking, and the moves of a firing.
+ * pn_multiset.h - the multi-set of a place inside a marking, and the moves of a firing.
  *
  * The generated marking holds, for each place, a number of used entries and a fixed array of tokens
  *
@@ -11,14 +11,14 @@
  *
  *     struct { pose_t value; bool full; } Waiting;
  *
- * A pn_bag_t tells where they are.
+ * A pn_multiset_t tells where they are.
  */
-#ifndef PN_BAG_H
-#define PN_BAG_H
+#ifndef PN_MULTISET_H
+#define PN_MULTISET_H
 
 #include "pn/pn_type.h"
 
-typedef struct pn_bag {
+typedef struct pn_multiset {
     const char *origin;    /* "page `Robot`, place `Waiting` (ID1407)" */
     const pn_type_t *type; /* colour set */
     uint32_t capacity;     /* entries: so many distinct colours, with so many stamps, fit */
@@ -44,16 +44,16 @@ typedef struct pn_bag {
     uint32_t width;
     uint32_t (*number_of)(const void *value);
     void (*colour_of)(uint32_t number, void *value);
-} pn_bag_t;
+} pn_multiset_t;
 
 #define PN_NO_COLOUR UINT32_MAX
 
 /* Whether a place is packed; a net without packed places is compiled with -DPN_ARRAYS_ONLY, which leaves their code
  * out. */
 #if defined(PN_ARRAYS_ONLY)
-#define PN_IS_PACKED(bag) (false)
+#define PN_IS_PACKED(multiset) (false)
 #else
-#define PN_IS_PACKED(bag) ((bag)->is_packed)
+#define PN_IS_PACKED(multiset) ((multiset)->is_packed)
 #endif
 
 /* Room for a colour of a packed place. */
@@ -62,72 +62,77 @@ typedef union pn_colour {
     unsigned char bytes[256];
 } pn_colour_t;
 
-/* The offsets of a place `member` of a marking, for the initialiser of a pn_bag_t. */
-#define PN_BAG_TOKENS(marking_type, member)                                                                      \
+/* The offsets of a place `member` of a marking, for the initialiser of a pn_multiset_t. */
+#define PN_MULTISET_TOKENS(marking_type, member)                                                                 \
     .at = offsetof(marking_type, member), .used = offsetof(marking_type, member.used),                           \
     .first = offsetof(marking_type, member.token), .stride = sizeof(((const marking_type *)0)->member.token[0]), \
     .value = offsetof(marking_type, member.token[0].value) - offsetof(marking_type, member.token),               \
     .count = offsetof(marking_type, member.token[0].count) - offsetof(marking_type, member.token)
 /* The same for a slot, and for a timed array. */
-#define PN_BAG_SLOT(marking_type, member)                                                               \
+#define PN_MULTISET_SLOT(marking_type, member)                                                          \
     .at = offsetof(marking_type, member), .is_slot = true, .used = offsetof(marking_type, member.full), \
     .first = offsetof(marking_type, member.value), .stride = sizeof(((const marking_type *)0)->member.value)
-#define PN_BAG_STAMPS(marking_type, member) \
-    PN_BAG_TOKENS(marking_type, member),    \
+#define PN_MULTISET_STAMPS(marking_type, member) \
+    PN_MULTISET_TOKENS(marking_type, member),    \
         .stamp = offsetof(marking_type, member.token[0].stamp) - offsetof(marking_type, member.token)
 
 /* What holds the tokens of a place that is not packed. */
-static inline const void *pn_bag_look(const pn_bag_t *bag, const void *marking)
+static inline const void *pn_multiset_look(const pn_multiset_t *multiset, const void *marking)
 {
-    return (const unsigned char *)marking + bag->at;
+    return (const unsigned char *)marking + multiset->at;
 }
-static inline void *pn_bag_reach(const pn_bag_t *bag, void *marking)
+static inline void *pn_multiset_reach(const pn_multiset_t *multiset, void *marking)
 {
-    return (unsigned char *)marking + bag->at;
+    return (unsigned char *)marking + multiset->at;
 }
 
 /* Number of tokens. */
-uint64_t pn_bag_total(const pn_bag_t *bag, const void *marking);
+uint64_t pn_multiset_total(const pn_multiset_t *multiset, const void *marking);
 /* Number of tokens with a stamp not after `now`; all of them in an untimed place. */
-uint64_t pn_bag_available(const pn_bag_t *bag, const void *marking, pn_time_t now);
+uint64_t pn_multiset_available(const pn_multiset_t *multiset, const void *marking, pn_time_t now);
 /* Number of tokens of one value with a stamp not after `limit`. */
-uint64_t pn_bag_count(const pn_bag_t *bag, const void *marking, const void *value, pn_time_t limit);
+uint64_t pn_multiset_count(const pn_multiset_t *multiset, const void *marking, const void *value, pn_time_t limit);
 /* Adds tokens. False (PN_ERR_CAPACITY, nothing changed) when there is no room. */
-bool pn_bag_add(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const void *value, uint32_t count, pn_time_t stamp);
+bool pn_multiset_add(pn_ctx_t *cx, const pn_multiset_t *multiset, void *marking, const void *value, uint32_t count,
+                     pn_time_t stamp);
 /* Raises PN_ERR_CAPACITY at the place; false. */
-bool pn_bag_fail_full(pn_ctx_t *cx, const pn_bag_t *bag);
+bool pn_multiset_fail_full(pn_ctx_t *cx, const pn_multiset_t *multiset);
 /* Raises that if a slot is full: whether a token can be put there. */
-static inline bool pn_has_room(pn_ctx_t *cx, bool is_full, const pn_bag_t *bag)
+static inline bool pn_has_room(pn_ctx_t *cx, bool is_full, const pn_multiset_t *multiset)
 {
-    return !is_full || pn_bag_fail_full(cx, bag);
+    return !is_full || pn_multiset_fail_full(cx, multiset);
 }
 /* Raises PN_ERR_SUBTRACT: a token that an occurrence takes is not there; false. */
 bool pn_fail_missing(pn_ctx_t *cx);
 /* Narrows a value and raises PN_ERR_COLOUR at the place if it is not in the colour set. */
-void pn_bag_check(pn_ctx_t *cx, const pn_bag_t *bag, void *value);
-void pn_bag_clear(const pn_bag_t *bag, void *marking);
+void pn_multiset_check(pn_ctx_t *cx, const pn_multiset_t *multiset, void *value);
+void pn_multiset_clear(const pn_multiset_t *multiset, void *marking);
 /* No tokens, in memory that may hold anything; a packed place has to be cleared with the packed part. */
-void pn_bag_begin(const pn_bag_t *bag, void *marking);
+void pn_multiset_begin(const pn_multiset_t *multiset, void *marking);
 /* Integer stamps count from `by` on, and those that are not after it are 0 and equal. */
-void pn_bag_age(const pn_bag_t *bag, void *marking, pn_time_t by);
+void pn_multiset_age(const pn_multiset_t *multiset, void *marking, pn_time_t by);
 /* The earliest time after `now` at which a token becomes available to arcs with constant delays, if it is before *next
  * or *found is false; and the same for arcs with one delay, which was computed. */
-void pn_bag_next_time(const pn_bag_t *bag, const void *marking, pn_time_t now, bool *found, pn_time_t *next);
-void pn_bag_threshold(const pn_bag_t *bag, const void *marking, pn_time_t now, pn_time_t early, bool *found,
-                      pn_time_t *next);
-void pn_bag_json(const pn_bag_t *bag, const void *marking, pn_text_t *out);
-uint32_t pn_bag_token(const pn_bag_t *bag, const void *marking, uint32_t i, pn_leaf_t *leaf, uint32_t capacity);
+void pn_multiset_next_time(const pn_multiset_t *multiset, const void *marking, pn_time_t now, bool *found,
+                           pn_time_t *next);
+void pn_multiset_threshold(const pn_multiset_t *multiset, const void *marking, pn_time_t now, pn_time_t early,
+                           bool *found, pn_time_t *next);
+void pn_multiset_json(const pn_multiset_t *multiset, const void *marking, pn_text_t *out);
+uint32_t pn_multiset_token(const pn_multiset_t *multiset, const void *marking, uint32_t i, pn_leaf_t *leaf,
+                           uint32_t capacity);
 /* Adds one token made of leaves, stamped with the context's time. */
-bool pn_bag_put(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const pn_leaf_t *leaf, uint32_t leaves);
+bool pn_multiset_put(pn_ctx_t *cx, const pn_multiset_t *multiset, void *marking, const pn_leaf_t *leaf,
+                     uint32_t leaves);
 /* Of a timed place they begin with the length of what comes before the stamps, as a uint32_t. */
 #define PN_STAMPS_AT sizeof(uint32_t)
-size_t pn_bag_encode(const pn_bag_t *bag, const void *marking, uint8_t *out, size_t room);
-size_t pn_bag_decode(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uint8_t *in, size_t length);
-/* As pn_bag_decode, but what is there stays. */
-size_t pn_bag_add_bytes(pn_ctx_t *cx, const pn_bag_t *bag, void *marking, const uint8_t *in, size_t length);
-void pn_bag_relocate(pn_ctx_t *cx, const pn_bag_t *bag, void *marking);
+size_t pn_multiset_encode(const pn_multiset_t *multiset, const void *marking, uint8_t *out, size_t room);
+size_t pn_multiset_decode(pn_ctx_t *cx, const pn_multiset_t *multiset, void *marking, const uint8_t *in, size_t length);
+/* As pn_multiset_decode, but what is there stays. */
+size_t pn_multiset_add_bytes(pn_ctx_t *cx, const pn_multiset_t *multiset, void *marking, const uint8_t *in,
+                             size_t length);
+void pn_multiset_relocate(pn_ctx_t *cx, const pn_multiset_t *multiset, void *marking);
 /* A colour of a packed place as JSON; false if there is no such one. */
-bool pn_bag_colour_json(const pn_bag_t *bag, uint32_t number, pn_text_t *out);
+bool pn_multiset_colour_json(const pn_multiset_t *multiset, uint32_t number, pn_text_t *out);
 
 /* Times as the context and the tokens hold them. */
 #define PN_NO_TIME ((pn_time_t){ .integer = 0 })
@@ -149,7 +154,7 @@ typedef enum pn_move_kind { PN_MOVE_TAKE, PN_MOVE_PUT, PN_MOVE_RESET } pn_move_k
 typedef struct pn_move {
     struct pn_move *next;
     pn_move_kind_t kind;
-    const pn_bag_t *bag;
+    const pn_multiset_t *multiset;
     const void *value;
     uint32_t count;
     pn_time_t time;  /* TAKE: latest stamp; PUT: the stamp */
@@ -168,24 +173,24 @@ typedef struct pn_moves {
 uint32_t pn_token_count(pn_ctx_t *cx, int64_t count);
 void pn_moves_init(pn_moves_t *moves, pn_ctx_t *cx);
 /* Wants `count` tokens (none if count <= 0) of a value with stamps not after `limit`. The value is copied. */
-void pn_moves_take(pn_moves_t *moves, const pn_bag_t *bag, const void *value, int64_t count, pn_time_t limit);
+void pn_moves_take(pn_moves_t *moves, const pn_multiset_t *multiset, const void *value, int64_t count, pn_time_t limit);
 /* Wants every element of a multi-set, a list with cells of `list`. */
-void pn_moves_take_list(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t *list, const void *multiset,
+void pn_moves_take_list(pn_moves_t *moves, const pn_multiset_t *multiset, const pn_type_t *list, const void *values,
                         pn_time_t limit);
 /* Puts tokens: narrowed, then checked against the colour set (PN_ERR_COLOUR). */
-void pn_moves_put(pn_moves_t *moves, const pn_bag_t *bag, const void *value, int64_t count, pn_time_t stamp);
-void pn_moves_put_list(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t *list, const void *multiset,
+void pn_moves_put(pn_moves_t *moves, const pn_multiset_t *multiset, const void *value, int64_t count, pn_time_t stamp);
+void pn_moves_put_list(pn_moves_t *moves, const pn_multiset_t *multiset, const pn_type_t *list, const void *values,
                        pn_time_t stamp);
 /* Puts a timed multi-set: a list of { value; stamp } whose element type is the record `timed`; `delay` is added to each
  * stamp. */
-void pn_moves_put_timed(pn_moves_t *moves, const pn_bag_t *bag, const pn_type_t *list, const void *multiset,
+void pn_moves_put_timed(pn_moves_t *moves, const pn_multiset_t *multiset, const pn_type_t *list, const void *values,
                         pn_time_t delay);
 /* Empties a place at the end; a timed one keeps what is stamped after `now`. */
-void pn_moves_reset(pn_moves_t *moves, const pn_bag_t *bag, pn_time_t now);
+void pn_moves_reset(pn_moves_t *moves, const pn_multiset_t *multiset, pn_time_t now);
 /* Whether the marking holds all that is wanted, together. Changes nothing. */
 bool pn_moves_are_possible(const pn_moves_t *moves, const void *marking);
 /* Takes, then puts, then resets. On error (also one that is there already) the marking is as before, and the answer
  * false. */
 bool pn_moves_commit(pn_moves_t *moves, void *marking);
 
-#endif /* PN_BAG_H */
+#endif /* PN_MULTISET_H */
