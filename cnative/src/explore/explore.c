@@ -55,6 +55,7 @@ static void print_help(void)
         "  --reduce HOW        partial-order, symmetry: fewer states, the same answer whether there are dead ones\n"
         "  --elements FILE     the table of binding elements that these two need\n"
         "  --dependency FILE   instead of it, for partial-order: which transitions depend on which\n"
+        "  --turns FILE        the table by which programs take turns: each run is seen in one of its orders\n"
         "  --spill DIR         keep large tables in files of a folder\n"
         "  --progress          lines of JSON on the standard error\n"
         "  --progress-every S  seconds between them (default 0.5)\n"
@@ -160,6 +161,7 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
            || ((strcmp(option, "--reduce") == 0) && read_reduction(value, options))
            || ((strcmp(option, "--elements") == 0) && read_text(value, &options->elements))
            || ((strcmp(option, "--dependency") == 0) && read_text(value, &options->dependency))
+           || ((strcmp(option, "--turns") == 0) && read_text(value, &options->turns))
            || ((strcmp(option, "--spill") == 0) && read_text(value, &options->spill))
            || ((strcmp(option, "--traces") == 0) && read_number(value, UINT32_MAX, &options->traces))
            || ((strcmp(option, "--dead-limit") == 0) && read_number(value, UINT32_MAX, &options->dead_limit))
@@ -216,6 +218,8 @@ static bool read_options(int argc, char **argv, ex_options_t *options)
             return false;
         }
     }
+    /* What is remembered of transitions does not say which of them a program asks. */
+    options->has_notes = options->has_notes && (options->turns == NULL);
     return true;
 }
 
@@ -395,11 +399,12 @@ static uint64_t peak_mib(void)
 
 static void print_reductions(const ex_options_t *options)
 {
-    const bool is_used[] = { options->is_time_reduced, options->is_stubborn, options->is_symmetric };
-    static const char *const s_names[] = { "time", "partial-order", "symmetry" };
+    const bool is_used[] = { options->is_time_reduced, options->is_stubborn, options->is_symmetric,
+                             options->turns != NULL };
+    static const char *const s_names[] = { "time", "partial-order", "symmetry", "turns" };
     const char *between = "";
     (void)printf(",\n \"reductions\": [");
-    for (uint32_t i = 0U; i < 3U; i++) {
+    for (uint32_t i = 0U; i < (sizeof is_used / sizeof is_used[0]); i++) {
         if (is_used[i]) {
             (void)printf("%s\"%s\"", between, s_names[i]);
             between = ", ";

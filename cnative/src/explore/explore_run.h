@@ -31,6 +31,7 @@ typedef struct ex_worker {
     struct ex_stubborn *stubborn;     /* of explore_stubborn.c */
     struct ex_persistent *persistent; /* of explore_dependency.c */
     struct ex_symmetry *symmetry;     /* of explore_symmetry.c */
+    struct ex_turns *turns;           /* of explore_turns.c */
     struct ex_early *early;           /* of explore_query_early.c */
     struct ex_local *local;           /* of explore_local.c; NULL: nothing is remembered */
     struct ex_wake *wake;             /* of explore_wake.c; NULL: nothing is remembered */
@@ -106,6 +107,7 @@ typedef struct ex_run {
     const uint32_t
         *owner_of; /* by transition: whose it is; priorities count among those of one owner. NULL: among all */
     struct ex_programs *programs; /* how programs choose among what is enabled; NULL: nobody chooses */
+    bool has_turns;               /* in a state only some owners are looked at (explore_turns.c) */
     bool seeks_choice;            /* now it is looked whether programs ever do the first of several (`first`) */
     _Atomic bool has_choice;      /* they do, or it is not known */
     bool is_choiceless;           /* it has been looked in all states, and they never do: all orders are one */

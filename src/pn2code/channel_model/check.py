@@ -14,6 +14,7 @@ from typing import Any
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import Partition
+from pn2code.channel_model import by_turns
 from pn2code.channel_model.compose import compose
 from pn2code.channel_model.faults import SAYS, Fault
 from pn2code.channel_model.places import Crashes, MediumNet, modelled
@@ -26,6 +27,7 @@ from pn2code.verify.answers import basis
 from pn2code.verify.answers.properties import Verdict
 from pn2code.verify.answers.reasons import clause
 from pn2code.verify.controller import messages
+from pn2code.verify.controller.premises import IN_TURNS
 from pn2code.verify.controller.running import chunks
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits, Reduction
@@ -62,6 +64,7 @@ class Answer:
         why: why it is inconclusive, or what fails that `evidence` does not show; "" else.
         nodes, arcs, seconds: of the exploration; `places`, `transitions`: of its net.
         assumes: what the answer rests on.
+        reduced: whether `nodes` and `arcs` are those of the reduced space of `by_turns`.
     """
 
     check: str
@@ -75,6 +78,7 @@ class Answer:
     seconds: float
     assumes: str
     evidence: tuple[Evidence, ...]
+    reduced: bool = False
 
     @property
     def rests_on(self) -> str | None:
@@ -92,6 +96,7 @@ class Answer:
             "arcs": self.arcs,
             "places": self.places,
             "transitions": self.transitions,
+            "reduced": self.reduced,
             "seconds": round(self.seconds, 3),
             "assumes": self.assumes,
             "rests_on": self.rests_on,
@@ -186,17 +191,65 @@ def whole(
         )
     if left_out:
         assumes += f"; messages of {', '.join(left_out)}, between two robots, arrive at once"
-    return _explored(
-        WHOLE,
-        "no message is lost, taken twice, torn, refused or overwritten, and the cell can come to its end from every "
-        "state",
-        net,
-        storage,
-        run,
-        assumes,
-        judged=bool(partition.final_places),
-        choices=_choices(partition),
-        carried=partition,
+
+    def full(limits: Limits) -> Answer:
+        return _explored(
+            WHOLE,
+            _ASKED,
+            net,
+            storage,
+            replace(run, limits=limits),
+            assumes,
+            judged=bool(partition.final_places),
+            choices=_choices(partition),
+            carried=partition,
+        )
+
+    first, most = run.limits.turns_from, run.limits.max_states or MOST_STATES
+    if first is None or most <= first or partition.net.timed or not partition.final_places:
+        return full(run.limits)
+    part = full(replace(run.limits, max_states=first))
+    if part.answer != "inconclusive" or part.why != _incomplete("states"):
+        return part
+    return _in_turns(partition, storage, run, rules, assumes) or full(run.limits)
+
+
+_ASKED = (
+    "no message is lost, taken twice, torn, refused or overwritten, and the cell can come to its end from every "
+    "state"
+)
+
+
+def _in_turns(
+    partition: Partition, storage: Mapping[str, str], run: Run, rules: Rules, assumes: str
+) -> Answer | None:
+    """A "yes" that the reduced space gives; None: it does not."""
+    began = time.perf_counter()
+    limits = replace(
+        run.limits,
+        max_states=run.limits.max_states or MOST_STATES,
+        graph=True,
+        traces=0,
+        approximation=None,
+        reductions=(),
+    )
+    found = by_turns.in_turns(partition, rules, storage, limits, run.options, Diagnostics())
+    if found is None or messages.examine(partition, found[1], run.d).answer != "yes":
+        return None
+    net, seen = found
+    return Answer(
+        check=WHOLE,
+        says=_ASKED,
+        answer="yes",
+        why="",
+        nodes=seen.nodes,
+        arcs=seen.arcs,
+        places=len(net.net.places),
+        transitions=len(net.net.transitions),
+        seconds=time.perf_counter() - began,
+        assumes=f"{assumes}; {IN_TURNS}",
+        evidence=(),
+        reduced=True,
     )
 
 
@@ -337,6 +390,10 @@ def _evidence(
 _STUCK = "an end cannot be reached from every state"
 
 
+def _incomplete(why: str) -> str:
+    return f"the exploration is not complete: {clause(why)}"
+
+
 def _verdict(
     net: MediumNet, found: Exploration | None, runs: tuple[Evidence, ...], judged: bool
 ) -> tuple[Verdict, str]:
@@ -349,7 +406,7 @@ def _verdict(
     if judged and found.dead_count:
         return "no", _STUCK
     if not found.complete:
-        return "inconclusive", f"the exploration is not complete: {clause(found.why)}"
+        return "inconclusive", _incomplete(found.why)
     if judged and any(a["answer"] != "yes" for a in found.answers):
         return "no", _STUCK
     return "yes", ""

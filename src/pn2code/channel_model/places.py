@@ -86,6 +86,8 @@ class MediumNet:
         ends: transitions that are enabled where all have come to an end.
         says: what each transition of the medium does, in words.
         files, sides: the places of channels and owners.
+        fault: the place of the token that ends a run with a verdict.
+        memory: by owner, the places that nobody else knows of.
     """
 
     net: FlatNet
@@ -96,6 +98,8 @@ class MediumNet:
     says: Mapping[str, str]
     files: tuple[Files, ...]
     sides: tuple[Side, ...]
+    fault: int
+    memory: tuple[tuple[int, ...], ...]
 
 
 def modelled(partition: Partition) -> tuple[Channel, ...]:

@@ -51,7 +51,14 @@ from pn2code.verdict.whole import (
 )
 from pn2code.verify.codes import REPORT_UNWRITABLE, TIME_OVER
 from pn2code.verify.exploring.explore import ExploreOptions
-from pn2code.verify.exploring.limits import Approximation, Limits, Order, Reduction, cores
+from pn2code.verify.exploring.limits import (
+    TURNS_FROM,
+    Approximation,
+    Limits,
+    Order,
+    Reduction,
+    cores,
+)
 from pn2code.verify.exploring.result import Exploration, Seen
 from pn2code.verify.report.pictures import GRAPH_KINDS, PLOT_KINDS, Pictures
 from pn2code.verify.report.progress import ProgressLine
@@ -288,6 +295,7 @@ def verify(
         graph=graph or bool(asked),
         traces=most_traces,
         reductions=() if no_reduction else tuple(dict.fromkeys(reduce)),
+        turns_from=None if no_reduction else TURNS_FROM,
     )
     checks = Checks(controller=check_controller, medium=check_medium)
     is_cell = opened.config is not None and check_controller

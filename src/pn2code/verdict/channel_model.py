@@ -138,8 +138,9 @@ def _rests(a: Answer) -> Iterator[str]:
 
 
 def _counts(a: Answer) -> str:
+    space = " of the reduced space" * a.reduced
     return (
-        f"{a.nodes:,} markings, {a.arcs:,} arcs of a net with {a.places} places and "
+        f"{a.nodes:,} markings, {a.arcs:,} arcs{space} of a net with {a.places} places and "
         f"{a.transitions} transitions, {a.seconds:.1f} s"
     )
 

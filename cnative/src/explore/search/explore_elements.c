@@ -3,6 +3,7 @@
  * writes it).
  */
 #include "explore_reduce.h"
+#include "explore_turns.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -266,7 +267,7 @@ static bool read_all(reader_t *r, ex_reduction_t *reduction)
                || refuse(r, "the table of elements has no end"));
 }
 
-static void note(ex_run_t *run, const char *kind, const char *message, int64_t transition)
+void ex_note(ex_run_t *run, const char *kind, const char *message, int64_t transition)
 {
     (void)pthread_mutex_lock(&run->error_lock);
     if (run->error.kind == NULL) {
@@ -289,7 +290,7 @@ bool ex_elements_read(ex_run_t *run, ex_reduction_t *reduction, const char *path
         (void)fclose(r.file);
     }
     if (r.problem != NULL) {
-        note(run, "reduction", r.problem, -1);
+        ex_note(run, "reduction", r.problem, -1);
     }
     return r.problem == NULL;
 }
@@ -297,7 +298,7 @@ bool ex_elements_read(ex_run_t *run, ex_reduction_t *reduction, const char *path
 void ex_differs(ex_worker_t *worker, uint32_t transition, const char *how)
 {
     worker->failed = true;
-    note(worker->run, "mismatch", how, (int64_t)transition);
+    ex_note(worker->run, "mismatch", how, (int64_t)transition);
 }
 
 /* The same where partial order goes by transitions. */
@@ -317,13 +318,16 @@ static bool make_dependency(ex_run_t *run, ex_reduction_t *reduction)
         }
     }
     if (problem != NULL) {
-        note(run, "reduction", problem, -1);
+        ex_note(run, "reduction", problem, -1);
     }
     return problem == NULL;
 }
 
 bool ex_reduction_make(ex_run_t *run)
 {
+    if (run->options.turns != NULL) {
+        return ex_turns_make(run);
+    }
     if (!run->options.is_stubborn && !run->options.is_symmetric) {
         return true;
     }
@@ -332,11 +336,11 @@ bool ex_reduction_make(ex_run_t *run)
         return (reduction != NULL) && make_dependency(run, reduction);
     }
     if (run->options.elements == NULL) {
-        note(run, "reduction", "there is no table of elements", -1);
+        ex_note(run, "reduction", "there is no table of elements", -1);
         return false;
     }
     if (reduction == NULL) {
-        note(run, "reduction", "there is not enough memory for the table of elements", -1);
+        ex_note(run, "reduction", "there is not enough memory for the table of elements", -1);
         return false;
     }
     reduction->is_stubborn = run->options.is_stubborn;
@@ -348,7 +352,7 @@ bool ex_reduction_make(ex_run_t *run)
     for (uint32_t i = 0U; i < run->options.threads; i++) {
         if ((reduction->is_stubborn && !ex_stubborn_make(&run->worker[i], reduction))
             || (reduction->is_symmetric && !ex_symmetry_make(&run->worker[i], reduction))) {
-            note(run, "reduction", "there is not enough memory for the reductions", -1);
+            ex_note(run, "reduction", "there is not enough memory for the reductions", -1);
             return false;
         }
     }

@@ -55,7 +55,7 @@ bool ex_flat_make(ex_worker_t *worker)
     const ex_run_t *run = worker->run;
     const ex_codec_t *codec = run->codec;
     if (!worker->search->is_exact || codec->is_whole || codec->is_plain || (codec->words != codec->packed_words)
-        || (run->reduction != NULL) || pn_net.timed || (worker->local != NULL)) {
+        || (run->reduction != NULL) || (run->options.turns != NULL) || pn_net.timed || (worker->local != NULL)) {
         return true;
     }
     worker->search->flat = ex_alloc(&worker->run->memory, sizeof *worker->search->flat);

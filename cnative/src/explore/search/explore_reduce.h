@@ -113,6 +113,8 @@ const bool *ex_persistent_choose(ex_worker_t *worker, int32_t priority);
  * call. */
 const void *ex_canonical(ex_worker_t *worker, const void *marking);
 
+/* Ends the run with an error of a kind that is not an exception. */
+void ex_note(ex_run_t *run, const char *kind, const char *message, int64_t transition);
 /* Ends the run: the table and the compiled net differ in a state. */
 void ex_differs(ex_worker_t *worker, uint32_t transition, const char *how);
 

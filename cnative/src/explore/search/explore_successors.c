@@ -5,6 +5,7 @@
 #include "explore_successors.h"
 #include "../state/explore_roots.h"
 #include "explore_reduce.h"
+#include "explore_turns.h"
 
 #include <string.h>
 
@@ -27,6 +28,8 @@ typedef struct hunt {
     bool is_second;        /* what is enough has been found, and there may be more */
     bool has_aged;         /* worker->marking is later than the cells of the codec */
     const bool *is_chosen; /* by transition: what the reductions look at; NULL: all */
+    ex_asked_t *asked;     /* not NULL: owners are only asked what is enabled, and it is noted here by transition */
+    const bool *has_turn;  /* by owner: whether it is looked at; NULL: all are */
 } hunt_t;
 
 bool ex_is_repeatable(void)
@@ -280,11 +283,12 @@ static bool hunt_choice(hunt_t *hunt, uint32_t t, uint32_t *chosen, bool *is_ena
     const bool was_found = hunt->is_found;
     hunt->is_found = false;
     hunt->is_single = (group != 0U) && (programs->choice[group] == EX_FIRST_BINDING);
-    hunt->is_probe = (programs != NULL) && programs->is_probe[t];
-    hunt->seeks_choice = hunt->is_single && is_seeking(hunt->worker->run);
+    const bool is_probe = (programs != NULL) && programs->is_probe[t];
+    hunt->is_probe = is_probe || (hunt->asked != NULL);
+    hunt->seeks_choice = hunt->is_single && (hunt->asked == NULL) && is_seeking(hunt->worker->run);
     const bool goes_on = hunt_transition(hunt, t);
     *is_enabled = hunt->is_found;
-    hunt->is_found = hunt->is_found && !hunt->is_probe;
+    hunt->is_found = hunt->is_found && !is_probe;
     hunt->is_single = false;
     hunt->is_probe = false;
     hunt->is_second = false;
@@ -331,14 +335,20 @@ static bool hunt_by_owner(hunt_t *hunt)
         const int32_t own = pn_net.transition[t].priority;
         const bool is_step = (programs != NULL) && programs->is_silent[t];
         bool is_enabled = false;
+        if ((hunt->has_turn != NULL) && !hunt->has_turn[owner]) {
+            continue;
+        }
         if ((has_found[owner] && (own != priority[owner])) || (is_step && has_any[owner] && (own != last[owner]))) {
             continue;
         }
         if (!is_tried(hunt, t, chosen)) {
-            goes_on = seek_choice(hunt, t);
+            goes_on = (hunt->asked != NULL) || seek_choice(hunt, t);
             continue;
         }
         goes_on = hunt_choice(hunt, t, chosen, &is_enabled);
+        if (hunt->asked != NULL) {
+            hunt->asked[t] = is_enabled ? EX_ENABLED : EX_DISABLED;
+        }
         if (is_enabled) {
             has_any[owner] = true;
             last[owner] = own;
@@ -406,6 +416,20 @@ static bool choose_transitions(hunt_t *hunt)
     return true;
 }
 
+/* Which owners are to be looked at. False when it is to go no further. */
+static bool choose_owners(hunt_t *hunt)
+{
+    hunt->asked = ex_turns_asked(hunt->worker);
+    for (uint32_t t = 0U; t < pn_net.transition_count; t++) {
+        hunt->asked[t] = EX_NOT_ASKED;
+    }
+    const bool goes_on = hunt_by_owner(hunt);
+    hunt->asked = NULL;
+    hunt->is_found = false;
+    hunt->has_turn = ex_turns_choose(hunt->worker);
+    return goes_on;
+}
+
 /* When something can be enabled that is not so now; false: never, or an error. */
 static bool next_time(const hunt_t *hunt, pn_time_t *next)
 {
@@ -464,6 +488,9 @@ static ex_found_t hunt_state(hunt_t *hunt)
     bool goes_on = true;
     if ((reduction != NULL) && (reduction->dependency != NULL)) {
         goes_on = choose_transitions(hunt);
+    }
+    if (worker->run->has_turns) {
+        goes_on = choose_owners(hunt);
     }
     goes_on = goes_on && hunt_now(hunt);
     pn_time_t next = { 0 };

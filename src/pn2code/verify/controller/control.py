@@ -28,6 +28,8 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import ArcKind
 from pn2code.properties import meaning as m
 from pn2code.properties.questions import Questions
+from pn2code.verify.controller import by_turns
+from pn2code.verify.controller.by_turns import Looked, OutOfReachError, validity
 from pn2code.verify.controller.control_answers import (
     ORDERS,
     STILL,
@@ -42,6 +44,7 @@ from pn2code.verify.controller.control_answers import (
     known,
     order_answers,
     refusal,
+    seen_in_turns,
     settled,
     silent,
     unknown,
@@ -63,10 +66,11 @@ from pn2code.verify.controller.poses import Bad, Poses
 from pn2code.verify.controller.reach_check import reach, suspects, tell
 from pn2code.verify.controller.running import NotModelledError, Running, Silence
 from pn2code.verify.exploring import nondeterminism
-from pn2code.verify.exploring.explore import explore
+from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits, Reduction
 from pn2code.verify.exploring.programs import Generated, Sizes
 from pn2code.verify.exploring.result import Exploration
+from pn2code.verify.exploring.turns import Turns
 
 DOUBT = (
     "a condition of a script that waits for a message raises an exception in a state of the cell, and whether the "
@@ -80,9 +84,16 @@ CELL_PART = 0.8
 # --- questions -----------------------------------------------------------------------------------
 
 
-def of_cell(running: Running, plan: Plan) -> str:
-    """The lines for the explorer about the cell: first properties, then what `cell_answers` understands."""
+def of_cell(running: Running, plan: Plan, *, in_turns: bool = False) -> str:
+    """The lines for the explorer about the cell: first properties, then what `cell_answers` understands.
+
+    Args:
+        running: its net.
+        plan: what is asked.
+        in_turns: in a space that is seen in turns (`by_turns`).
+    """
     asked = Questions()
+    resting = None if in_turns else running.resting
     for p in plan.properties.properties:
         asked.ask(_with_programs(p.asked, running))
     end = "-"
@@ -92,12 +103,13 @@ def of_cell(running: Running, plan: Plan) -> str:
         f"? ends {end}",
         f"? bound {running.stopped} 0 0",
         *(f"? restless {i} {steps.most}" for i, steps in enumerate(running.moments.sets())),
-        *(f"? invariant {_kept_silence(asked, s, running.resting)}" for s in running.silences),
+        *(f"? invariant {_kept_silence(asked, s, resting)}" for s in running.silences),
         *(f"? bound {c.place} 0 1" for c in running.partition.channels),
         *(f"? bound {place} 0 {most}" for place, most in plan.capacities.items()),
         *([] if running.unsure is None else [f"? bound {running.unsure} 0 0"]),
     ]
-    return "".join(f"{line}\n" for line in running.lines(first=True)) + asked.text()
+    lines = running.lines(first=True, at_once=in_turns)
+    return "".join(f"{line}\n" for line in lines) + asked.text()
 
 
 def _with_programs(asked: m.Asked, running: Running) -> m.Asked:
@@ -114,8 +126,11 @@ def _with_programs(asked: m.Asked, running: Running) -> m.Asked:
     )
 
 
-def _kept_silence(asked: Questions, silence: Silence, idle: int) -> int:
-    """The item of the states in which it does *not* wait for others while it owes an answer."""
+def _kept_silence(asked: Questions, silence: Silence, idle: int | None) -> int:
+    """The item of the states in which it does *not* wait for others while it owes an answer.
+
+    `idle`: the place of a supervisor that rests; None: it counts whether or not that does.
+    """
 
     def marked(place: int) -> int:
         return asked.line(f"within {place} 1 -")
@@ -131,7 +146,7 @@ def _kept_silence(asked: Questions, silence: Silence, idle: int) -> int:
         for place, needed in silence.states
     ]
     unseen = [joined("and", [marked(p), no(marked(seen))]) for p, seen in silence.answers]
-    others = [marked(silence.owes), marked(idle), *map(no, unseen)]
+    others = [marked(p) for p in (silence.owes, idle) if p is not None] + [*map(no, unseen)]
     return no(joined("and", [*others, joined("or", waits)]))
 
 
@@ -139,9 +154,11 @@ def _flat(marked: Callable[[int], int], messages: Sequence[Sequence[int]]) -> li
     return [marked(place) for places in messages for place in places]
 
 
-def of_orders(running: Running, firings: int = MAX_FIRINGS) -> str:
+def of_orders(running: Running, firings: int = MAX_FIRINGS, *, in_turns: bool = False) -> str:
     """The lines for the explorer about all orders, which `order_answers` understands."""
-    return "".join(f"{line}\n" for line in running.lines(first=False)) + _asked_of_orders(firings)
+    lines = running.lines(first=False, at_once=in_turns)
+    more = "".join(f"{line}\n" for line in validity(running)) if in_turns else ""
+    return "".join(f"{line}\n" for line in lines) + _asked_of_orders(firings) + more
 
 
 def _asked_of_orders(firings: int) -> str:
@@ -201,9 +218,21 @@ def examine(
         )
         # Where the whole is too large, there is time left to see how it comes to what is wrong.
         part = replace(limits, deadline=limits.deadline.share(CELL_PART))
-        found = explore(running.net, plan.storage, part, d, options)
+        in_turns: Looked | None = None
+        loose = _loose(partition, plan, part)
+        first_part = part if loose is None else replace(part, max_states=part.turns_from)
+        found = explore(running.net, plan.storage, first_part, d, options)
+        if loose is not None and found is not None and found.why == "states":
+            try:
+                in_turns = _looked_in_turns(loose, plan, part, options, at_once, poses)
+                if in_turns is None:
+                    found = explore(running.net, plan.storage, part, d, options)
+            except OutOfReachError as problem:  # what was seen of the whole is what is known
+                plan = replace(plan, cut=str(problem))
         if found is None:
             return None
+        if in_turns is not None:
+            found, running = in_turns.found, in_turns.running
         if plan.cut and found.why == "states":
             found = replace(
                 found, why=plan.cut, answers=tuple(_cut(a, plan.cut) for a in found.answers)
@@ -233,7 +262,10 @@ def examine(
         # Of a whole graph in which the supervisor never chooses the first question has an answer, and only of that.
         is_choiceless = found.complete and bool(asked) and asked[0]["answer"] != "unknown"
         ruled_out = False
-        if found.complete or found.why == "decided":
+        if in_turns is not None:
+            orders = in_turns.orders or found
+            asked = orders.answers[:ORDERS] if orders is not found else asked
+        elif found.complete or found.why == "decided":
             moves = suspects(told, found)
             if moves:
                 # All orders are more than the cell does: what is not met there is met nowhere.
@@ -248,7 +280,7 @@ def examine(
         if orders is None:
             return None
         keep = Keeper(plan, running)
-        if not is_choiceless:
+        if not is_choiceless and in_turns is None:
             asked = orders.answers if orders is not found else ()
         doubt = ""
         if running.unsure is not None and said:
@@ -263,6 +295,8 @@ def examine(
             ownership(partition),
         )
         checks = tuple(hesitating(c, said, keep) for c in checks)
+        if in_turns is not None:
+            checks = tuple(map(seen_in_turns, checks))
         refused = refusal(partition, found, keep)
         if refused is not None:
             checks = tuple(refused if c.name == BLOCKING else c for c in checks)
@@ -272,8 +306,52 @@ def examine(
         late = plan.premises.replies.late or silent(running, said)
         premises = plan.premises
         premises = replace(premises, moving=not is_short(said, STILL))
-        control = Control(checks, found, running, answers=found.answers[:count], closed=closed)
+        control = Control(
+            checks,
+            found,
+            running,
+            answers=found.answers[:count],
+            closed=closed,
+            reduced=in_turns is not None,
+        )
         return settled(replace(control, late=late, doubt=doubt, premises=premises))
+
+
+def _loose(partition: Partition, plan: Plan, limits: Limits) -> tuple[Running, Turns] | None:
+    """What the programs of a cell that is too large for the whole of it are looked at in by turns; None: nothing is."""
+    most, least = limits.max_states, limits.turns_from
+    if least is None or (most is not None and most <= least) or plan.properties.properties:
+        return None
+    return None if partition.net.timed or plan.cut else by_turns.loosened(partition)
+
+
+def _looked_in_turns(
+    loose: tuple[Running, Turns],
+    plan: Plan,
+    limits: Limits,
+    options: ExploreOptions,
+    at_once: str,
+    poses: Poses | None,
+) -> Looked | None:
+    running, _ = loose
+
+    def is_choiceless(found: Exploration) -> bool:
+        _, asked = _parted(found.answers, ORDERS)
+        return bool(at_once) and asked[0]["answer"] != "unknown"
+
+    looked = by_turns.look(
+        loose,
+        plan,
+        replace(limits, max_states=limits.most_in_turns or limits.max_states),
+        options,
+        Diagnostics(),  # what is wrong with this net the whole space tells
+        cell=of_cell(running, plan, in_turns=True) + at_once,
+        orders=of_orders(running, plan.firings, in_turns=True),
+        is_choiceless=is_choiceless,
+    )
+    if looked is None or suspects(tell(poses, looked.found, limits.deadline), looked.found):
+        return None
+    return looked
 
 
 def _parted(

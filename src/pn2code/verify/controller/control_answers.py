@@ -26,6 +26,7 @@ from pn2code.verify.controller.control_types import (
     Evidence,
     Plan,
 )
+from pn2code.verify.controller.premises import IN_TURNS
 from pn2code.verify.controller.running import OWING, Running
 from pn2code.verify.exploring.result import Exploration
 
@@ -150,6 +151,8 @@ def settled(control: Control) -> Control:
             why = {control.late: "late", control.doubt: "error"}.get(control.stops, "stops")
             check = replace(check, answer="unknown", why=why, says=f"not known: {control.stops}")
         assumes = control.premises.of_check(check.name, check.answer)
+        if control.reduced and check.answer == "yes" and check.name != OWNERSHIP:
+            assumes = (*assumes, IN_TURNS)
         checks.append(replace(check, assumes=assumes))
     return replace(control, checks=tuple(checks))
 
@@ -352,6 +355,12 @@ def _restless(row: Mapping[str, Any], keep: Keeper) -> Check | None:
     how = "for ever" if row["value"] is None else f"for {int(row['value']):,} transitions"
     says = f"a script loops {how} without a command or a wait{ways}; this stops the whole cell"
     return Check(BLOCKING, "no", says, why="stopped", evidence=evidence)
+
+
+def seen_in_turns(check: Check) -> Check:
+    """The check of the end says of which states it is."""
+    says = check.says.replace("states of the cell", "states of the cell that are seen in turns")
+    return replace(check, says=says) if check.name == BLOCKING else check
 
 
 def _blocking(row: Mapping[str, Any], keep: Keeper, partition: Partition) -> Check:

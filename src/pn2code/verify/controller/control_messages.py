@@ -14,6 +14,7 @@ from pn2code.verify.controller.control_answers import unknown
 from pn2code.verify.controller.control_types import (
     MEMORY,
     MESSAGES,
+    MOST_IN_TURNS,
     MOST_STATES,
     Check,
     Evidence,
@@ -58,6 +59,11 @@ def own_priorities(partition: Partition) -> Iterator[str]:
     yield "priorities own"
 
 
+def _most(found: Exploration) -> int:
+    """States at which `generate` looks."""
+    return MOST_IN_TURNS if "turns" in found.reductions else MOST_STATES
+
+
 def memory(found: Exploration | None, why: str = "", *, of_cell: bool = True) -> Check:
     """Whether the supervisor's lists and strings have room.
 
@@ -79,7 +85,7 @@ def memory(found: Exploration | None, why: str = "", *, of_cell: bool = True) ->
     if size > arena.MOST:
         return Check(MEMORY, "no", f"{needs}, which is too much", firing)
     says = f"{needs}; the supervisor has room for more than twice that"
-    if size > arena_size.DEFAULT and not (of_cell and found.nodes <= MOST_STATES):
+    if size > arena_size.DEFAULT and not (of_cell and found.nodes <= _most(found)):
         says = f"{needs}; the supervisor needs {least:,} bytes for both, and has the usual {arena_size.DEFAULT:,}"
         blind = "the cell cannot be modelled"
         if of_cell:

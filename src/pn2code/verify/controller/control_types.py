@@ -65,6 +65,10 @@ MOST_STATES = 3_000_000
 """That `generate` looks at; `verify` looks at as many as its limits say."""
 
 
+MOST_IN_TURNS = 10_000_000
+"""The same where programs are looked at in turns (`by_turns`)."""
+
+
 @frozen
 class Evidence:
     """A run that shows an answer.
@@ -215,6 +219,7 @@ class Control:
         late: why somebody may owe an answer for too long; "": that is not known of anybody.
         doubt: why a script may stop with an exception; "": none does, as far as is known.
         premises: what answers rest on besides.
+        reduced: whether `found` is the reduced space of `by_turns`.
     """
 
     checks: tuple[Check, ...]
@@ -226,6 +231,7 @@ class Control:
     late: str = ""
     doubt: str = ""
     premises: Premises = Premises()
+    reduced: bool = False
 
     @property
     def stops(self) -> str:
@@ -285,6 +291,7 @@ class Control:
             "modelled": running is not None,
             "why": self.why or None,
             "complete": found.complete if found else False,
+            "reduced": self.reduced,
             "states": found.nodes if found else 0,
             "arcs": found.arcs if found else 0,
             "bounds": bounds,

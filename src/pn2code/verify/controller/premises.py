@@ -38,6 +38,10 @@ _PARTS = (
     "tools find the parts that they take, hold them until they release them, and put them down where they can stand, "
     "and nothing is where a part comes into the cell (a run shows it)"
 )
+IN_TURNS = (
+    "the programs are looked at in turns, so that each run is seen in one of its orders: the states are those of the "
+    "reduced space (docs/reductions.md)"
+)
 _MOTIONS = frozenset({"move_joint", "move_linear", "move_home", "measure"})
 
 _SENSORS = "each possible value of a sensor occurs from time to time"

@@ -28,7 +28,7 @@ from pn2code.toolchain.build import TOOL_MISSING
 from pn2code.verify.answers.reasons import clause
 from pn2code.verify.codes import BEYOND_ROOM, CONTROL_BEYOND, CONTROL_FAILED, CONTROL_OPEN
 from pn2code.verify.controller import arena, control, control_types
-from pn2code.verify.controller.control_types import MOST_STATES, Check, Control, Plan
+from pn2code.verify.controller.control_types import MOST_IN_TURNS, MOST_STATES, Check, Control, Plan
 from pn2code.verify.controller.poses import Arms, Poses
 from pn2code.verify.controller.premises import NOTHING_GIVEN, Premises
 from pn2code.verify.exploring import place_capacity as rooms
@@ -181,6 +181,7 @@ def _look(partition: Partition, config: CellConfig, plan: Plan, d: Diagnostics) 
         processor_seconds=MOST_PROCESSOR_SECONDS,
         threads=cores(),
         traces=0,
+        most_in_turns=MOST_IN_TURNS,
     )
     plan = replace(plan, options=ExploreOptions(quick=True))
     try:
@@ -296,7 +297,7 @@ def _verdicts(looked: Control) -> Iterator[str]:
         yield "Not checked completely (docs/execution.md):"
     else:
         assert looked.found is not None
-        yield f"Checked in all {looked.found.nodes:,} states of the cell as it runs (docs/execution.md):"
+        yield _where(looked.found.nodes, reduced=looked.reduced)
     for check in looked.checks:
         yield from textwrap.wrap(_verdict(check), _WIDTH, subsequent_indent="    ")
     assumed = dict.fromkeys(x for check in looked.checks for x in check.assumes)
@@ -304,6 +305,13 @@ def _verdicts(looked: Control) -> Iterator[str]:
         yield "Assumed:"
     for premise in assumed:
         yield from textwrap.wrap(f"  {premise}", _WIDTH, subsequent_indent="    ")
+
+
+def _where(states: int, *, reduced: bool) -> str:
+    """What was looked at."""
+    if reduced:
+        return f"Checked in {states:,} states of the cell, its programs looked at in turns (docs/reductions.md):"
+    return f"Checked in all {states:,} states of the cell as it runs (docs/execution.md):"
 
 
 def _verdict(check: Check) -> str:

@@ -119,9 +119,18 @@ class Running:
 
     @staticmethod
     def of(
-        partition: Partition, predicates: Sequence[Predicate] = (), moves: Sequence[Bad] = ()
+        partition: Partition,
+        predicates: Sequence[Predicate] = (),
+        moves: Sequence[Bad] = (),
+        *,
+        loose: bool = False,
     ) -> Running:
         """That of a cell; `predicates` are asked of it, and `moves` are what its arms cannot do.
+
+        Args:
+            loose: a net that does more, in which programs depend less on each other (docs/reductions.md): a script that
+                stops stops nobody else, whenever it comes to that, and robots go on after the supervisor's end. Where
+                no script stops, nothing else is different.
 
         Raises:
             NoPatternError: what such a move depends on cannot be compared.
@@ -129,7 +138,7 @@ class Running:
         """
         _check(partition, predicates)
         try:
-            return _Composer(partition, moves).made()
+            return _Composer(partition, moves, loose=loose).made()
         except NoProgramError as problem:
             raise NotModelledError(str(problem)) from None
         except ValueError as problem:
@@ -148,11 +157,14 @@ class Running:
             ):
                 yield t.index
 
-    def lines(self, *, first: bool, names: Sequence[str] | None = None) -> list[str]:
+    def lines(
+        self, *, first: bool, names: Sequence[str] | None = None, at_once: bool = False
+    ) -> list[str]:
         """How the programs choose.
 
         Args:
             first: whether of the supervisor's binding elements only the first in the documented order occurs.
+            at_once: everything may happen in one moment, whatever it is; so a longest run is one of all steps.
             names: where transitions of the net were made several (`properties.split`): of each, that of the whole one.
         """
         whole = [t.name for t in self.net.transitions]
@@ -163,7 +175,7 @@ class Running:
         def now(old: Iterable[int]) -> Iterator[int]:
             return (i for k in old for i in parts[whole[k]])
 
-        owners = [*self.partition.transition_owner, *self.steps]
+        owners = self.owners()
         count = len(self.partition.net.transitions)
         lines: list[str] = []
         for owner in sorted(set(owners)):
@@ -178,11 +190,16 @@ class Running:
         lines += [" ".join(["kin", *map(str, own)]) for own in parts.values() if len(own) > 1]
         lines += chunks("meek", now(self.meek))
         for number, steps in enumerate(self.moments.sets()):
-            lines += chunks(f"instant {number}", now(steps.transitions))
+            those = range(len(owners)) if at_once else steps.transitions
+            lines += chunks(f"instant {number}", now(those))
         lines += chunks("silent", now(range(count, count + len(self.steps))))
         lines += chunks("clock", now(self.clock))
         lines += chunks("probe", now(self.probes))
         return lines
+
+    def owners(self) -> tuple[int, ...]:
+        """By transition: whose it is."""
+        return (*self.partition.transition_owner, *self.steps)
 
     def project(self, trace: Path, loop: int | None = None) -> tuple[int, int | None]:
         """Makes a run of this net one of the cell's net, in place; gives its length and where its cycle begins.
@@ -288,8 +305,9 @@ def _takes_one(arc: FlatArc) -> bool:
 
 
 class _Composer:
-    def __init__(self, partition: Partition, moves: Sequence[Bad]) -> None:
+    def __init__(self, partition: Partition, moves: Sequence[Bad], *, loose: bool) -> None:
         self.partition = partition
+        self.is_loose = loose
         self.b = b = Builder(refusing(partition, moves))
         self.step_owner: list[int] = []
         self.clock: list[int] = []
@@ -315,13 +333,19 @@ class _Composer:
         truth = {c.name: c for c, _ in partition.net.program.datatypes["bool"].constructors}
         self.conditions = Conditions(truth["true"], truth["false"])
         self.going: int | None = None
-        if partition.final_places and len(partition.owners) > 1:
+        if partition.final_places and len(partition.owners) > 1 and not loose:
             self.going = b.place("cell.robots.go on", b.unit)
             b.begin(self.going, b.dot)
         self.machines = {i: machine(partition, i) for i in range(1, len(partition.owners))}
         self.owes = dict(self._owing())
-        self.looks = [b.place(f"cell.supervisor.looks at {c.file}", b.unit) for c in looked]
-        b.begin(self.looks[0] if self.looks else self.calm, b.dot)
+        self.late = [c for c in looked if self._may_be_late(c)]
+        self.reads = b.place("cell.supervisor.reads", b.unit) if self.late else self.calm
+        self.looks = [
+            b.place(f"cell.supervisor.looks at {c.file}", b.unit)
+            for c in looked
+            if c not in self.late
+        ]
+        b.begin(self.looks[0] if self.looks else self.reads, b.dot)
         for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True):
             self._transition(t, owner)
         self._publishing()
@@ -364,7 +388,8 @@ class _Composer:
         *arcs: Arc,
         guards: Sequence[core.Exp] = (),
     ) -> int:
-        arcs = (*arcs, self.b.absent(self.stopped))
+        if not self.is_loose or any(a.place == self.stopped for a in arcs):
+            arcs = (*arcs, self.b.absent(self.stopped))
         self.b.transition(f"cell.{name}", arcs, priority=priority, guards=guards)
         self.step_owner.append(owner)
         return len(self.partition.net.transitions) + len(self.step_owner) - 1
@@ -391,7 +416,8 @@ class _Composer:
         taken = [a.place for a in t.arcs if a.kind is ArcKind.INPUT]
         arcs = [self._off(own[place]) for place in taken for own in flags if place in own]
         arcs += [self._has(self.calm)] if owner == SUPERVISOR else self._goes_on()
-        arcs.append(self.b.absent(self.stopped))
+        if not self.is_loose:
+            arcs.append(self.b.absent(self.stopped))
         self.b.add_arcs(t.index, arcs, {})
 
     def _owing(self) -> Iterator[tuple[int, int]]:
@@ -460,17 +486,43 @@ class _Composer:
             self._step(c.writer, f"{name} publishes {c.file}", first - i, *arcs)
 
     def _reading(self) -> None:
-        for i, c in enumerate(self.looked):
-            after = self.looks[i + 1] if i + 1 < len(self.looks) else self.calm
+        looked = [c for c in self.looked if c not in self.late]
+        for c in self.looked:
             seen = self.seen[c.place]
-            found = [self._any(c.place), self.b.absent(seen), self._on(seen), self._on(after)]
+            found = [self._any(c.place), self.b.absent(seen), self._on(seen)]
             found += self._is_there(c.place)
-            here = self._off(self.looks[i])
+            after = self._after(c)
             for more in self._answered(c):
-                idle = self._off(self.idle)
-                self._step(SUPERVISOR, f"sees {c.file}", self.after, idle, *found, *more)
-                self._step(SUPERVISOR, f"sees {c.file} as well", self.after, here, *found, *more)
-            self._step(SUPERVISOR, f"passes {c.file}", self.after + 1, here, self._on(after))
+                into = [self._off(self.idle), self._on(after), *more]
+                self._step(SUPERVISOR, f"sees {c.file}", self.after, *found, *into)
+                into = [self._has(self.reads), *more]
+                if c in looked:
+                    into = [self._off(self.looks[looked.index(c)]), self._on(after), *more]
+                self._step(SUPERVISOR, f"sees {c.file} as well", self.after, *found, *into)
+            if c in looked:
+                at = self._off(self.looks[looked.index(c)])
+                self._step(SUPERVISOR, f"passes {c.file}", self.after + 1, at, self._on(after))
+        if self.late:
+            into = [self._off(self.reads), self._on(self.calm)]
+            self._step(SUPERVISOR, "has looked", self.after, *into)
+
+    def _after(self, c: Channel) -> int:
+        """Where the supervisor is when it has looked at a file."""
+        order = self.looked.index(c)
+        after = (p for p, o in zip(self.looks, self._in_order(), strict=True) if o > order)
+        return next(after, self.reads)
+
+    def _in_order(self) -> list[int]:
+        """The numbers of the files that it looks at one after the other."""
+        return [i for i, c in enumerate(self.looked) if c not in self.late]
+
+    def _may_be_late(self, c: Channel) -> bool:
+        """Whether a message may as well be passed over: its writer could have written it just after the look.
+
+        Who has no other message could, since nobody has seen anything that it has done after that.
+        """
+        others = (o for o in self.partition.channels if c.writer in (o.writer, o.reader))
+        return self.is_loose and all(o is c or o.writer == SUPERVISOR for o in others)
 
     def _stopping(self, owner: int) -> None:
         """A robot whose script finds no transition that fits, and none that waits, stops; or ends owing an answer."""
@@ -493,12 +545,11 @@ class _Composer:
             if program.steps_from(place):
                 short = self.partition.net.places[place].short
                 arcs = [self._any(place), self._on(self.stopped), *self._goes_on()]
-                for between in (self.idle, self.over):
-                    here = self._has(between)
-                    self._step(owner, f"{name} stops at {short}", self.after + 1, *arcs, here)
+                for here in self._between():
+                    self._step(owner, f"{name} stops at {short}", self.after + 1, *arcs, *here)
             elif owner in self.owes:
-                arcs = [self._any(place), self._has(self.owes[owner]), self._has(self.idle)]
-                arcs += [self._on(self.stopped)]
+                arcs = [self._any(place), self._has(self.owes[owner]), self._on(self.stopped)]
+                arcs += [] if self.is_loose else [self._has(self.idle)]
                 self._step(owner, f"{name} {OWING}", self.after + 3, *arcs)
         can_end = not all(map(program.steps_from, program.control))
         for c in self.looked if owner in self.owes and can_end else ():
@@ -506,6 +557,10 @@ class _Composer:
                 arcs = [self._any(c.place), self.b.absent(self.seen[c.place])]
                 made = self._step(owner, f"{name} has answered", self.after + 2, *arcs)
                 self.probes.append(made)
+
+    def _between(self) -> list[list[Arc]]:
+        """More arcs of the step with which the cell stops: the supervisor is between two cycles, or has finished."""
+        return [[]] if self.is_loose else [[self._has(p)] for p in (self.idle, self.over)]
 
     def _doubt(
         self,

@@ -78,13 +78,13 @@ from pn2code.verify.exploring.updates import Accesses, accesses, commute, is_mov
 
 MAGIC = "pn2code-dependency 1"
 MOST_TRANSITIONS = 3000
-_OUTSIDE = (Effect.DRAW, Effect.LOOK, Effect.COUNT)
+OUTSIDE = (Effect.DRAW, Effect.LOOK, Effect.COUNT)
 _LISTED = frozenset({Kind.UNIT, Kind.BOOL, Kind.ENUM, Kind.INT, Kind.INDEX})
 _TAKING = (ArcKind.INPUT, ArcKind.BOTH)
 
 
 @record
-class _Use:
+class Use:
     """What the arcs between a transition and a place do.
 
     Args:
@@ -253,7 +253,7 @@ def check(net: FlatNet, effects: Effects) -> None:
         raise NotPossibleError(f"the net has more than {MOST_TRANSITIONS:,} transitions")
     for t in net.transitions:
         own = effects.of(t.guards, *occurring(t))
-        why = next((e for e in _OUTSIDE if e in own), None)
+        why = next((e for e in OUTSIDE if e in own), None)
         if why is not None:
             raise NotPossibleError(f"transition `{t.name}` {why.value}")
 
@@ -271,7 +271,7 @@ class _Reach:
 class _Touching:
     """The transitions at a place, each with what it does there."""
 
-    uses: dict[int, _Use] = field(default_factory=dict)
+    uses: dict[int, Use] = field(default_factory=dict)
 
     def putting(self) -> Iterator[int]:
         return (t for t, u in self.uses.items() if u.puts)
@@ -287,21 +287,21 @@ class _Relation:
         self.single = [colours(p.colset) == 1 for p in net.places]
         datatypes = net.program.datatypes
         self.signed = [may_hold_reals(p.colset.type, datatypes) for p in net.places]
-        self.uses: list[dict[int, _Use]] = []
+        self.uses: list[dict[int, Use]] = []
         self.at = [_Touching() for _ in net.places]
         self.reach = [_reach(t, effects) for t in net.transitions]
         self.writers = [i for i, r in enumerate(self.reach) if r.writes]
         for t in net.transitions:
-            own: dict[int, _Use] = {}
+            own: dict[int, Use] = {}
             for arc in t.arcs:
-                own.setdefault(arc.place, _Use()).add(arc)
+                own.setdefault(arc.place, Use()).add(arc)
             for p in known.kept[t.index]:
                 own[p].keep()
             self.uses.append(own)
             for p, use in own.items():
                 self.at[p].uses[t.index] = use
         self.accesses: list[dict[int, Accesses]] = [self._accesses(t) for t in net.transitions]
-        self.raises_nothing = [_raises_nothing(t) for t in net.transitions]
+        self.raises_nothing = [raises_nothing(t) for t in net.transitions]
         self.recurring = recurring(self.consumed(), len(net.transitions))
 
     def consumed(self) -> list[list[frozenset[int]]]:
@@ -351,7 +351,7 @@ class _Relation:
         return one is not None and other is not None and commute(one, other)
 
     @staticmethod
-    def _conflicts(mine: _Use, other: _Use, *, is_single: bool) -> bool:
+    def _conflicts(mine: Use, other: Use, *, is_single: bool) -> bool:
         """Whether another one belongs to the set of an enabled one because of a place."""
         if mine.clears or other.clears:
             return True
@@ -455,7 +455,7 @@ def _reach(t: FlatTransition, effects: Effects) -> _Reach:
     )
 
 
-def _raises_nothing(t: FlatTransition) -> bool:
+def raises_nothing(t: FlatTransition) -> bool:
     """Whether no exception is raised while bindings are searched for, whatever the tokens are."""
     drawn = (s.symbol.colset for s in t.plan if isinstance(s, BindAll | BindRandom))
     if not all(c is not None and c.resolved.kind in _LISTED for c in drawn):

@@ -40,6 +40,7 @@ from pn2code.verify.exploring.meanwhile import Meanwhile
 from pn2code.verify.exploring.programs import Generated, Sizes
 from pn2code.verify.exploring.reductions import OF_ELEMENTS, Chosen, possible, refuse
 from pn2code.verify.exploring.result import Exploration
+from pn2code.verify.exploring.turns import Turns
 
 Progress = Callable[[Mapping[str, Any]], None]
 """Is told what the explorer says of itself twice a second: states, arcs, rate, frontier, depth, mib, phase."""
@@ -51,6 +52,7 @@ _TABLES = {
     "--elements": "binding elements",
     "--dependency": "dependencies",
     "--queries": "questions",
+    "--turns": "turns",
 }
 HEAPED = "messages"
 """Why an exploration has ended: a place of `ExploreOptions.heaps` holds more than `MOST_HEAPED` tokens."""
@@ -94,6 +96,7 @@ class ExploreOptions:
         sizes: what the places of the compiled net hold at first; None: what their structure and initial marking say.
         generated: what an exploration of the same net with the same predicates has generated; gets what this one has.
         quick: the space is likely to be small: it is compiled quickly, and better if it turns out to be large.
+        turns: the table by which the programs of a cell are looked at in turns; None: they are not.
         heaps: places that need not be explored with more than `MOST_HEAPED` tokens: what is wrong has been seen then.
         covering: look for a run that shows that a place grows without bound, and end when there is one.
         pace: seconds between two tellings of progress.
@@ -114,6 +117,7 @@ class ExploreOptions:
     sizes: Sizes | None = None
     generated: Generated | None = None
     quick: bool = False
+    turns: Turns | None = None
     heaps: frozenset[int] = frozenset()
     covering: bool = False
     pace: float = 0.5
@@ -240,6 +244,13 @@ def _explored(
                 Origin(str(limits.spill)),
             )
         error = found["error"]
+        if error and error["kind"] == "reduction" and options.turns is not None:
+            d.error(
+                EXPLORER_FAILED,
+                f"the explorer refuses to take turns: {error['message']}",
+                Origin(net.file),
+            )
+            return None
         if error and error["kind"] == "reduction":
             for reduction in set(OF_ELEMENTS).intersection(chosen.reductions):
                 refuse(reduction, error["message"], Origin(net.file), d)
@@ -361,6 +372,7 @@ def _run_with_tables(
         "--elements": chosen.elements.text() if chosen.elements else "",
         "--dependency": chosen.dependency.text() if chosen.dependency else "",
         "--queries": options.questions,
+        "--turns": options.turns.text() if options.turns else "",
     }
     made: list[Path] = []
     arguments = list(arguments)

@@ -12,6 +12,8 @@ from pn2code.base.frozen import frozen
 
 REACHED = ("states", "seconds", "memory")
 """Why an exploration has ended, where it was for a limit."""
+TURNS_FROM = 100_000
+"""States of a cell that are looked at before its programs are looked at in turns; as many as are seen quickly."""
 _LEAST = 64
 _UNKNOWN = 2048
 """MiB, when the system does not say what is free."""
@@ -56,6 +58,9 @@ class Limits:
         graph: whether the graph is analysed (components, home markings, liveness, fairness).
         traces: most dead markings that get a trace.
         reductions: those that are wanted; one that the net does not permit is left out, with a diagnostic.
+        turns_from: states of a cell from which on its programs are looked at in turns, if that keeps what is asked;
+            None: never.
+        most_in_turns: states that are looked at then; None: as many as `max_states` says.
     """
 
     max_states: int | None = None
@@ -69,6 +74,8 @@ class Limits:
     graph: bool = True
     traces: int = 1
     reductions: tuple[Reduction, ...] = ()
+    turns_from: int | None = TURNS_FROM
+    most_in_turns: int | None = None
 
 
 def default_memory() -> int:

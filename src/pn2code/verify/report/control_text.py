@@ -44,7 +44,8 @@ def looked_at(control: Control) -> Iterator[str]:
     if control.why:
         yield f"Looked up: {control.why}."
     elif found is not None:
-        yield f"Checked in the cell as it runs: {found.nodes:,} states, {found.arcs:,} arcs."
+        how = ", of the reduced space (docs/reductions.md)" if control.reduced else ""
+        yield f"Checked in the cell as it runs: {found.nodes:,} states, {found.arcs:,} arcs{how}."
     differing = [*differences(control)]
     yield from (what for _, what in differing)
     if differing:

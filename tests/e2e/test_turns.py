@@ -1,0 +1,189 @@
+"""Programs that are looked at in turns: the same answers in fewer states, and only where turns keep them."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tools.bench.tending import write
+from tools.reduction_cells.bed import judge
+from typer.testing import CliRunner
+
+from helpers.netbuilder import cpn
+from helpers.thorough import amount
+from pn2code.cli import verify as command
+from pn2code.cli.main import app
+
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
+
+CELLS = amount(5, 200)
+FIRST = 700
+"""Of the seeds."""
+
+
+def verified(cell: Path, *options: str) -> dict[str, Any]:
+    """What `verify --json` says."""
+    done = CliRunner().invoke(
+        app, ["verify", str(cell), "--json", "--traces", str(cell / "t"), *options]
+    )
+    found: dict[str, Any] = json.loads(done.stdout)
+    return found
+
+
+def answers(found: dict[str, Any]) -> list[tuple[str, str, Any]]:
+    """Of the checks, without numbers of states."""
+    rows = [
+        (c["check"], c["answer"], c["value"] if c["check"] != "non-blocking" else None)
+        for c in found["controller"]
+    ]
+    return rows + [(m["check"], m["answer"], None) for m in found["medium"]]
+
+
+def test_a_large_cell_has_the_same_answers_in_fewer_states(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cell = write(tmp_path / "cell", 2)
+    monkeypatch.setattr(command, "TURNS_FROM", 500)
+    reduced, whole = verified(cell), verified(cell, "--no-reduction")
+    assert answers(reduced) == answers(whole)
+    assert reduced["cell"]["reduced"] is reduced["medium"][0]["reduced"] is True
+    assert whole["cell"]["reduced"] is whole["medium"][0]["reduced"] is False
+    assert reduced["cell"]["states"] * 2 < whole["cell"]["states"]
+    assert reduced["medium"][0]["nodes"] * 3 < whole["medium"][0]["nodes"] * 2
+    for member in ("bounds", "dead_transitions"):
+        assert reduced["cell"][member] == whole["cell"][member]
+    by_name = {c["check"]: c for c in reduced["controller"]}
+    assert any("in turns" in x for x in by_name["non-blocking"]["assumes"])
+    assert not any("in turns" in x for c in whole["controller"] for x in c["assumes"])
+
+
+CELL = """[net]
+file = "cell.cpn"
+[supervisor]
+instance = "Supervisor"
+final = ["Finished"]
+order = "documented"
+"""
+
+
+def small(device: str, supervisor: str = "") -> tuple[str, str]:
+    """A supervisor that asks two devices once, and waits for both."""
+    text = "net cell\n  standard\n  var k: INT;\n  page Top\n"
+    names = ("A", "B")
+    text += "".join(f"    place to{x} : INT\n    place from{x} : INT\n" for x in names)
+    ports = ", ".join(f"to{x} -> to{x}, from{x} -> from{x}" for x in names)
+    text += f"    subst Supervisor = Sup ({ports})\n"
+    text += "".join(f"    subst {x} = Page{x} (ask -> to{x}, say -> from{x})\n" for x in names)
+    text += "  page Sup\n"
+    for x in names:
+        text += f"    place to{x} port out : INT\n    place from{x} port in : INT\n"
+    text += "    place Ready = 1\n    place Asked\n    place Finished\n"
+    text += "    trans Ask\n      in Ready : ()\n      out Asked : ()\n"
+    text += "      out toA : 1\n      out toB : 1\n"
+    text += "    trans Hear\n      in Asked : ()\n      in fromA : k\n      in fromB : 1\n"
+    text += "      out Finished : ()\n" + supervisor
+    for x in names:
+        text += f"  page Page{x}\n    place ask port in : INT\n    place say port out : INT\n"
+        text += "    place Waiting = 1\n    place Told : INT\n    place Done : INT\n"
+        text += "    trans Accept\n      in Waiting : ()\n      in ask : k\n      out Told : k\n"
+        text += device
+    toml = CELL
+    for x in names:
+        for c in (f"to{x}", f"from{x}"):
+            toml += f'[[channel]]\nplace = "{c}"\nfile = "{c}.txt"\nkind = "flag"\n'
+    return text, toml + "".join(f'[devices.{x}]\ninstance = "{x}"\n' for x in names)
+
+
+WORKS = """    trans Work
+      in Told : k
+      out Done : k
+    trans Say
+      in Done : k
+      out Waiting : ()
+      out say : k
+"""
+STOPS = """    trans Work guard [k = 2]
+      in Told : k
+      out Done : k
+    trans Say
+      in Done : k
+      out Waiting : ()
+      out say : k
+"""
+ROUND = """    trans Work
+      in Told : k
+      out Done : k
+    trans Back code action act ()
+      in Done : k
+      out Told : k
+    trans Say
+      in Done : k
+      out Waiting : ()
+      out say : k
+"""
+TWICE = """    trans Again
+      in Asked : ()
+      out Asked : ()
+      out toA : 1
+"""
+
+
+@pytest.mark.parametrize(
+    ("device", "supervisor", "reduced", "answer"),
+    [
+        (WORKS, "", True, "yes"),
+        (STOPS, "", False, "no"),  # a script stops
+        (WORKS.replace("out say : k", "out say : 2"), "", False, "no"),  # a deadlock
+        (WORKS, TWICE, False, None),  # a channel holds two messages
+    ],
+)
+def test_only_what_is_all_good_is_said_in_turns(
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    device: str,
+    supervisor: str,
+    reduced: bool,
+    answer: str | None,
+) -> None:
+    net, toml = small(device, supervisor)
+    (tmp_path / "cell.cpn").write_bytes(cpn(net))
+    (tmp_path / "cell.toml").write_text(toml, encoding="utf-8")
+    monkeypatch.setattr(command, "TURNS_FROM", 1)
+    found = verified(tmp_path, "--max-states", "3000")
+    whole = verified(tmp_path, "--max-states", "3000", "--no-reduction")
+    assert found["cell"]["reduced"] is reduced
+    assert answers(found) == answers(whole)
+    by_name = {c["check"]: c["answer"] for c in found["controller"]}
+    assert answer is None or by_name["non-blocking"] == answer
+
+
+def test_what_goes_round_is_looked_at_as_a_whole(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    net, toml = small(ROUND)
+    net = net.replace("  var k: INT;", "  fun act () = ();\n  var k: INT;")
+    toml += '[primitives]\nact = { command = "tool", action = "act", duration_s = 0.5 }\n'
+    (tmp_path / "cell.cpn").write_bytes(cpn(net))
+    (tmp_path / "cell.toml").write_text(toml, encoding="utf-8")
+    monkeypatch.setattr(command, "TURNS_FROM", 1)
+    found = verified(tmp_path)
+    assert found["cell"]["reduced"] is False
+    assert answers(found) == answers(verified(tmp_path, "--no-reduction"))
+
+
+def test_random_cells(tmp_path: Path) -> None:
+    counts: Counter[str] = Counter()
+    shown: set[str] = set()
+    for seed in range(FIRST, FIRST + CELLS):
+        folder = tmp_path / str(seed)
+        folder.mkdir()
+        verdict = judge(seed, folder, mutants=True, wants_medium=seed % 4 == 0)
+        assert not verdict.wrong, (seed, verdict.wrong)
+        counts.update(verdict.counts)
+        shown |= verdict.shown
+    assert counts["checks in turns"] > 0
+    assert counts["states in turns"] < counts["states"]
+    assert "what is disabled stays so" in shown

@@ -1,0 +1,273 @@
+"""One random cell: what turns say of it, held against the whole space, in three ways.
+
+* *the net of turns*: looked at in turns, and as a whole. If the former has no cycle the latter has none; it has as many
+  dead states, each place holds the same, the same transitions occur, the same needs memory, an exception is raised in
+  both or in none, and what is asked about single places, groups and orders has the same answers.
+* *the checks of the supervisor*: with turns and without, wherever turns say anything.
+* *the medium*: the same.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from random import Random
+from typing import Any
+
+from tools.adversary.cells import random_cell as adversary_cell
+from tools.reduction_cells.flows import flow
+from tools.reduction_cells.mutants import MUTANTS, NO_GROUPS, RASH
+
+from helpers.netbuilder import cpn
+from helpers.random_cells import random_cell
+from pn2code.arms import Arms
+from pn2code.cell.divide import divide
+from pn2code.cell.partition import Partition
+from pn2code.channel_model import check as medium
+from pn2code.channel_model.rules import Rules
+from pn2code.cli.nets import open_net
+from pn2code.diagnostics import Diagnostics
+from pn2code.verdict.opened import OpenNet
+from pn2code.verify.controller import by_turns, control
+from pn2code.verify.controller.control_types import Control, Plan
+from pn2code.verify.controller.premises import Premises
+from pn2code.verify.controller.running import NotModelledError, Running
+from pn2code.verify.exploring.explore import ExploreOptions, explore
+from pn2code.verify.exploring.limits import Limits
+from pn2code.verify.exploring.programs import Generated, Sizes
+from pn2code.verify.exploring.result import Exploration
+from pn2code.verify.exploring.turns import Turns
+
+MOST = 40_000
+"""States of a cell; larger ones are left out."""
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What came of a cell: what is wrong, which mutants it shows, and counts."""
+
+    wrong: tuple[str, ...]
+    shown: frozenset[str]
+    counts: Counter[str]
+
+
+def make(seed: int, folder: Path) -> None:
+    """The files of a cell of one of three families."""
+    r = Random(seed)
+    family = r.random()
+    inputs: tuple[tuple[str, str], ...] = ()
+    if family < 0.6:
+        net, toml = flow(r)
+    elif family < 0.75:
+        net, toml = random_cell(r)
+    else:
+        cell = adversary_cell(r)
+        net, toml, inputs = cell.net, cell.toml, cell.inputs
+    (folder / "cell.cpn").write_bytes(cpn(net))
+    (folder / "cell.toml").write_text(toml, encoding="utf-8")
+    for name, text in inputs:
+        (folder / name).write_text(text, encoding="utf-8")
+
+
+class _Cell:
+    def __init__(self, opened: OpenNet, partition: Partition) -> None:
+        self.opened, self.partition = opened, partition
+        assert opened.config is not None
+        self.plan = Plan(
+            storage=opened.storage,
+            order_decides=True,
+            options=ExploreOptions(quick=True),
+            premises=Premises.of(partition, opened.config, {}),
+            primitives=opened.config.primitives,
+            arms=Arms.of(opened.config, Diagnostics()),
+        )
+
+    def checked(self, turns_from: int | None) -> Control | None:
+        """The checks of the supervisor."""
+        limits = Limits(max_states=MOST, threads=1, traces=0, turns_from=turns_from)
+        return control.examine(self.partition, self.plan, limits, Diagnostics())
+
+    def medium(self, turns_from: int | None) -> medium.Answer:
+        """That of its medium."""
+        limits = Limits(max_states=MOST, threads=1, traces=0, turns_from=turns_from)
+        run = medium.Run(limits, Diagnostics(), ExploreOptions(quick=True))
+        return medium.whole(self.partition, self.opened.storage, run, Rules())
+
+
+class _Space:
+    """The net of turns, explored in several ways by one program."""
+
+    def __init__(self, cell: _Cell, running: Running, *, first: bool) -> None:
+        self.cell, self.running = cell, running
+        self.made = Generated()
+        self.questions = (
+            control.of_cell(running, cell.plan, in_turns=True)
+            if first
+            else control.of_orders(running, cell.plan.firings, in_turns=True)
+        )
+
+    def explored(self, table: Turns | None) -> Exploration | None:
+        """With the table, or as a whole."""
+        options = ExploreOptions(
+            turns=table,
+            generated=self.made,
+            sizes=self.made.sizes or Sizes.start(self.running.net, self.cell.plan.storage),
+            questions=self.questions,
+            quick=True,
+        )
+        limits = Limits(max_states=MOST, threads=1, traces=0)
+        return explore(self.running.net, self.cell.plan.storage, limits, Diagnostics(), options)
+
+    def asked(self) -> list[str]:
+        """The kinds of the questions."""
+        lines = self.questions.split("\n")
+        return [line.split()[1] for line in lines if line.startswith("? ")]
+
+
+def differences(
+    space: _Space, whole: Exploration, reduced: Exploration, *, is_rash: bool = False
+) -> Iterator[str]:
+    """What turns should keep, and do not; `is_rash`: also where there is a cycle."""
+    if (reduced.error is None) != (whole.error is None):
+        yield f"an exception: {reduced.error} / {whole.error}"
+    if reduced.error is not None or whole.error is not None:
+        return
+    rows = list(zip(space.asked(), reduced.answers, whole.answers, strict=True))
+    endless = [(a["answer"], b["answer"]) for kind, a, b in rows if kind == "restless"]
+    if any(a == "no" for a, _ in endless) and not is_rash:
+        return  # a cycle: nothing is said
+    if not is_rash and any(b == "no" for _, b in endless):
+        yield "the whole space has a cycle"
+        return
+    for number, (kind, a, b) in enumerate(rows):
+        is_same = a["answer"] == b["answer"] and (
+            kind not in ("bound", "bounded-response") or a["value"] == b["value"]
+        )
+        if not is_same:
+            yield f"question {number}, {kind}: {_short(a)} / {_short(b)}"
+    yield from found_differences(reduced, whole)
+
+
+def _short(row: Mapping[str, Any]) -> str:
+    return f"{row['answer']} {row.get('value')}"
+
+
+def found_differences(
+    reduced: Exploration, whole: Exploration, places: int | None = None
+) -> Iterator[str]:
+    """Of two spaces what does not depend on questions."""
+    if places is None and reduced.dead_count != whole.dead_count:
+        yield f"dead states: {reduced.dead_count} / {whole.dead_count}"
+    one, other = reduced.bounds or (), whole.bounds or ()
+    for p, (a, b) in enumerate(zip(one, other, strict=False)):
+        if a != b and (places is None or p < places):
+            yield f"bounds of place {p}: {a} / {b}"
+    if places is None:
+        if reduced.dead_transitions() != whole.dead_transitions():
+            yield "transitions that never occur"
+        if reduced.arena != whole.arena:
+            yield f"memory: {reduced.arena} / {whole.arena}"
+
+
+def judge(seed: int, folder: Path, *, mutants: bool, wants_medium: bool) -> Verdict:
+    """Makes a cell, and compares."""
+    make(seed, folder)
+    d = Diagnostics()
+    opened = open_net(folder, {}, warnings=d)
+    partition = divide(opened.flat, opened.config, d) if opened.config is not None else None
+    if partition is None or d.has_errors:
+        return Verdict((), frozenset(), Counter(["refused"]))
+    if opened.flat.timed:
+        return Verdict((), frozenset(), Counter(["timed"]))
+    cell = _Cell(opened, partition)
+    try:
+        loose = by_turns.loosened(partition)
+    except NotModelledError:
+        return Verdict((), frozenset(), Counter(["not modelled"]))
+    if loose is None:
+        return Verdict((), frozenset(), Counter(["no turns"]))
+    running, table = loose
+    counts: Counter[str] = Counter(["cells"])
+    wrong: list[str] = []
+    shown: set[str] = set()
+    for first in (True, False):
+        space = _Space(cell, running, first=first)
+        whole = space.explored(None)
+        if whole is None or not (whole.complete or whole.error):
+            counts["too large"] += 1
+            continue
+        reduced = space.explored(table)
+        if reduced is None or not (reduced.complete or reduced.error):
+            wrong.append("turns do not end")
+            continue
+        counts["states"] += whole.nodes
+        counts["states in turns"] += reduced.nodes
+        counts["smaller"] += reduced.nodes < whole.nodes
+        counts["no cycle"] += all(
+            row["answer"] != "no"
+            for kind, row in zip(space.asked(), reduced.answers, strict=False)
+            if kind == "restless"
+        )
+        wrong += [f"first {first}: {x}" for x in differences(space, whole, reduced)]
+        if mutants:
+            shown |= set(_shown(space, table, whole, reduced))
+    wrong += _of_checks(cell, counts)
+    if wants_medium:
+        wrong += _of_medium(cell, counts)
+    return Verdict(tuple(wrong), frozenset(shown), counts)
+
+
+def _shown(space: _Space, table: Turns, whole: Exploration, reduced: Exploration) -> Iterator[str]:
+    """Mutants that are noticed."""
+    others = {name: mutant(table) for name, mutant in MUTANTS.items()}
+    others[NO_GROUPS] = by_turns.table_of(space.running, [])
+    for name, other in others.items():
+        found = space.explored(other)
+        if found is None or any(differences(space, whole, found)):
+            yield name
+    if any(differences(space, whole, reduced, is_rash=True)):
+        yield RASH
+
+
+def _of_checks(cell: _Cell, counts: Counter[str]) -> Iterator[str]:
+    reduced = cell.checked(1)
+    if reduced is None or not reduced.reduced or reduced.found is None:
+        counts["checks of the whole"] += 1
+        return
+    counts["checks in turns"] += 1
+    whole = cell.checked(None)
+    if whole is None or whole.found is None:
+        yield "the whole cannot be checked"
+        return
+    if not whole.found.complete:
+        counts["only in turns"] += 1
+        return
+    for a, b in zip(reduced.checks, whole.checks, strict=True):
+        mine = (a.name, a.answer, a.is_accepted, None if a.name in _SIZES else a.value)
+        other = (b.name, b.answer, b.is_accepted, None if b.name in _SIZES else b.value)
+        if mine != other:
+            yield f"check: {mine} / {other}: {a.says} / {b.says}"
+    places = len(cell.partition.net.places)
+    yield from found_differences(reduced.found, whole.found, places)
+
+
+_SIZES = ("non-blocking", "confluence")
+"""Checks of which the value is a number of states, or of steps of one run."""
+
+
+def _of_medium(cell: _Cell, counts: Counter[str]) -> Iterator[str]:
+    reduced = cell.medium(1)
+    if not reduced.reduced:
+        counts["medium of the whole"] += 1
+        return
+    counts["medium in turns"] += 1
+    whole = cell.medium(None)
+    if whole.answer == "inconclusive":
+        counts["medium only in turns"] += 1
+    elif whole.answer != "yes":
+        yield f"medium: {whole.answer} {whole.why}"
+    else:
+        counts["medium states"] += whole.nodes
+        counts["medium states in turns"] += reduced.nodes
