@@ -1,4 +1,4 @@
-"""Explorers of the tests are compiled by `tcc`, where it is installed: ten times as fast as by gcc without optimization.
+"""Explorers of the tests are compiled by `tcc`, where it is there: ten times as fast as by gcc without optimization.
 
 Only the net, and only where nothing but its answers is looked at. What `tcc` does not accept is compiled as usual,
 which also says what is wrong with it. That C compiles without warnings is looked at elsewhere (`helpers.compiled`).
