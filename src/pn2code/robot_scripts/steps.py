@@ -40,9 +40,9 @@ from pn2code.robot_scripts.values import (
     Closure,
     Env,
     Fields,
-    Leaf,
     Rec,
     Scalar,
+    ScalarShape,
     Shape,
     UnsupportedError,
     Value,
@@ -112,7 +112,7 @@ class StepTranslator:
     """Translates transitions.
 
     Args:
-        place_names: the variables of a local place, in order of its leaves.
+        place_names: the variables of a local place, in order of its scalars.
         shapes: shapes of places.
         file_names: names of the files of channel places.
         sensors: net variable -> the sensor that decides it.
@@ -171,10 +171,10 @@ class StepTranslator:
                     order.of_equation(i), self._matched(bind.pattern, value, env, given), owed
                 )
             elif isinstance(bind, BindAll | BindRandom) and bind.symbol.uid not in env:
-                sensor, name, leaf = self._sensor(bind.symbol, step, avoid)
+                sensor, name, scalar = self._sensor(bind.symbol, step, avoid)
                 avoid.add(name)
                 sensed.append((bind.symbol, sensor, name))
-                env[bind.symbol.uid] = Scalar(t.Name(name), leaf.type)
+                env[bind.symbol.uid] = Scalar(t.Name(name), scalar.type)
         for place, term, arc, _ in ordered:
             if term.pattern is None:
                 value, owed = self.pure.owing(term.value, env)
@@ -242,7 +242,7 @@ class StepTranslator:
             known = known.with_condition(c)
         return tuple(early), tuple(rest)
 
-    def _sensor(self, symbol: Symbol, step: Step, avoid: set[str]) -> tuple[str, str, Leaf]:
+    def _sensor(self, symbol: Symbol, step: Step, avoid: set[str]) -> tuple[str, str, ScalarShape]:
         """The sensor that decides a free variable, the script's variable for it, and its type."""
         sensor = self.sensors.get(symbol.name)
         if sensor is None:
@@ -254,7 +254,7 @@ class StepTranslator:
             )
         assert symbol.colset is not None
         shape = shape_of_colset(symbol.colset, self.pure.program, self.storage)
-        if not isinstance(shape, Leaf) or shape.type is tdl.Type.POSE:
+        if not isinstance(shape, ScalarShape) or shape.type is tdl.Type.POSE:
             raise UnsupportedError(
                 f"sensor `{sensor}` decides `{symbol.name}` of colour set `{symbol.colset.name}`, but a "
                 "sensor gives one number, truth value or text",
@@ -376,7 +376,9 @@ class StepTranslator:
                     transition.origin,
                     f"transition {transition.short} ({transition.id})",
                 )
-                (target,) = self.names.shared([output], Leaf(tdl.Type.POSE), element, self._taken)
+                (target,) = self.names.shared(
+                    [output], ScalarShape(tdl.Type.POSE), element, self._taken
+                )
                 self._taken = self._taken | {target}
                 self._nodes.append(Line(t.Measure(argument.exp, t.Target(target))))
                 return Scalar(t.Name(target), tdl.Type.POSE)
@@ -542,14 +544,14 @@ class StepTranslator:
                 continue
             shape = self.shapes[place]
             value = self.pure.evaluate(exp, env) if shape != Fields(()) else Rec(())
-            leaves = flatten(value, shape, exp.span)
+            scalars = flatten(value, shape, exp.span)
             if place in self.machine.channels:
                 target = t.Target(self.file_names[place])
-                line = Line(t.Write(target, tuple(x.exp for x in leaves)))
+                line = Line(t.Write(target, tuple(x.exp for x in scalars)))
                 writes.append((order[place], line))
             else:
                 names = self.place_names[place]
-                assignments += zip(names, (x.exp for x in leaves), strict=True)
+                assignments += zip(names, (x.exp for x in scalars), strict=True)
         writes.sort(key=lambda w: w[0])
         waits = self._wait(situation, outcome, env)
         return [*(w for _, w in writes), *waits, *self._assign(assignments, situation)]
@@ -612,7 +614,7 @@ class StepTranslator:
                     f"transition {transition.short} ({transition.id})",
                 )
                 (aside,) = self.names.shared(
-                    [f"{name}_before"], Leaf(kind.type, kind.single), element
+                    [f"{name}_before"], ScalarShape(kind.type, kind.single), element
                 )
                 out.append(Line(t.Assign(t.Target(aside), t.Name(name))))
                 pending = [
