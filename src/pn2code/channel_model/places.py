@@ -1,4 +1,4 @@
-"""The places of a cell's medium: of its channels, of its parties; what both parts of the composition build with."""
+"""The places of a cell's channel model: of channels and parties; what both parts of the composition build with."""
 
 from __future__ import annotations
 
@@ -78,13 +78,13 @@ class Side:
 
 
 @frozen
-class MediumNet:
+class ChannelModel:
     """The net, and what is needed to understand its runs.
 
     Args:
         verdict: the place of the verdict; `ending`: the transition that ends a run with one.
         ends: transitions that are enabled where all have come to an end.
-        says: what each transition of the medium does, in words.
+        says: what each transition of the channel model does, in words.
         files, sides: the places of channels and owners.
     """
 
@@ -156,7 +156,7 @@ class Parts:
     def step(
         self, name: str, says: str, *arcs: Arc, at: int | None = None, guard: Exp | None = None
     ) -> None:
-        """A transition of the medium, by default a step that others may see."""
+        """A transition of the channel model, by default a step that others may see."""
         made = self.b.transition(
             f"medium.{name}",
             arcs,

@@ -103,8 +103,8 @@ def full(said: Said) -> str:
             goal = f"marking {found.error_trace.node}, in which an exception is raised"
             way = _told(said, found.error_trace, goal)
             parts.append(f"{way}\n  then {error_text(net, found)}")
-    if said.medium:
-        parts.append(channel_model.told(said.medium))
+    if said.channel_model:
+        parts.append(channel_model.told(said.channel_model))
     return "\n\n\n".join([*parts, closing(said)])
 
 
@@ -338,7 +338,7 @@ def _items(said: Said) -> Iterator[_Item]:
         yield _Item(
             TITLES[check.name], check.kind, check.says, file, loop=loop, is_deadlock=is_deadlock
         )
-    for m in said.medium:
+    for m in said.channel_model:
         kind = {"yes": "good", "no": "bad"}.get(m.answer, "open")
         lines = next((tuple(e.lines) for e in m.evidence), ())
         says = {"open": f"not known: {m.why}", "bad": channel_model.shown(m)}.get(kind, m.says)
@@ -359,11 +359,11 @@ def _groups(said: Said) -> tuple[tuple[str, Sequence[str], Sequence[str | None]]
     """For each kind of question: its name, how the answers came out, what they rest on."""
     items = list(_items(said))
     checks = said.control.checks if said.control else ()
-    first, second = len(checks), len(checks) + len(said.medium)
+    first, second = len(checks), len(checks) + len(said.channel_model)
     kinds = [i.kind for i in items]
     return (
         (_TITLES[0], kinds[:first], [c.rests_on for c in checks]),
-        (_TITLES[1], kinds[first:second], [m.rests_on for m in said.medium]),
+        (_TITLES[1], kinds[first:second], [m.rests_on for m in said.channel_model]),
         (_TITLES[2], kinds[second:], [a.rests_on for a in said.answers]),
     )
 
