@@ -194,7 +194,7 @@ class NoArms:
 
     robots = frozenset({"robot1"})
 
-    def obstacle(self, robot: str, command: object) -> str:
+    def why_unreachable(self, robot: str, command: object) -> str:
         return f"{robot} cannot"
 
 

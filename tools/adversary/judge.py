@@ -119,9 +119,9 @@ def markings(
             game.set_time(
                 max(game.marking.time, line["t"] + 1e-6)
             )  # rounded as the supervisor does
-        obstacle = game.why_disabled(game.marking, element, priorities=False)
-        if obstacle is not None:
-            return f"{t.name}: {obstacle}"
+        why = game.why_disabled(game.marking, element, priorities=False)
+        if why is not None:
+            return f"{t.name}: {why}"
         try:
             game.marking, _ = game.occur(game.marking, element)
         except GameError as error:

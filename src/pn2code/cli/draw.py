@@ -11,7 +11,7 @@ import typer
 
 from pn2code.base.os_reason import os_reason
 from pn2code.base.whole_file import whole_file
-from pn2code.base.writable import file_obstacle, folder_obstacle
+from pn2code.base.writable import why_file_unwritable, why_folder_unwritable
 from pn2code.cell.codes import INPUT_MISSING
 from pn2code.cell.locate import locate
 from pn2code.cli.options import (
@@ -182,7 +182,11 @@ def _check_output(output: Path, kind: str, form: Format) -> None:
     if kind == "-":
         return
     is_folder = kind == "folder"
-    why = folder_obstacle(output) if is_folder else file_obstacle(output, makes_folders=True)
+    why = (
+        why_folder_unwritable(output)
+        if is_folder
+        else why_file_unwritable(output, makes_folders=True)
+    )
     if why:
         hint = "give another file or folder with -o"
         _refuse(DRAW_OUTPUT, f"cannot write `{output}`: {why}", hint, form)

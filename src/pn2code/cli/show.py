@@ -11,7 +11,7 @@ import typer
 
 from pn2code.base.os_reason import os_reason
 from pn2code.base.progress_line import Line
-from pn2code.base.writable import file_obstacle
+from pn2code.base.writable import why_file_unwritable
 from pn2code.cli.options import (
     OUTPUT_FLAGS,
     Exit,
@@ -83,7 +83,7 @@ def show(
     from pn2code.replay.page import page
 
     for path in (output, *([description] if description else [])):
-        if why := file_obstacle(path, makes_folders=True):
+        if why := why_file_unwritable(path, makes_folders=True):
             _refuse(f"cannot write `{path}`: {why}", "give another file with -o", form)
     values = parse_values(settings)
     shown = _described(run, net, values, steps, files, form)

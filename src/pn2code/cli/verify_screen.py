@@ -124,7 +124,7 @@ def _end(said: Said, file: Path, is_deadlock: bool) -> list[str]:
         game, played = play(said.net, said.storage, file)
         if sum(1 for _ in islice(played, MOST_STEPS)) == MOST_STEPS:
             return []
-        return _after(_obstacles(said, game, is_deadlock))
+        return _after(_why_disabled(said, game, is_deadlock))
     except (TraceRefusedError, GameError, OSError):
         return []  # the run is told above, with what is wrong with it
 
@@ -133,7 +133,7 @@ def _after(why: Sequence[str]) -> list[str]:
     return ["  After that nothing can occur:", *(f"    {x}" for x in why)] if why else []
 
 
-def _obstacles(said: Said, game: Game, is_deadlock: bool, most: int | None = None) -> list[str]:
+def _why_disabled(said: Said, game: Game, is_deadlock: bool, most: int | None = None) -> list[str]:
     """What each program waits for, then which transitions are nearest to occurring and what they lack.
 
     A transition that lacks messages alone is not named again where it is said what its program waits for.
@@ -491,7 +491,7 @@ def _last(
                 shown = _recorded(said, file)
             elif loop is None:
                 with suppress(GameError):  # an inscription raises an exception there
-                    why = _obstacles(
+                    why = _why_disabled(
                         said, game, is_deadlock, max(most - LEAST_STEPS - 1, LEAST_WHY)
                     )
     except TimeIsOverError:

@@ -293,11 +293,11 @@ class ReferenceRun:
                     f"it says time {step.time}, but the clock shows {game.marking.time}", step.line
                 )
             element = BindingElement.make(step.transition, step.bound)
-            obstacle = game.why_disabled(game.marking, element)
+            reason = game.why_disabled(game.marking, element)
         except GameError as error:
             return self._fail(error, step.transition)
-        if obstacle is not None:
-            return self._refuse(f"`{step.transition.name}` is not enabled: {obstacle}", step.line)
+        if reason is not None:
+            return self._refuse(f"`{step.transition.name}` is not enabled: {reason}", step.line)
         why = self.fire(element)
         return why or self._compare_outputs(step)
 

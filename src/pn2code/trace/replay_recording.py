@@ -353,7 +353,7 @@ class _Follower:
             count += 1
             yield after
         if not count:
-            raise _Refused(reason or self.obstacle(state, t, step))
+            raise _Refused(reason or self.why_disabled(state, t, step))
 
     def check_names(self, t: FlatTransition, step: RecordedStep) -> None:
         ours = {s.name for s in t.variables}
@@ -459,7 +459,7 @@ class _Follower:
         binding = self.read(t, step)
         self.game.evaluator.now = state.marking.time
         if not self.vague(unknown, t.guards):
-            reason = enabling.guard_obstacle(t, binding)
+            reason = enabling.why_guard_fails(t, binding)
             if reason:
                 raise _Refused(reason)
         marking = state.marking
@@ -492,7 +492,7 @@ class _Follower:
             raise _Refused(f"`{symbol.name}` = {_line(text)} is no value of `{symbol.colset.name}`")
         return value
 
-    def obstacle(self, state: State, t: FlatTransition, step: RecordedStep) -> str:
+    def why_disabled(self, state: State, t: FlatTransition, step: RecordedStep) -> str:
         """Why a binding is not enabled, in words."""
         element = BindingElement.make(t, self.read(t, step))
         found = self.game.why_disabled(state.marking, element)
