@@ -119,7 +119,7 @@ def draw(
         stop(d, form)
     pages = _chosen(document, page, form)
     state: State | None = None
-    moments: list[TraceFrame] = []
+    frames: list[TraceFrame] = []
     chosen = last = 0
     storage = config.storage if config else {}
     if step is not None and trace is None:
@@ -139,15 +139,15 @@ def draw(
     if flat is not None and not d.has_errors:
         if trace is not None:
             around = _AROUND if kind == "html" else 0
-            moments, chosen, last = _moments(flat, storage, trace, step, around, form)
-            state = next(m.state for m in moments if m.number == chosen)
+            frames, chosen, last = _frames(flat, storage, trace, step, around, form)
+            state = next(m.state for m in frames if m.number == chosen)
         elif marking:
             state = _state(flat, storage, seed, form)
     if instance is not None:
         _check_instance(state, pages, instance, form)
     drawing = _Drawing(document, pages, _problems(d), state, instance)
-    if kind == "html" and moments:
-        _write({Path(output): drawing.steps(path, moments, chosen, last, trace)}, form)
+    if kind == "html" and frames:
+        _write({Path(output): drawing.steps(path, frames, chosen, last, trace)}, form)
     elif kind == "html":
         _write({Path(output): drawing.html(path)}, form)
     elif kind == "folder":
@@ -244,7 +244,7 @@ def _state(flat: FlatNet, storage: Mapping[str, str], seed: int, form: Format) -
         return State(flat, marking, enabled_in(game, marking))
 
 
-def _moments(
+def _frames(
     flat: FlatNet,
     storage: Mapping[str, str],
     trace: Path,
@@ -348,14 +348,14 @@ class _Drawing:
         return draw_net(shown, Facts(path.name, remark, self.base.problems), figures)
 
     def steps(
-        self, path: Path, moments: list[TraceFrame], chosen: int, last: int, trace: Path | None
+        self, path: Path, frames: list[TraceFrame], chosen: int, last: int, trace: Path | None
     ) -> str:
         """One HTML file with the steps of a trace."""
         from pn2code.verify.answers.lasso import read_loop
         from pn2code.verify.report.steps_page import steps_page
 
         loop = None if trace is None else read_loop(trace)
-        return steps_page(self.document, self.pages, moments, chosen, last, path.name, loop)
+        return steps_page(self.document, self.pages, frames, chosen, last, path.name, loop)
 
     def note_arranged(self, d: Diagnostics) -> None:
         """A note for each page whose positions are ours."""
