@@ -101,8 +101,8 @@ def full(said: Said) -> str:
             parts.append(_told(said, trace, f"the dead marking {trace.node}"))
         if found.error_trace is not None:
             goal = f"marking {found.error_trace.node}, in which an exception is raised"
-            way = _told(said, found.error_trace, goal)
-            parts.append(f"{way}\n  then {error_text(net, found)}")
+            path = _told(said, found.error_trace, goal)
+            parts.append(f"{path}\n  then {error_text(net, found)}")
     if said.channel_model:
         parts.append(channel_model.told(said.channel_model))
     return "\n\n\n".join([*parts, closing(said)])
@@ -208,9 +208,9 @@ def screen(said: Said) -> str:
         room = MOST_LINES - len(lines) - len(end) - 1 - kept
         lines += ["", *_wrong(wrong, room)]
     room = MOST_LINES - len(lines) - len(end) - 1
-    way = _way(said, wrong, room)
-    if way:
-        lines += ["", *way]
+    path = _path_lines(said, wrong, room)
+    if path:
+        lines += ["", *path]
     return "\n".join([*lines, *end])
 
 
@@ -445,7 +445,7 @@ def _names_of(wrong: Sequence[_Item]) -> list[str]:
     return lines
 
 
-def _way(said: Said, wrong: Sequence[_Item], room: int) -> list[str]:
+def _path_lines(said: Said, wrong: Sequence[_Item], room: int) -> list[str]:
     """The last steps of one run: of the exception, of the first failure, or to the first dead marking."""
     found = said.found
     # Where there is no room for the least of a run, the screen is longer.
