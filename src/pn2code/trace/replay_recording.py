@@ -51,7 +51,7 @@ from pn2code.trace.recording import RecordedStep, Recording, TransitionNames
 
 MOST_STATES = 50
 """States that are carried along; of more, the first are."""
-MOST_WAYS = 4
+MOST_MARKINGS = 4
 """Ways to take the tokens of one binding that are followed."""
 
 
@@ -108,8 +108,8 @@ class State:
 
 
 @frozen
-class _Way:
-    """A way in which a recorded binding is enabled.
+class _EnabledBinding:
+    """A recorded binding that is enabled, and the tokens that it takes.
 
     Args:
         left: the marking without the tokens that are taken.
@@ -342,9 +342,9 @@ class _Follower:
         self.check_priority(state, t)
         reason = ""
         count = 0
-        for way in self.enabled(state, t, step):
+        for enabled in self.enabled(state, t, step):
             try:
-                after = self.occur(state, t, way, step)
+                after = self.occur(state, t, enabled, step)
             except GivenUpError:
                 raise
             except (_Refused, GameError) as refused:
@@ -409,7 +409,9 @@ class _Follower:
             if next(self.game.enabling.enabled(other, state.marking), None) is not None:
                 raise _Refused(f"`{other.name}` has a higher priority and is enabled")
 
-    def enabled(self, state: State, t: FlatTransition, step: RecordedStep) -> Iterator[_Way]:
+    def enabled(
+        self, state: State, t: FlatTransition, step: RecordedStep
+    ) -> Iterator[_EnabledBinding]:
         """The ways in which the recorded binding is enabled."""
         enabling = self.game.enabling
         found = False
@@ -424,20 +426,22 @@ class _Follower:
                 demands = enabling.demands(t, binding)
                 for left in self.plausible(list(alternatives(enabling, state.marking, demands))):
                     found = True
-                    yield _Way(left, state.unknown, binding)
+                    yield _EnabledBinding(left, state.unknown, binding)
         depends = not self.certain(state.unknown, t)
         if depends or (not found and self.lenient and state.unknown.anything):
             yield self.enabled_by_unknown(state, t, step)
 
-    def plausible(self, ways: list[Marking]) -> list[Marking]:
-        """Of the ways to take tokens some with which the recorded final marking can still be reached.
+    def plausible(self, markings: list[Marking]) -> list[Marking]:
+        """Some of the markings that may be left, with which the recorded final marking can still be reached.
 
         Nothing that is put later has a stamp before the present time: what the final marking has of such tokens must
         be there now. Which of the others are taken first makes no difference.
         """
-        if len(ways) == 1:
-            return ways
-        return [m for m in ways if self.holds_final(m)][:MOST_WAYS] or ways[:MOST_WAYS]
+        if len(markings) == 1:
+            return markings
+        return [m for m in markings if self.holds_final(m)][:MOST_MARKINGS] or markings[
+            :MOST_MARKINGS
+        ]
 
     def holds_final(self, marking: Marking) -> bool:
         for place, wanted in self.final_tokens.items():
@@ -452,7 +456,9 @@ class _Follower:
                         return False
         return True
 
-    def enabled_by_unknown(self, state: State, t: FlatTransition, step: RecordedStep) -> _Way:
+    def enabled_by_unknown(
+        self, state: State, t: FlatTransition, step: RecordedStep
+    ) -> _EnabledBinding:
         """As `enabled`, with tokens that are not known: the binding is read from its text."""
         enabling = self.game.enabling
         unknown = state.unknown
@@ -477,7 +483,7 @@ class _Follower:
         left = taken(enabling, self.game.colours, marking, unknown, demands)
         if isinstance(left, Demand):
             raise _Refused(enabling.shortage(marking, left, demands))
-        return _Way(*left, binding, read=True)
+        return _EnabledBinding(*left, binding, read=True)
 
     def read(self, t: FlatTransition, step: RecordedStep) -> dict[Symbol, Value]:
         """The recorded values of the variables that are not outputs of the code segment."""
@@ -500,21 +506,23 @@ class _Follower:
 
     # --- an occurrence -----------------------------------------------------------------------------------
 
-    def occur(self, state: State, t: FlatTransition, way: _Way, step: RecordedStep) -> State:
+    def occur(
+        self, state: State, t: FlatTransition, enabled: _EnabledBinding, step: RecordedStep
+    ) -> State:
         """The state after the occurrence."""
         game = self.game
-        unknown, now = way.unknown, way.left.time
+        unknown, now = enabled.unknown, enabled.left.time
         self.references.restore(state.references)
         game.evaluator.now = now
         action = t.code.action if t.code else None
-        full = {**way.binding, **self.outputs(unknown, t, way.binding, step)}
+        full = {**enabled.binding, **self.outputs(unknown, t, enabled.binding, step)}
         drawn = self.vague(unknown, action)
         # Reals are printed with fewer digits than they have.
-        printed = {s for s in t.variables if self.is_rounded(s)} if way.read or drawn else set()
+        printed = {s for s in t.variables if self.is_rounded(s)} if enabled.read or drawn else set()
         unknown = self.remember(unknown, drawn, action)
         late = unknown.clock or self.vague(unknown, t.delay)
         delay = 0 if late else game.delay(t, full)
-        held = list(way.left.places)
+        held = list(enabled.left.places)
         for arc in t.arcs:
             if arc.inscription is None or arc.kind not in (ArcKind.OUTPUT, ArcKind.BOTH):
                 continue
@@ -541,7 +549,7 @@ class _Follower:
                 held[arc.place] = reset(held[arc.place], now)
                 if unknown.covers(arc.place):
                     unknown = unknown.opened(arc.place)
-        after = replace(way.left, places=tuple(held))
+        after = replace(enabled.left, places=tuple(held))
         path = (state.path, (now, BindingElement.make(t, full)))
         return State(self.game.with_references(after), unknown, self.references.contents(), path)
 
