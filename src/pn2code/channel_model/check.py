@@ -178,7 +178,7 @@ def whole(
     left_out: Sequence[str] = (),
 ) -> Answer:
     """The cell's own net with its medium; no side crashes."""
-    net = compose(partition, rules, Crashes(lives=False))
+    net = compose(partition, rules, Crashes(life_cycle=False))
     assumes = "no side crashes"
     if net.net.timed:
         assumes += (

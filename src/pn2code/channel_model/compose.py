@@ -77,9 +77,9 @@ class Composer(LifeCycle):
         for o in range(len(self.sides)):
             self._publishing(o)
             self._reading(o)
-            if crashes.lives:
+            if crashes.life_cycle:
                 self._stopping(o)
-        if crashes.lives:
+        if crashes.life_cycle:
             self._supervisor()
             for o in range(1, len(self.sides)):
                 self._robot(o)
@@ -424,7 +424,7 @@ class Composer(LifeCycle):
 
     def _rest(self) -> None:
         b = self.b
-        if not self.crashes.lives:
+        if not self.crashes.life_cycle:
             for i, place in enumerate(self.partition.final_places):
                 says = "the supervisor has finished"
                 self.step(f"rest {i + 1}", says, self.has(self.sides[0].calm), self.any(place))

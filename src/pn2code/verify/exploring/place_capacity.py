@@ -48,9 +48,9 @@ _ONE_MESSAGE = (
 )
 _ROOM = "so there is room for more (the supervisor stops where it is used up)"
 _INPUTS = f"with the input files as they are, all {{}} states: other files may lead to more tokens, {_ROOM}"
-_CHANCE = f"with the random numbers and files that there were, all {{}} states: others may lead to more tokens, {_ROOM}"
+_DRAWN = f"with the random numbers and files that there were, all {{}} states: others may lead to more tokens, {_ROOM}"
 _STEPS = f"without a number of steps, all {{}} states: a run, which has one, may lead to more tokens, {_ROOM}"
-_ONE_OF_MANY = {"chance": _CHANCE, "steps": _STEPS}
+_ONE_OF_MANY = {"chance": _DRAWN, "steps": _STEPS}
 
 
 @frozen
