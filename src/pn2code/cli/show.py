@@ -178,7 +178,7 @@ def _trace(
                 storage,
                 most=steps,
                 files=Files(files),
-                tell=progress.tell,
+                progress=progress.report,
             )
     except OSError as problem:
         _refuse(
@@ -193,7 +193,7 @@ class _Progress(Line):
         super().__init__(first="repeating the trace ...", plain=True)
         self._began = time.monotonic()
 
-    def tell(self, steps: int, share: float) -> None:
+    def report(self, steps: int, share: float) -> None:
         """So many steps have been repeated, which is about this share of them."""
         passed = max(time.monotonic() - self._began, 1e-9)
         left = passed * (1.0 - share) / max(share, 1e-9)

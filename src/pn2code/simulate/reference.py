@@ -184,7 +184,7 @@ class ReferenceRun:
         game = self.game
         assert game is not None
         try:
-            enabled, why = self._settle()
+            enabled, why = self._advance_time()
             if why:
                 return why
         except GameError as error:
@@ -197,7 +197,7 @@ class ReferenceRun:
             return self._fail(error, t)
         return self.fire(BindingElement.make(t, bindings[choice.below(len(bindings))]))
 
-    def _settle(self) -> tuple[list[FlatTransition], str]:
+    def _advance_time(self) -> tuple[list[FlatTransition], str]:
         """Moves the clock to where something is enabled; gives what is, and why the run ends here, or ""."""
         game = self.game
         assert game is not None
@@ -281,7 +281,7 @@ class ReferenceRun:
         game = self.game
         assert game is not None
         try:
-            _, why = self._settle()
+            _, why = self._advance_time()
             if why:
                 if why == "breakpoint":
                     return why

@@ -594,7 +594,7 @@ void ex_queries_answer(ex_run_t *run)
     find_sets(queries);
     for (uint32_t i = 0U; i < queries->questions; i++) {
         answer(queries, &queries->question[i]);
-        ex_early_settle(run, &queries->question[i]);
+        ex_early_conclude(run, &queries->question[i]);
         write_trace(run, &queries->question[i], i);
     }
 }

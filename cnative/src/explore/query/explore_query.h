@@ -188,7 +188,7 @@ bool ex_early_make(ex_worker_t *worker);
 void ex_early_answer(ex_run_t *run);
 /* After the graph has left a question open (there was no time, or no memory): what was seen of the states while they
  * were explored. */
-void ex_early_settle(const ex_run_t *run, ex_question_t *question);
+void ex_early_conclude(const ex_run_t *run, ex_question_t *question);
 
 /* --- explore_query.c --- */
 

@@ -97,7 +97,7 @@ class Inscriptions:
     def _finish(self, before: int, build: Callable[[], T]) -> T | None:
         """What `build` gives, unless something was reported since `before` or uses something broken."""
         if self._ctx.errors == before:
-            self._ctx.settle()
+            self._ctx.resolve_pending()
         self._ctx.open_records.clear()
         if self._ctx.errors > before or self._ctx.tainted:
             return None

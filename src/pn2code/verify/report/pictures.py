@@ -147,8 +147,8 @@ class Pictures:
 def _both(
     first: Callable[[Mapping[str, Any]], None], second: Callable[[Mapping[str, Any]], None]
 ) -> Callable[[Mapping[str, Any]], None]:
-    def tell(said: Mapping[str, Any]) -> None:
+    def report(said: Mapping[str, Any]) -> None:
         first(said)
         second(said)
 
-    return tell
+    return report
