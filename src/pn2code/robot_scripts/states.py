@@ -16,7 +16,8 @@ from pn2code.robot_scripts.data import Data
 from pn2code.robot_scripts.guards import covering, exclusive
 from pn2code.robot_scripts.ir import Comment, LeftOut, Line, Node, Region, transition_element
 from pn2code.robot_scripts.machine import Outcome, Step
-from pn2code.robot_scripts.steps import Situation, StepTranslator, header
+from pn2code.robot_scripts.situation import Situation
+from pn2code.robot_scripts.steps import StepTranslator, header
 from pn2code.robot_scripts.structure import Branches, Halt, Then, To, Tree
 from pn2code.robot_scripts.values import (
     FALSE,

@@ -27,13 +27,15 @@ from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import ArcKind, BindAll, BindEquation, BindRandom
 from pn2code.robot_scripts import codes as codes
 from pn2code.robot_scripts import membership
-from pn2code.robot_scripts.conditions import Asked, Order, all_hold
+from pn2code.robot_scripts.assignments import one_after_the_other
+from pn2code.robot_scripts.conditions import Asked, Order
 from pn2code.robot_scripts.evaluate import Evaluator
 from pn2code.robot_scripts.failing import Known
 from pn2code.robot_scripts.ir import Chain, Comment, Element, Line, Node
 from pn2code.robot_scripts.machine import Machine, Outcome, Step, delayed_tokens
 from pn2code.robot_scripts.names import Names, identifier
 from pn2code.robot_scripts.not_a_number import may_be_nan
+from pn2code.robot_scripts.situation import Situation
 from pn2code.robot_scripts.strict import Owed, Path, open_of, statements, without_repetition
 from pn2code.robot_scripts.values import (
     FALSE,
@@ -51,6 +53,7 @@ from pn2code.robot_scripts.values import (
     choose,
     equal,
     flatten,
+    scalars_in,
     select,
     shape_of_colset,
 )
@@ -58,38 +61,7 @@ from pn2code.robot_scripts.values import Primitive as PrimitiveValue
 from pn2code.tdl import tree as t
 from pn2code.tdl import types as tdl
 from pn2code.tdl.evaluate import ScriptError, ScriptValue, evaluate
-from pn2code.tdl.paths import all_names, children, expressions_of
-
-
-@frozen
-class Situation:
-    """A transition seen from its state: what its variables mean and when it is enabled.
-
-    Args:
-        channels: places of the channels it takes from, in order of its arcs.
-        local: conditions that the program's own data decide.
-        remote: conditions that need the messages, or that may fail unless such conditions before them hold.
-        ordered: all of them in the order of the net.
-        sensed: net variables that nothing in the net decides, the sensor that does, and the script's variable.
-    """
-
-    step: Step
-    env: Env
-    channels: tuple[int, ...]
-    local: tuple[t.Expression, ...]
-    remote: tuple[t.Expression, ...]
-    ordered: tuple[t.Expression, ...]
-    sensed: tuple[tuple[Symbol, str, str], ...] = ()
-
-    @property
-    def own_condition(self) -> t.Expression:
-        """All conditions on the program's own data."""
-        return all_hold(self.local)
-
-    @property
-    def condition(self) -> t.Expression:
-        """All conditions."""
-        return all_hold(self.ordered)
+from pn2code.tdl.paths import all_names, expressions_of
 
 
 @frozen
@@ -155,7 +127,7 @@ class StepTranslator:
             )
         ordered = [*control, *variables, *messages]
         sensed: list[tuple[Symbol, str, str]] = []
-        avoid = {n for p, *_ in ordered for n in all_names(x.exp for x in _scalars(values[p]))}
+        avoid = {n for p, *_ in ordered for n in all_names(x.exp for x in scalars_in(values[p]))}
         order = Order(transition, self.pure.program)
         asked = Asked(self.known())
         for place, term, arc, index in ordered:
@@ -185,7 +157,7 @@ class StepTranslator:
             assert isinstance(value, Scalar)
             asked.add(order.of_guard(i), [value.exp], owed)
         received = {
-            name for p, *_ in messages for name in all_names(x.exp for x in _scalars(values[p]))
+            name for p, *_ in messages for name in all_names(x.exp for x in scalars_in(values[p]))
         }
         conditions = asked.conditions()
         for symbol, sensor, name in sensed:
@@ -285,7 +257,7 @@ class StepTranslator:
         self._nodes = []
         self._there = self.known(situation.ordered)
         output = code.outputs[0].name if len(code.outputs) == 1 else "measured"
-        self._taken = all_names(x.exp for v in situation.env.values() for x in _scalars(v))
+        self._taken = all_names(x.exp for v in situation.env.values() for x in scalars_in(v))
         evaluator = Evaluator(
             self.pure.program,
             self.pure.primitives,
@@ -554,7 +526,11 @@ class StepTranslator:
                 assignments += zip(names, (x.exp for x in scalars), strict=True)
         writes.sort(key=lambda w: w[0])
         waits = self._wait(situation, outcome, env)
-        return [*(w for _, w in writes), *waits, *self._assign(assignments, situation)]
+        return [
+            *(w for _, w in writes),
+            *waits,
+            *one_after_the_other(assignments, self.names, situation.step),
+        ]
 
     def _wait(self, situation: Situation, outcome: Outcome, env: Env) -> list[Node]:
         """The delay of the control token. Model time is in seconds."""
@@ -587,75 +563,6 @@ class StepTranslator:
                 codes.UNSUPPORTED_TIME,
             )
         return out
-
-    def _assign(
-        self, assignments: list[tuple[str, t.Expression]], situation: Situation
-    ) -> list[Node]:
-        """Assignments at once, made one after the other: none may destroy what another needs."""
-        pending = [(n, e) for n, e in assignments if e != t.Name(n)]
-        out: list[Node] = []
-        while pending:
-            free = next(
-                (
-                    i
-                    for i, (name, _) in enumerate(pending)
-                    if not any(name in all_names([e]) for j, (_, e) in enumerate(pending) if j != i)
-                ),
-                None,
-            )
-            if free is None:  # a circle: keep one old value aside
-                name = pending[0][0]
-                kind = self.names.variables[name].type
-                transition = situation.step.transition
-                element = Element(
-                    transition.name,
-                    "transition",
-                    transition.origin,
-                    f"transition {transition.short} ({transition.id})",
-                )
-                (aside,) = self.names.shared(
-                    [f"{name}_before"], ScalarShape(kind.type, kind.single), element
-                )
-                out.append(Line(t.Assign(t.Target(aside), t.Name(name))))
-                pending = [
-                    (n, e if i == 0 else _replaced(e, name, aside))
-                    for i, (n, e) in enumerate(pending)
-                ]
-                free = 0
-            name, exp = pending.pop(free)
-            out.append(Line(t.Assign(t.Target(name), exp)))
-        return out
-
-
-def _replaced(e: t.Expression, old: str, new: str) -> t.Expression:
-    """The expression with one name for another."""
-    match e:
-        case t.Name(name):
-            return t.Name(new) if name == old else e
-        case t.Field(record, label):
-            return t.Field(_replaced(record, old, new), label)
-        case t.Unary(operator, operand):
-            return t.Unary(operator, _replaced(operand, old, new))
-        case t.Binary(operator, left, right):
-            return t.Binary(operator, _replaced(left, old, new), _replaced(right, old, new))
-        case t.CallExpression(function, arguments):
-            return t.CallExpression(function, tuple(_replaced(a, old, new) for a in arguments))
-        case t.Conditional():
-            a, b, c = (_replaced(x, old, new) for x in children(e))
-            return t.Conditional(a, b, c)
-        case _:
-            return e
-
-
-def _scalars(value: Value) -> Iterable[Scalar]:
-    match value:
-        case Scalar():
-            yield value
-        case Rec(fields):
-            for _, v in fields:
-                yield from _scalars(v)
-        case _:
-            return
 
 
 def _whole(step: Step) -> Span:
