@@ -15,16 +15,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import field, replace
+from dataclasses import replace
 from typing import Any
 
-from pn2code.base.frozen import frozen
 from pn2code.ml.core.reals import may_hold_reals
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
 from pn2code.semantics.evaluation.effects import OUTSIDE, Effect, Effects, outside, texts
 from pn2code.semantics.evaluation.evaluate import variables
-from pn2code.semantics.evaluation.references import Held, References
+from pn2code.semantics.evaluation.references import References
 from pn2code.semantics.game.enabling import Demand, GameError, GivenUpError
 from pn2code.semantics.game.marking import (
     Binding,
@@ -47,81 +46,13 @@ from pn2code.semantics.game.token_game import Game, reset
 from pn2code.semantics.values.colour_text import read_value
 from pn2code.semantics.values.data import Value
 from pn2code.semantics.values.multiset import TimedMultiSet
+from pn2code.trace.followed import EnabledBinding, Followed, State
 from pn2code.trace.recording import RecordedStep, Recording, TransitionNames
 
 MOST_STATES = 50
 """States that are carried along; of more, the first are."""
 MOST_MARKINGS = 4
 """Ways to take the tokens of one binding that are followed."""
-
-
-Occurrence = tuple[int | float, BindingElement]
-"""When, and what."""
-
-
-@frozen
-class Followed:
-    """What became of a recording.
-
-    Args:
-        ok: whether every step could be repeated, as far as it is determined.
-        steps: how many were.
-        why: if not ok, what is wrong with the next one; else "" or what was drawn at random.
-        random: whether some values had to be taken as recorded, since the net draws them.
-        time: of the last marking.
-        rows: the last marking; what is not known of it is as recorded, and so is said in `drawn`.
-        drawn: names of the places with tokens that depend on drawn numbers.
-        given_up: whether the next step is not known to be wrong: the token game gave up an evaluation.
-        occurrences: (time, binding element) of each step that was repeated.
-    """
-
-    ok: bool
-    steps: int
-    why: str
-    random: bool
-    time: int | float
-    rows: list[PlaceRow]
-    drawn: tuple[str, ...] = ()
-    occurrences: tuple[Occurrence, ...] = ()
-    given_up: bool = False
-
-
-@frozen
-class State:
-    """A marking that fits what has been seen, what is not known of it, the contents of the references, and how one
-    comes there (one way, if there are several)."""
-
-    marking: Marking
-    unknown: PartialMarking
-    references: Held
-    path: Any = field(default=None, compare=False)
-    """(what came before, the last occurrence), or None at the start"""
-
-    def occurrences(self) -> tuple[Occurrence, ...]:
-        """All since the start."""
-        found: list[Occurrence] = []
-        path = self.path
-        while path is not None:
-            path, last = path
-            found.append(last)
-        return tuple(reversed(found))
-
-
-@frozen
-class _EnabledBinding:
-    """A recorded binding that is enabled, and the tokens that it takes.
-
-    Args:
-        left: the marking without the tokens that are taken.
-        unknown: what is not known of it.
-        binding: without the outputs of the code segment.
-        read: whether the values were read from the recording, which tells reals with 12 digits.
-    """
-
-    left: Marking
-    unknown: PartialMarking
-    binding: Binding
-    read: bool = False
 
 
 class _Refused(Exception):  # noqa: N818
@@ -411,7 +342,7 @@ class _Follower:
 
     def enabled(
         self, state: State, t: FlatTransition, step: RecordedStep
-    ) -> Iterator[_EnabledBinding]:
+    ) -> Iterator[EnabledBinding]:
         """The ways in which the recorded binding is enabled."""
         enabling = self.game.enabling
         found = False
@@ -426,7 +357,7 @@ class _Follower:
                 demands = enabling.demands(t, binding)
                 for left in self.plausible(list(alternatives(enabling, state.marking, demands))):
                     found = True
-                    yield _EnabledBinding(left, state.unknown, binding)
+                    yield EnabledBinding(left, state.unknown, binding)
         depends = not self.certain(state.unknown, t)
         if depends or (not found and self.lenient and state.unknown.anything):
             yield self.enabled_by_unknown(state, t, step)
@@ -458,7 +389,7 @@ class _Follower:
 
     def enabled_by_unknown(
         self, state: State, t: FlatTransition, step: RecordedStep
-    ) -> _EnabledBinding:
+    ) -> EnabledBinding:
         """As `enabled`, with tokens that are not known: the binding is read from its text."""
         enabling = self.game.enabling
         unknown = state.unknown
@@ -483,7 +414,7 @@ class _Follower:
         left = taken(enabling, self.game.colours, marking, unknown, demands)
         if isinstance(left, Demand):
             raise _Refused(enabling.shortage(marking, left, demands))
-        return _EnabledBinding(*left, binding, read=True)
+        return EnabledBinding(*left, binding, read=True)
 
     def read(self, t: FlatTransition, step: RecordedStep) -> dict[Symbol, Value]:
         """The recorded values of the variables that are not outputs of the code segment."""
@@ -507,7 +438,7 @@ class _Follower:
     # --- an occurrence -----------------------------------------------------------------------------------
 
     def occur(
-        self, state: State, t: FlatTransition, enabled: _EnabledBinding, step: RecordedStep
+        self, state: State, t: FlatTransition, enabled: EnabledBinding, step: RecordedStep
     ) -> State:
         """The state after the occurrence."""
         game = self.game
