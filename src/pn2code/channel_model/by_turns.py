@@ -21,7 +21,7 @@ from dataclasses import replace
 
 from pn2code.cell.partition import Partition
 from pn2code.channel_model.compose import compose
-from pn2code.channel_model.places import Crashes, MediumNet
+from pn2code.channel_model.places import ChannelModel, Crashes
 from pn2code.channel_model.rules import Rules
 from pn2code.diagnostics import Diagnostics
 from pn2code.lowering.nets.packing import choose
@@ -45,7 +45,7 @@ def in_turns(
     limits: Limits,
     options: ExploreOptions,
     d: Diagnostics,
-) -> tuple[MediumNet, Exploration] | None:
+) -> tuple[ChannelModel, Exploration] | None:
     """The net and its reduced space, if that says that nothing is wrong; None: it does not."""
     if partition.net.timed or not partition.final_places:
         return None
@@ -79,7 +79,7 @@ def in_turns(
     return (made, found) if is_good else None
 
 
-def owners_of(made: MediumNet) -> list[int] | None:
+def owners_of(made: ChannelModel) -> list[int] | None:
     """By transition of the net, the side in whose memory it does something; None: of some that is not one side."""
     whose = {place: o for o, places in enumerate(made.memory) for place in places}
     found = list(made.partition.transition_owner)
@@ -94,7 +94,7 @@ def owners_of(made: MediumNet) -> list[int] | None:
 ASKED = 3
 
 
-def questions(made: MediumNet, owners: list[int]) -> str:
+def questions(made: ChannelModel, owners: list[int]) -> str:
     """The lines for the explorer: who chooses how, and `ASKED` questions."""
     lines: list[str] = []
     everything = range(len(owners))

@@ -63,14 +63,13 @@ from pn2code.verify.controller.control_types import (
 )
 from pn2code.verify.controller.equals import NoPatternError
 from pn2code.verify.controller.poses import Bad, Poses
-from pn2code.verify.controller.reach_check import reach, suspects, tell
+from pn2code.verify.controller.reach_check import reach, suspects, told_poses
 from pn2code.verify.controller.running import NotModelledError, Running, Silence
 from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits, Reduction
 from pn2code.verify.exploring.programs import Generated, Sizes
 from pn2code.verify.exploring.result import Exploration
-from pn2code.verify.exploring.turns import Turns
 
 DOUBT = (
     "a condition of a script that waits for a message raises an exception in a state of the cell, and whether the "
@@ -219,12 +218,12 @@ def examine(
         # Where the whole is too large, there is time left to see how it comes to what is wrong.
         part = replace(limits, deadline=limits.deadline.share(CELL_PART))
         in_turns: Looked | None = None
-        loose = _loose(partition, plan, part)
-        first_part = part if loose is None else replace(part, max_states=part.turns_from)
+        may_turn = _may_turn(partition, plan, part)
+        first_part = replace(part, max_states=part.turns_from) if may_turn else part
         found = explore(running.net, plan.storage, first_part, d, options)
-        if loose is not None and found is not None and found.why == "states":
+        if may_turn and found is not None and found.why == "states":
             try:
-                in_turns = _looked_in_turns(loose, plan, part, options, at_once, poses)
+                in_turns = _looked_in_turns(partition, plan, part, options, at_once, poses)
                 if in_turns is None:
                     found = explore(running.net, plan.storage, part, d, options)
             except OutOfReachError as problem:  # what was seen of the whole is what is known
@@ -240,7 +239,7 @@ def examine(
         count = len(plan.properties.properties)
         options = replace(options, evidence=Path(name))
 
-        def again(moves: Sequence[Bad], *, first: bool = True) -> Exploration | None:
+        def explore_with_moves(moves: Sequence[Bad], *, first: bool = True) -> Exploration | None:
             other = Running.of(partition, (), moves)
             lines = other.lines(first=True)
             own = replace(
@@ -256,7 +255,7 @@ def examine(
             )
             return explore(other.net, plan.storage, limits, d, own)
 
-        told = tell(poses, found, limits.deadline)
+        told = told_poses(poses, found, limits.deadline)
         orders: Exploration | None = found
         said, asked = _parted(found.answers[count:], ORDERS if is_asked_at_once else 0)
         # Of a whole graph in which the supervisor never chooses the first question has an answer, and only of that.
@@ -270,7 +269,7 @@ def examine(
             if moves:
                 # All orders are more than the cell does: what is not met there is met nowhere.
                 with suppress(NoPatternError):
-                    orders = again(moves, first=False)
+                    orders = explore_with_moves(moves, first=False)
                     ruled_out = orders is not None and orders.seen.markings
             if is_choiceless:
                 orders = found
@@ -291,7 +290,7 @@ def examine(
             *cell_answers(partition, found, said, plan, keep, closed),
             *formats(partition, found, plan, d),
             memory(found),
-            *reach(told, partition, found, again, keep, ruled_out=ruled_out),
+            *reach(told, partition, found, explore_with_moves, keep, ruled_out=ruled_out),
             ownership(partition),
         )
         checks = tuple(hesitating(c, said, keep) for c in checks)
@@ -317,22 +316,26 @@ def examine(
         return settled(replace(control, late=late, doubt=doubt, premises=premises))
 
 
-def _loose(partition: Partition, plan: Plan, limits: Limits) -> tuple[Running, Turns] | None:
-    """What the programs of a cell that is too large for the whole of it are looked at in by turns; None: nothing is."""
+def _may_turn(partition: Partition, plan: Plan, limits: Limits) -> bool:
+    """Whether the programs of a cell that is too large for the whole of it are looked at in turns."""
     most, least = limits.max_states, limits.turns_from
-    if least is None or (most is not None and most <= least) or plan.properties.properties:
-        return None
-    return None if partition.net.timed or plan.cut else by_turns.loosened(partition)
+    if least is None or (most is not None and most <= least):
+        return False
+    return not (plan.properties.properties or plan.cut or partition.net.timed)
 
 
 def _looked_in_turns(
-    loose: tuple[Running, Turns],
+    partition: Partition,
     plan: Plan,
     limits: Limits,
     options: ExploreOptions,
     at_once: str,
     poses: Poses | None,
 ) -> Looked | None:
+    """What is seen in turns; None: it is not said."""
+    loose = by_turns.loosened(partition)
+    if loose is None:
+        return None
     running, _ = loose
 
     def is_choiceless(found: Exploration) -> bool:
@@ -349,7 +352,7 @@ def _looked_in_turns(
         orders=of_orders(running, plan.firings, in_turns=True),
         is_choiceless=is_choiceless,
     )
-    if looked is None or suspects(tell(poses, looked.found, limits.deadline), looked.found):
+    if looked is None or suspects(told_poses(poses, looked.found, limits.deadline), looked.found):
         return None
     return looked
 
@@ -418,5 +421,5 @@ def not_looked(
     seen = closed if closed is not None and can_more(partition) else None
     checks += formats(partition, seen, Plan(), Diagnostics(), why)
     checks.append(memory(seen, why, of_cell=False))
-    checks += reach(tell(poses, seen, NEVER), partition, seen, None, keep, why)
+    checks += reach(told_poses(poses, seen, NEVER), partition, seen, None, keep, why)
     return Control((*checks, ownership(partition)), None, why=why)
