@@ -49,7 +49,7 @@ def in_turns(
     """The net and its reduced space, if that says that nothing is wrong; None: it does not."""
     if partition.net.timed or not partition.final_places:
         return None
-    made = compose(partition, rules, Crashes(lives=False), loose=True)
+    made = compose(partition, rules, Crashes(life_cycle=False), loose=True)
     owners = owners_of(made)
     if owners is None:
         return None
