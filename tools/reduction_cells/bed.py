@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -37,7 +37,7 @@ from pn2code.verify.controller.running import NotModelledError, Running
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.programs import Generated, Sizes
-from pn2code.verify.exploring.result import Exploration
+from pn2code.verify.exploring.result import Bounds, Exploration
 from pn2code.verify.exploring.turns import Turns
 
 MOST = 40_000
@@ -162,13 +162,28 @@ def found_differences(
         yield f"dead states: {reduced.dead_count} / {whole.dead_count}"
     one, other = reduced.bounds or (), whole.bounds or ()
     for p, (a, b) in enumerate(zip(one, other, strict=False)):
-        if a != b and (places is None or p < places):
+        if _sorted(a) != _sorted(b) and (places is None or p < places):
             yield f"bounds of place {p}: {a} / {b}"
     if places is None:
         if reduced.dead_transitions() != whole.dead_transitions():
             yield "transitions that never occur"
         if reduced.arena != whole.arena:
             yield f"memory: {reduced.arena} / {whole.arena}"
+
+
+def _sorted(b: Bounds) -> Bounds:
+    """With the colours in an order that does not depend on the way through the states."""
+
+    def fixed(
+        found: tuple[tuple[int, Any], ...] | None,
+    ) -> tuple[tuple[int, Any], ...] | None:
+        return None if found is None else tuple(sorted(found, key=repr))
+
+    return replace(
+        b,
+        lower_multiset=fixed(b.lower_multiset),
+        upper_multiset=fixed(b.upper_multiset),
+    )
 
 
 def judge(seed: int, folder: Path, *, mutants: bool, wants_medium: bool) -> Verdict:

@@ -211,6 +211,25 @@ static uint32_t owner_of(const ex_worker_t *worker, uint32_t t)
     return worker->run->owner_of[t];
 }
 
+/* Whether a place shows why a transition of which it holds so many tokens is disabled; fewer than `least`, or any. */
+static bool is_reason(uint64_t total, uint32_t least)
+{
+    return (least == 0U) ? (total > 0U) : (total < least);
+}
+
+/* Whether a transition is known to be disabled, be it asked or not. */
+static bool is_disabled(const struct ex_turns *own, uint32_t t)
+{
+    const row_t reasons = own->table->member[t].reasons;
+    const uint32_t *at = reasons.number;
+    bool is_known = own->asked[t] == EX_DISABLED;
+    for (uint32_t i = 0U; !is_known && (own->asked[t] == EX_NOT_ASKED) && (i < reasons.count); i++) {
+        is_known = is_reason(own->total[at[0]], at[1]);
+        at = &at[3U + at[2]];
+    }
+    return is_known;
+}
+
 static void join(struct ex_turns *own, uint32_t owner)
 {
     if (!own->is_in[owner]) {
@@ -226,7 +245,7 @@ static void need(const ex_worker_t *worker, uint32_t t)
     if (own->is_in[owner_of(worker, t)] || own->is_kept[t]) {
         return;
     }
-    if (own->asked[t] == EX_DISABLED) {
+    if (is_disabled(own, t)) {
         own->is_kept[t] = true;
         own->kept[own->kept_count] = t;
         own->kept_count += 1U;
@@ -249,7 +268,7 @@ static uint64_t cost_of(const ex_worker_t *worker, row_t row)
     for (uint32_t i = 0U; i < row.count; i++) {
         const uint32_t t = row.number[i];
         if (!own->is_in[owner_of(worker, t)] && !own->is_kept[t]) {
-            cost += (own->asked[t] == EX_DISABLED) ? 1U : MANY;
+            cost += is_disabled(own, t) ? 1U : MANY;
         }
     }
     return cost;
@@ -288,7 +307,7 @@ static bool find_reason(const ex_worker_t *worker, uint32_t t, uint32_t after, r
         const bool is_helped = (after != UINT32_MAX) && is_listed(helpers, after);
         const uint32_t taken = (after != UINT32_MAX) ? taken_by(&members[after], place) : 0U;
         const uint64_t total = (own->total[place] > taken) ? (own->total[place] - taken) : 0U;
-        const bool is_one = (at[1] == 0U) ? (own->total[place] > 0U) : (total < at[1]);
+        const bool is_one = is_reason((at[1] == 0U) ? own->total[place] : total, at[1]);
         const uint64_t cost = (is_one && !is_helped) ? cost_of(worker, helpers) : UINT64_MAX;
         if (cost < least) {
             least = cost;

@@ -190,7 +190,9 @@ def _look(partition: Partition, config: CellConfig, plan: Plan, d: Diagnostics) 
         found = control.examine(partition, plan, limits, own)
         if found is not None and limits.threads > 1 and any(c.why == "states" for c in found.open):
             # Which states are the first is the same each time for one thread only.
-            found = control.examine(partition, plan, replace(limits, threads=1), own)
+            # That turns do not help is known.
+            alone = replace(limits, threads=1, turns_from=None)
+            found = control.examine(partition, plan, alone, own)
     except GameError as error:
         error.report(d)
         return None

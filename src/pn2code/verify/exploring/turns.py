@@ -15,7 +15,8 @@ enabled, and with which bindings. The set is closed: with F comes a set D of dis
      *disabled*: with it comes what can end one reason for its being disabled;
   2  of each transition in D: what can end one reason for its being disabled.
 
-"It comes" means: what is disabled joins D, the owner of anything else joins F. So whatever the owners outside F do, and
+"It comes" means: what is disabled (because a place lacks tokens, where it was not asked) joins D, the owner of anything
+else joins F. So whatever the owners outside F do, and
 as long as nothing in D occurs (and it cannot, it is disabled), each question of an owner in F keeps its answer, and
 what this owner does could as well come first. F and D are a *strong stubborn set* (A. Valmari, *Stubborn sets for
 reduced state space generation*, 1990; its enabled part is *persistent*, P. Godefroid, 1996): with D1, what comes after
