@@ -25,7 +25,6 @@ from pn2code.channel_model.places import ChannelModel, Crashes
 from pn2code.channel_model.rules import Rules
 from pn2code.diagnostics import Diagnostics
 from pn2code.lowering.nets.packing import choose
-from pn2code.properties.questions import Questions
 from pn2code.verify.controller.running import chunks
 from pn2code.verify.exploring.elements import NotPossibleError
 from pn2code.verify.exploring.explore import ExploreOptions, explore
@@ -104,19 +103,17 @@ def questions(made: ChannelModel, owners: list[int]) -> str:
         lines += chunks(f"{'choose' if owner else 'first'} {owner + 1}", own)
     lines.append("priorities own")
     lines += chunks("instant 0", everything)
-    asked = Questions()
-    calm = asked.line(f"within {made.sides[0].calm} 1 -")
-    ends = [
-        asked.line(f"and {calm} {asked.line(f'within {place} 1 -')}")
-        for place in made.partition.final_places
-    ]
-    end = ends[0]
-    for other in ends[1:]:
-        end = asked.line(f"or {end} {other}")
-    can_end = asked.line(f"ef {end}")
-    asked.asked += [
+    items = [f"within {made.sides[0].calm} 1 -"]  # operands are numbers of lines
+    end = None
+    for place in made.partition.final_places:
+        items += [f"within {place} 1 -", f"and 0 {len(items)}"]
+        if end is not None:
+            items.append(f"or {end} {len(items) - 1}")
+        end = len(items) - 1
+    items += [f"ef {end}", f"ag {len(items)}"]
+    asked = [
         f"? bound {made.fault} 0 0",
         f"? restless 0 {ENDLESS}",
-        f"? initially {asked.line(f'ag {can_end}')}",
+        f"? initially {len(items) - 1}",
     ]
-    return "".join(f"{line}\n" for line in lines) + asked.text()
+    return "".join(f"{line}\n" for line in (*lines, *items, *asked))

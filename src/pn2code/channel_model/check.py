@@ -36,6 +36,8 @@ from pn2code.verify.exploring.result import Exploration
 
 MOST_STATES = 2_000_000
 """Of one exploration, if the user sets no limit."""
+MOST_IN_TURNS = 4_000_000
+"""The same where the sides are looked at in turns."""
 MOST_TRACES = 16
 QUICK_STATES = 2_000
 """Of a cell: beyond that it pays to have the compiler work longer."""
@@ -227,7 +229,7 @@ def _in_turns(
     began = time.perf_counter()
     limits = replace(
         run.limits,
-        max_states=run.limits.max_states or MOST_STATES,
+        max_states=run.limits.max_states or MOST_IN_TURNS,
         graph=True,
         traces=0,
         approximation=None,

@@ -133,7 +133,10 @@ def verify(
     ] = [],  # noqa: B006 - typer reads the default only
     no_reduction: Annotated[
         bool,
-        typer.Option("--no-reduction", help="Explore the full state space, even with `--reduce`."),
+        typer.Option(
+            "--no-reduction",
+            help="Explore the full state space, even of a large cell, and with `--reduce`.",
+        ),
     ] = False,
     spill: Annotated[
         Path | None,
