@@ -187,3 +187,72 @@ def test_random_cells(tmp_path: Path) -> None:
     assert counts["checks in turns"] > 0
     assert counts["states in turns"] < counts["states"]
     assert "what is disabled stays so" in shown
+
+
+LINKED = """net cell
+  standard
+  var k, j: INT;
+  page Top
+    place toA : INT
+    place fromA : INT
+    place link : INT
+    subst Supervisor = Sup (toA -> toA, fromA -> fromA)
+    subst G = PageB (link -> link)
+    subst W = PageA (ask -> toA, say -> fromA, link -> link)
+  page Sup
+    place toA port out : INT
+    place fromA port in : INT
+    place Ready = 1
+    place Asked
+    place Finished
+    trans Ask
+      in Ready : ()
+      out Asked : ()
+      out toA : 1
+    trans Hear
+      in Asked : ()
+      in fromA : k
+      out Finished : ()
+  page PageA
+    place ask port in : INT
+    place link port in : INT
+    place say port out : INT
+    place Waiting = 1
+    place Told
+    trans Accept
+      in Waiting : ()
+      in ask : k
+      out Told : ()
+    trans Say
+      in Told : ()
+      in link : j
+      out Waiting : ()
+      out say : j
+  page PageB
+    place link port out : INT
+    place Begun = 1
+    place Given
+    trans Give
+      in Begun : ()
+      out Given : ()
+      out link : 1
+"""
+
+
+def test_who_waits_while_it_owes_an_answer_is_seen(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    toml = CELL
+    for c, kind in (("toA", "flag"), ("fromA", "flag"), ("link", "data")):
+        toml += f'[[channel]]\nplace = "{c}"\nfile = "{c}.txt"\nkind = "{kind}"\n'
+    (tmp_path / "cell.cpn").write_bytes(cpn(LINKED))
+    (tmp_path / "cell.toml").write_text(
+        toml + "".join(f'[devices.{x}]\ninstance = "{x}"\n' for x in "GW"), encoding="utf-8"
+    )
+    monkeypatch.setattr(command, "TURNS_FROM", 1)
+    whole = verified(tmp_path, "--no-reduction")
+    found = verified(tmp_path)
+    assert answers(found) == answers(whole)
+    assert found["cell"]["reduced"] is False
+    by_name = {c["check"]: c["why"] for c in found["controller"]}
+    assert by_name["non-blocking"] == "late"

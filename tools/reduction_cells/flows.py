@@ -128,6 +128,8 @@ def _device(r: Random, i: int, has_data: bool, speaks_data: bool) -> list[str]:
     if takes_later:
         lines.insert(lines.index("    place Waiting = 1"), "    place Told2 : SAID")
         at = "Told2"
+    if steps and r.random() < 0.1:  # it may go round for ever
+        lines += ["    trans Back", f"      in {at} : k", "      out Told : k"]
     is_split = r.random() < 0.3
     for said in (1, 2) if is_split else (0,):
         guard = f" guard [k = {said}]" if said else ""

@@ -17,7 +17,8 @@ MIB = 1 << 20
 def explored(firing: int, nodes: int = 10) -> Exploration:
     """As much of an exploration as the check looks at."""
     arena = {"start": 0, "firing": firing, "marking": 0}
-    found = SimpleNamespace(arena=arena, nodes=nodes, seen=SimpleNamespace(markings=True))
+    seen = SimpleNamespace(markings=True)
+    found = SimpleNamespace(arena=arena, nodes=nodes, seen=seen, reductions=())
     return cast(Exploration, found)
 
 
