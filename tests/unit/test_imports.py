@@ -58,9 +58,11 @@ ALLOWED: dict[str, set[str]] = {
     "replay": {"cell", "channels", "drawing", "emission", "net", "reading", "robot", "run", "semantics", "trace"},
     "verdict": {"arms", "cell", "channel_model", "channels", "diagnostics", "division", "input_files", "ml", "net",
         "pipeline", "properties", "robot", "robot_scripts", "run", "semantics", "tdl", "trace", "verify"},
+    "geometry": {"cell", "diagnostics", "ml", "net", "primitive_calls", "robot", "semantics", "trace", "verdict",
+        "verify"},
     "cli": {"cell", "cell_file", "channels", "conform", "contest", "convert", "diagnostics", "division", "drawing",
-        "emission", "input_files", "ir", "lowering", "ml", "net", "new_cell", "pipeline", "reading", "replay", "report",
-        "robot",
+        "emission", "geometry", "input_files", "ir", "lowering", "ml", "net", "new_cell", "pipeline", "reading",
+        "replay", "report", "robot",
         "robot_scripts", "run", "semantics", "simulate", "structure", "tdl", "trace", "unfold", "verdict", "verify"},
     "start": {"cli"},
 }  # fmt: skip

@@ -1,9 +1,9 @@
 """What a transition of a robot or device does, from where its arm stands and with the parts that are there then.
 
-    doing = Doing(planner, cell)
-    activity = doing.of("robot1", commands, stand, contents)
-    activity.legs                   # ((leg, contents while it lasts), ...)
-    activity.end, activity.after    # where the arm stands afterwards, and the parts
+doing = Doing(planner, cell)
+activity = doing.of("robot1", commands, stand, contents)
+activity.legs                   # ((leg, contents while it lasts), ...)
+activity.end, activity.after    # where the arm stands afterwards, and the parts
 """
 
 from __future__ import annotations
@@ -56,7 +56,7 @@ class Activity:
         after: the parts afterwards.
         fault: why it cannot be done to its end; in which leg: the last.
         kinds: the kinds of parts that it handles.
-        is_part: the fault is about a part.
+        is_part: the fault is about a part; command: what cannot be done then.
     """
 
     number: int
@@ -66,6 +66,7 @@ class Activity:
     fault: str = ""
     kinds: frozenset[str] = frozenset()
     is_part: bool = False
+    command: Command | None = None
 
     @property
     def between(self) -> tuple[Contents, ...]:
@@ -109,7 +110,7 @@ class Doing:
 
     def _added(self, a: Activity) -> Activity:
         made = Activity(
-            len(self.activities), a.legs, a.end, a.after, a.fault, a.kinds, a.is_part
+            len(self.activities), a.legs, a.end, a.after, a.fault, a.kinds, a.is_part, a.command
         )
         self.activities.append(made)
         return made
@@ -140,7 +141,14 @@ class Doing:
                     parts.handle(owner, command.handling, tcp)
                 except PartFault as fault:
                     return Activity(
-                        0, tuple(legs), stand, contents, str(fault), kinds, is_part=True
+                        0,
+                        tuple(legs),
+                        stand,
+                        contents,
+                        str(fault),
+                        kinds,
+                        is_part=True,
+                        command=command,
                     )
                 contents = self._kept(parts)
         return Activity(0, tuple(legs), stand, contents, "", kinds)

@@ -1,7 +1,7 @@
 """`pn2code check --geometry`: the geometry of a cell in all of its layouts, over all states of its net.
 
-    found = examine(opened, layout, limits, folder, d)         # Geometry; None after an error that was reported
-    found.answer                                               # "yes", "no", "unknown"
+found = examine(opened, layout, limits, folder, d)         # Geometry; None after an error that was reported
+found.answer                                               # "yes", "no", "unknown"
 """
 
 from __future__ import annotations
@@ -22,6 +22,7 @@ from pn2code.geometry import codes
 from pn2code.geometry.answers import Layout, Verdict, worst
 from pn2code.geometry.graph import CellGraph, explore_cell
 from pn2code.geometry.look import Look, Options
+from pn2code.geometry.words import OPEN
 from pn2code.robot import scene
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.verdict.opened import OpenNet
@@ -106,6 +107,8 @@ def examine(
         return Geometry((), f"the cell as it runs cannot be modelled: {problem}")
     if graph is None:
         return None
+    if not graph.arcs:
+        return Geometry((), OPEN.get(graph.why, graph.why))
 
     def explore(changed: Partition) -> CellGraph | None:
         try:

@@ -5,8 +5,8 @@ from pn2code.diagnostics.codes import register
 GEOMETRY_NO_CELL = register(
     "geometry-no-cell",
     "a net without a cell has no geometry",
-    "`pn2code check --geometry` looks at the arms of a cell. Which robots there are, and where they stand, is said in a "
-    "cell.toml beside the net (docs/cell.md).",
+    "`pn2code check --geometry` looks at the arms of a cell. Which robots there are, and where they stand, is said in "
+    "a cell.toml beside the net (docs/cell.md).",
 )
 GEOMETRY_NO_LIBRARY = register(
     "geometry-no-library",

@@ -10,11 +10,13 @@ Everything is swept once, in whatever situations it occurs.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
 from pn2code.base.frozen import frozen
-from pn2code.geometry.activities import spot
+from pn2code.geometry.activities import Activity, spot
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.sweeps import Apart, Sweeper
 from pn2code.geometry.tracks import ArmShape, Track
@@ -62,6 +64,8 @@ class Comparison:
             shape = self._shapes[leg.robot]
             link = None
             if held is not None:
+                # A name for the collision library that no other part has that is shown at the same time.
+                held = replace(held, name=f"{held.kind.name}.held_by_{leg.robot}")
                 link = shape.holding(held, *self._boxes[held.kind.name])
             self._tracks[key] = Track(shape, leg, link, held)
         return key, self._tracks[key]
@@ -91,13 +95,21 @@ class Comparison:
                 self._pairs[one, other] = self.sweeper.apart(first, second)
         return self._pairs[one, other]
 
+    def activities(self, a: Activity, b: Activity) -> Iterator[tuple[Leg, Leg, Apart]]:
+        """Each leg of one with each of the other, since nobody knows how far they are."""
+        for leg, contents in a.legs:
+            for other, more in b.legs:
+                own = (leg, contents.held_by(leg.robot))
+                yield leg, other, self.two(own, (other, more.held_by(other.robot)))
+
     def beside(self, a: tuple[Leg, Part | None], part: Part) -> Apart:
         """A leg and a part that stands."""
         key, track = self._track(*a)
         where = (key, spot(part))
         if where not in self._beside:
             self.compared += 1
-            self._beside[where] = self.sweeper.beside(track, part, self._boxes[part.kind.name])
+            shown = replace(part, name=f"{part.kind.name}.standing")
+            self._beside[where] = self.sweeper.beside(track, shown, self._boxes[part.kind.name])
         return self._beside[where]
 
     def around(self, leg: Leg, held: Part | None) -> tuple[Apart, Apart]:

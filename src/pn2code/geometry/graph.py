@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import json
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -22,6 +22,7 @@ from typing import Any
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.diagnostics import Diagnostics
+from pn2code.net.flat import ArcKind
 from pn2code.primitive_calls import Calls, Listener, Unknown
 from pn2code.robot.commands import Command
 from pn2code.semantics.evaluation.effects import Effect, effects_of
@@ -88,7 +89,9 @@ class CellGraph:
         self.elements, self.arcs, self.marked, self.why = elements, arcs, marked, why
         self.over = frozenset(i for i, m in enumerate(marked) if running.over in m)
         self._game = Game(partition.net, storage, files=Files(None))
-        self._listener = Listener(self._game, partition.config.primitives if partition.config else {})
+        self._listener = Listener(
+            self._game, partition.config.primitives if partition.config else {}
+        )
         self._commands: dict[int, tuple[Command, ...]] = {}
         effects = effects_of(partition.net.program)
         self.outside: dict[int, str] = {}
@@ -164,16 +167,17 @@ def explore_cell(
         return _read(partition, storage, running, rows, why if file.exists() else why or "states")
 
 
-def _rows(file: Path) -> list[Mapping[str, Any]]:
+def _rows(file: Path) -> Iterator[Mapping[str, Any]]:
     with file.open(encoding="utf-8", errors="surrogateescape") as lines:
-        return [json.loads(line) for line in lines]
+        for line in lines:
+            yield json.loads(line)
 
 
 def _read(
     partition: Partition,
     storage: Mapping[str, str],
     running: Running,
-    rows: Sequence[Mapping[str, Any]],
+    rows: Iterable[Mapping[str, Any]],
     why: str,
 ) -> CellGraph:
     count = len(partition.net.transitions)
@@ -184,7 +188,8 @@ def _read(
     final = {
         t.index
         for t in running.net.transitions[count:]
-        if any(a.place in ends for a in t.arcs) or t.name.startswith("cell.ends the robots")
+        if any(a.place in ends and a.kind is ArcKind.OUTPUT for a in t.arcs)
+        or t.name.startswith("cell.ends the robots")
     }
     known: dict[tuple[int, str], int] = {}
     elements: list[Element] = []

@@ -84,9 +84,7 @@ class Planner:
         key = (stand.number, None)
         if key not in self._legs:
             path = Still(stand.q, 0.0)
-            self._keep(
-                key, Leg(len(self.legs), stand.robot, None, "wait", path, stand, stand)
-            )
+            self._keep(key, Leg(len(self.legs), stand.robot, None, "wait", path, stand, stand))
         return self._legs[key]
 
     def leg(self, stand: Stand, command: Command) -> Leg:
@@ -113,7 +111,11 @@ class Planner:
         return Leg(number, stand.robot, command, motion.kind, motion.trajectory, stand, end)
 
     def _stand(self, robot: str, q: Array, T_base_tcp: Array) -> Stand:  # noqa: N803
-        key = (robot, *np.round(q, _DIGITS).tolist(), *np.round(T_base_tcp, _DIGITS).ravel().tolist())
+        key = (
+            robot,
+            *np.round(q, _DIGITS).tolist(),
+            *np.round(T_base_tcp, _DIGITS).ravel().tolist(),
+        )
         if key not in self._stands:
             found = Stand(len(self.stands), robot, np.array(q), np.array(T_base_tcp))
             self._stands[key] = found

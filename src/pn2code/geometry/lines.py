@@ -1,13 +1,13 @@
 """How far the joints of an arm turn within a piece of a line, although only samples of it are worked out.
 
     follower = Follower(kinematics, path)
-    q, turns = follower.pieces(a, b)       # joint positions in the middle of pieces; how far each axis may be from there
+    q, turns = follower.pieces(a, b)   # joint positions in the middle of pieces, and how far each axis may be from them
 
 On a line dq/ds = J(q)^-1 v, where v is the twist of the line. With sigma the least singular value of J at a sample, L a
 bound on how fast J changes with q, and w the norm of the twist times half the distance of samples: as long as
 2 L w <= sigma^2, q is no further from the sample than y = (sigma - sqrt(sigma^2 - 2 L w)) / L (the comparison theorem
-for y' = |v| / (sigma - L y)). In that ball the inverse of J differs by no more than |J^-1|^2 L y / (1 - |J^-1| L y), which
-bounds how fast each axis turns. A piece in which the condition does not hold is not known, and has to be divided.
+for y' = |v| / (sigma - L y)). In that ball the inverse of J differs by no more than |J^-1|^2 L y / (1 - |J^-1| L y),
+which bounds how fast each axis turns. A piece in which the condition does not hold is not known, and has to be divided.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import numpy as np
 from pn2code.robot.kinematics import TURN, Kinematics
 from pn2code.robot.model import AXES
 from pn2code.robot.motion import LinearTrajectory
-from pn2code.robot.transforms import Array
+from pn2code.robot.transforms import Array, Flags
 
 SAMPLES = 8
 """Steps within a piece."""
@@ -51,9 +51,7 @@ class Follower:
         away[~is_fine] = np.inf
         lost = ~is_fine & ((b - a) * self._speed < SHORTEST)
         if lost.any():
-            self.trouble = (
-                "the line passes so near to a singularity that what lies between samples is not known"
-            )
+            self.trouble = "the line passes so near to a singularity that what lies between samples is not known"
             away[lost] = 0.0
         return middle, away
 
@@ -64,8 +62,8 @@ class Follower:
         near = self._path.grid[index]
         return np.asarray(rows + TURN * np.round((near - rows) / TURN))
 
-    def _bounds(self, q: Array, half: Array) -> tuple[Array, Array]:
-        """How far each axis turns from a sample to half way to its neighbours, (n, samples, 6); of which pieces it is so."""
+    def _bounds(self, q: Array, half: Array) -> tuple[Array, Flags]:
+        """How far each axis turns from a sample to half way to the next, (n, samples, 6); for which pieces."""
         there = ~np.isnan(q).any(axis=(1, 2))
         flat = np.nan_to_num(q).reshape(-1, AXES)
         jacobian = self._k.jacobian_many(flat).reshape(*q.shape[:2], 6, AXES)

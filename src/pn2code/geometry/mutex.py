@@ -12,7 +12,7 @@ one of them takes it, whoever takes one away gives it back.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
 from pn2code.base.frozen import frozen
@@ -20,7 +20,7 @@ from pn2code.cell.partition import Partition
 from pn2code.geometry.graph import CellGraph
 from pn2code.ml.core import terms as core
 from pn2code.net.builder import Arc, Builder
-from pn2code.net.flat import ArcKind, FlatArc, Form
+from pn2code.net.flat import ArcKind, FlatArc, FlatNet, Form
 
 MOST_TRIED = 6
 """Ways to guard one zone."""
@@ -99,7 +99,8 @@ def _covers(graph: CellGraph, side: Collection[int]) -> Iterator[tuple[int, tupl
 
 def _guard(partition: Partition, places: tuple[int, ...]) -> Guard | None:
     """Who takes and who gives; None: the net does not show it, or one would take two."""
-    takes, gives = [], []
+    takes: list[int] = []
+    gives: list[int] = []
     for t in partition.net.transitions:
         change = 0
         for arc in t.arcs:
@@ -164,12 +165,9 @@ def fired(graph: CellGraph) -> frozenset[int]:
     return frozenset(e.transition for e in graph.elements if not e.is_step)
 
 
-def named(names: Sequence[str], places: Mapping[str, object]) -> str:
-    """A name for the place that the net does not have."""
-    base = "Zone" if not names else names[0]
-    number = 1
-    name = base
-    while name in places:
-        number += 1
-        name = f"{base} {number}"
-    return name
+def free_name(net: FlatNet) -> str:
+    """A name for the place that the net does not have, on its top page."""
+    taken = {p.name for p in net.places}
+    top = net.places[0].name.split(".")[0] + "." if "." in net.places[0].name else ""
+    numbered = (f"{top}Zone {n}" for n in itertools.count(2))
+    return next(x for x in itertools.chain([f"{top}Zone"], numbered) if x not in taken)

@@ -23,6 +23,8 @@ from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import Stand
 from pn2code.robot.parts import Part
 
+Side = tuple[int, int, int]
+"""What one arm does of two: (arm, transition, -1), or (arm, -1, place where it stands)."""
 MOST = 1_000_000
 """Situations that are looked at."""
 
@@ -69,8 +71,8 @@ class Situations:
         """by activities, of the earlier robot first"""
         self.beside: dict[tuple[int, int, str], Met] = {}
         """by (activity, leg of it, part that stands)"""
-        self.states: dict[tuple[int, int, int], set[int]] = {}
-        """by (arm, transition, -1), or (arm, -1, place where it stands): the states in which that is so"""
+        self.states: dict[Side, set[int]] = {}
+        """the states in which that is so"""
         self.why = graph.why
         names = {o.name: o.index for o in graph.partition.owners}
         self._arm_of = {names[r]: i for i, r in enumerate(self.robots) if r in names}
@@ -109,6 +111,18 @@ class Situations:
             situation, element = self._from[situation]
             out.append(element)
         return out[::-1]
+
+    def sides(self, a: Activity, b: Activity, met: Met) -> tuple[Side, Side]:
+        """What two arms do."""
+        one, other = met.elements
+        return self._side(a, one), self._side(b, other)
+
+    def _side(self, activity: Activity, element: int) -> Side:
+        leg = activity.legs[0][0]
+        arm = self.robots.index(leg.robot)
+        if element < 0:
+            return (arm, -1, leg.start.number)
+        return (arm, self.graph.elements[element].transition, -1)
 
     def _number(self, s: Situation, parent: int, element: int) -> int:
         if s.key not in self._numbers:
@@ -170,11 +184,11 @@ class Situations:
     def _note(self, number: int, here: Situation, under_way: dict[int, Activity]) -> None:
         busy: set[int] = set()
         for element in under_way:
-            e = self.graph.elements[element]
-            arm = self._arm_of.get(e.owner)
+            doing = self.graph.elements[element]
+            arm = self._arm_of.get(doing.owner)
             if arm is not None:
                 busy.add(arm)
-                self.states.setdefault((arm, e.transition, -1), set()).add(here.state)
+                self.states.setdefault((arm, doing.transition, -1), set()).add(here.state)
         for arm, stand in enumerate(here.stands):
             if arm not in busy:
                 self.states.setdefault((arm, -1, stand.number), set()).add(here.state)

@@ -4,7 +4,7 @@
     sweeper.apart(track, other)           # Apart("clear" | "touch" | "open", distance, ...)
     sweeper.around(track, "scene")        # how near a leg comes to what stands
 
-Capsules first (NumPy, all pairs of pieces at once), then the collision library in the middle of pieces. Pieces are clear
+Capsules first (NumPy, all pairs of pieces at once), then the collision library in the middle of pieces. These are clear
 when the distance there is more than no point can be further (`tracks`). So "clear" holds for all instants, not for
 samples. A piece that is smaller than `RESOLUTION` and neither clear nor touching is left open.
 """
@@ -24,7 +24,7 @@ from pn2code.geometry.tracks import Knots, Link, Track
 from pn2code.robot.backend import Clearance
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.parts import Part
-from pn2code.robot.transforms import Array, translation
+from pn2code.robot.transforms import Array, Numbers, translation
 
 RESOLUTION = 2e-4
 """m: two pieces in which no points are further apart than this are not divided."""
@@ -34,8 +34,8 @@ COARSE = 0.08
 """m: pieces in which points may be further from their place than this are divided before distances are measured."""
 SEARCHED = 0.5
 """m: larger clearances are not measured."""
-FINE = 1e-3
-"""m: how exactly the least clearance of a leg is told."""
+FINE, ROUGH = 2e-3, 0.15
+"""m, or part of it: how exactly the least clearance of a leg is told."""
 MOST_QUERIES = 20_000
 """Of the collision library, for one question."""
 
@@ -74,7 +74,9 @@ class Sweeper:
 
     def _show(self, parts: Iterable[Part]) -> None:
         """Exactly these parts are in the cell."""
-        wanted = {p.name: p for p in parts}
+        shown = list(parts)
+        wanted = {p.name: p for p in shown}
+        assert len(wanted) == len(shown), "each part has a name of its own"
         for name in [n for n in self._shown if n not in wanted]:
             away = self._shown.pop(name)
             self._backend.set_part(Part(name, away.kind, translation(0.0, 0.0, -1000.0)))
@@ -118,7 +120,6 @@ class Sweeper:
         is_free: bool,
     ) -> Apart:
         begun = self.queries
-        trouble = a.trouble or b.trouble
         pieces = np.array([[0.0, 1.0, 0.0, 1.0]])
         least, nearest = math.inf, math.inf
         where: Clearance | None = None
@@ -173,14 +174,14 @@ class Sweeper:
             gap_, at_, slack, joints = open_
             why = f"they come within {1000.0 * max(slack, 0.0):.2f} mm, which is less than can be told apart"
             return Apart("open", 0.0, nearest, gap_, at_, why, joints)
-        if trouble:
-            return Apart("open", 0.0, nearest, where, at, trouble)
+        if a.trouble or b.trouble:
+            return Apart("open", 0.0, nearest, where, at, a.trouble or b.trouble)
         return Apart("clear", least, nearest, where, at)
 
     # --- a leg and what stands -------------------------------------------------------------------
 
     def around(self, a: Track, kind: Literal["scene", "self"]) -> Apart:
-        """How near a leg comes to the scene, or to the arm itself: within `FINE` m."""
+        """How near a leg comes to the scene, or to the arm itself."""
         self._show([] if a.part is None else [a.part])
         begun = self.queries
         count = itertools.count()
@@ -192,7 +193,8 @@ class Sweeper:
         open_: Apart | None = None
         while heap:
             low, _, first, last = heapq.heappop(heap)
-            if low > max(best - FINE, ROUNDING) or (low >= SEARCHED):
+            fine = best - max(FINE, ROUGH * best)
+            if low > max(fine, ROUNDING) or low >= SEARCHED:
                 least = min(low, best)
                 break
             knots = a.knots(np.array([first]), np.array([last]))
@@ -231,11 +233,12 @@ class Sweeper:
                 elif slack <= spread + ROUNDING:
                     is_open = True
                 if slack <= spread + ROUNDING and wide * times <= RESOLUTION:
-                    why = f"`{gap.a}` and `{gap.b}` come within {1000.0 * max(slack, 0.0):.2f} mm, which is less than can be told apart"
+                    near = f"{1000.0 * max(slack, 0.0):.2f} mm"
+                    why = f"`{gap.a}` and `{gap.b}` come within {near}, which is less than can be told apart"
                     open_ = Apart("open", 0.0, best, gap, (middle, 0.0), why)
             if wide * times <= RESOLUTION:
                 continue
-            if is_open or bound < best - FINE or bound <= ROUNDING:
+            if is_open or bound < best - max(FINE, ROUGH * best) or bound <= ROUNDING:
                 low = ROUNDING if is_open else max(bound, 0.0)
                 for one, other in ((first, middle), (middle, last)):
                     heapq.heappush(heap, (low, next(count), one, other))
@@ -265,7 +268,7 @@ class _Standing:
         return self._knots.pick(np.zeros(len(a), int))
 
 
-def _unique(track: Track | _Standing, a: Array, b: Array) -> tuple[Knots, Array]:
+def _unique(track: Track | _Standing, a: Array, b: Array) -> tuple[Knots, Numbers]:
     """The knots of pieces, each worked out once, and which is which."""
     pairs, index = np.unique(np.stack([a, b], axis=1), axis=0, return_inverse=True)
     return track.knots(pairs[:, 0], pairs[:, 1]), np.asarray(index).reshape(-1)
@@ -291,7 +294,9 @@ def _spread_of(name: str, track: Track | _Standing, spread: Array) -> float:
 def _gaps(one: Knots, radii: Array, two: Knots, others: Array) -> Array:
     """A lower bound of the distance of each two links: between their capsules, (n, links, links)."""
     p, q = one.ends[:, :, None], two.ends[:, None, :]
-    return _between(p[..., 0, :], p[..., 1, :], q[..., 0, :], q[..., 1, :]) - radii[:, None] - others
+    return (
+        _between(p[..., 0, :], p[..., 1, :], q[..., 0, :], q[..., 1, :]) - radii[:, None] - others
+    )
 
 
 def _between(p1: Array, q1: Array, p2: Array, q2: Array) -> Array:
@@ -302,9 +307,13 @@ def _between(p1: Array, q1: Array, p2: Array, q2: Array) -> Array:
     tiny = 1e-12
     a, e = np.maximum(a, tiny), np.maximum(e, tiny)
     down = a * e - b * b
-    s = np.where(down > 1e-9 * a * e, np.clip((b * f - c * e) / np.maximum(down, tiny), 0.0, 1.0), 0.0)
+    s = np.where(
+        down > 1e-9 * a * e, np.clip((b * f - c * e) / np.maximum(down, 1e-300), 0.0, 1.0), 0.0
+    )
     t = (b * s + f) / e
-    s = np.where(t < 0.0, np.clip(-c / a, 0.0, 1.0), np.where(t > 1.0, np.clip((b - c) / a, 0.0, 1.0), s))
+    s = np.where(
+        t < 0.0, np.clip(-c / a, 0.0, 1.0), np.where(t > 1.0, np.clip((b - c) / a, 0.0, 1.0), s)
+    )
     t = np.clip(t, 0.0, 1.0)
     apart = (p1 + d1 * s[..., None]) - (p2 + d2 * t[..., None])
     return np.asarray(np.sqrt((apart * apart).sum(-1)))

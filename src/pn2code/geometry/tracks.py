@@ -1,4 +1,4 @@
-"""Legs in space: where the links of an arm are within a piece of a leg, and by how much no point of them is further off.
+"""Legs in space: where the links of an arm are within a piece of a leg, and by how much their points may be off.
 
     arm = ArmShape.of(robot, backend)
     track = Track(arm, leg, held=None)
@@ -26,7 +26,7 @@ from pn2code.robot.model import AXES
 from pn2code.robot.motion import JointTrajectory, LinearTrajectory, Still
 from pn2code.robot.parts import Part
 from pn2code.robot.robot_cell import CellRobot
-from pn2code.robot.transforms import Array
+from pn2code.robot.transforms import Array, Numbers
 from pn2code.robot.urdf import Joint, Urdf
 
 
@@ -126,7 +126,7 @@ class Knots:
     ends: Array
     spread: Array
 
-    def pick(self, rows: Array) -> Knots:
+    def pick(self, rows: Numbers) -> Knots:
         """Some of them."""
         return Knots(self.q[rows], self.ends[rows], self.spread[rows])
 
@@ -209,7 +209,9 @@ class Track:
         frames = kinematics.link_frames(q)
         axes = kinematics.axes_of(frames)
         base = self.shape.robot.T_world_base
-        turn = np.stack([np.eye(3)[None].repeat(len(q), 0), *(f[:, :3, :3] for f in frames)], axis=1)
+        turn = np.stack(
+            [np.eye(3)[None].repeat(len(q), 0), *(f[:, :3, :3] for f in frames)], axis=1
+        )
         shift = np.stack([np.zeros((len(q), 3)), *(f[:, :3, 3] for f in frames)], axis=1)
         turn, shift = turn[:, self._joints].transpose(0, 1, 3, 2), shift[:, self._joints, None]
         corners = self._corners @ turn + shift

@@ -22,10 +22,11 @@ OPEN = {
     "interrupted": "it was interrupted before all states of the cell were seen",
     "error": "an inscription raises an exception in a state of the cell",
     "situations": "arms and parts can be in more ways together than were looked at",
-    "overtaken": "a transition of a robot that is under way may be overtaken by another one, and what the robot does then is "
-    "not followed",
+    "overtaken": "a transition of a robot that is under way may be overtaken by another one, and what the robot does "
+    "then is not followed",
     "order": "what becomes of a part depends on how far two programs are that handle it at the same time",
-    "outside": "what a robot is told depends on more than tokens (random numbers, files, the time or the number of steps)",
+    "outside": "what a robot is told depends on more than tokens: random numbers, files, the time, or the number of "
+    "steps",
 }
 
 

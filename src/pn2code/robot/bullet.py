@@ -143,6 +143,7 @@ class BulletBackend:
         self._cell = cell
         self._gui = gui
         self._egl: int | None = None
+        self._ball: int | None = None
         self._folder = tempfile.TemporaryDirectory(prefix="pn2code-")
         self._names: dict[str, tuple[str, str | None]] = {}
         if looks and not gui:
@@ -526,6 +527,22 @@ class BulletBackend:
             ]
             self._rules[a, b] = max(depths, default=None)
         return self._rules[a, b]
+
+    def mark(self, point: Sequence[float], radius: float) -> None:
+        """Shows a red ball, of which no distances are measured; it moves when it is shown again."""
+        if self._ball is None:
+            shape = self._p.createVisualShape(
+                self._p.GEOM_SPHERE,
+                radius=radius,
+                rgbaColor=[0.9, 0.05, 0.05, 1.0],
+                physicsClientId=self._client,
+            )
+            self._ball = int(
+                self._p.createMultiBody(0, -1, shape, point, physicsClientId=self._client)
+            )
+        self._p.resetBasePositionAndOrientation(
+            self._ball, point, (0.0, 0.0, 0.0, 1.0), physicsClientId=self._client
+        )
 
     def render(self, camera: Camera, width: int, height: int) -> Picture | None:
         """A picture (height, width, 3), 0..255."""

@@ -1,0 +1,186 @@
+"""`pn2code check --geometry`: what arms may do at once, over all that the net permits."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from random import Random
+
+import pytest
+from typer.testing import CliRunner
+
+from helpers import carrying_cell
+from helpers.meeting_cell import NET, TOML, meeting_cell
+from helpers.netbuilder import cpn
+from helpers.thorough import amount
+from helpers.two_arm_cells import two_arm_cell
+from pn2code.cli.main import app
+from pn2code.diagnostics import Diagnostics
+from pn2code.geometry.answers import Layout
+from pn2code.geometry.check import examine
+from pn2code.run.cell import RunOptions, run_cell
+from pn2code.verdict.opened import read, with_inputs
+from pn2code.verify.exploring.limits import Limits
+
+pytestmark = [pytest.mark.cc, pytest.mark.bullet, pytest.mark.usefixtures("quick_build")]
+
+
+def looked(folder: Path, traces: Path) -> Layout:
+    d = Diagnostics()
+    opened = read(folder, {}, d)
+    assert opened is not None, [i.message for i in d]
+    found = examine(with_inputs(opened, d), None, Limits(threads=2), traces, d)
+    assert found is not None and not found.why, [i.message for i in d]
+    return found.layouts[0][0]
+
+
+def changed(text: str, old: str, new: str) -> str:
+    assert old in text
+    return text.replace(old, new)
+
+
+def test_arms_that_take_turns_keep_apart(tmp_path: Path) -> None:
+    found = looked(meeting_cell(tmp_path / "cell", guarded=True), tmp_path / "runs")
+    assert (found.of_moves, found.of_pairs, found.open) == ("yes", "yes", "")
+    assert not found.pairs and not found.proposals
+    assert {(m.robot, m.kind) for m in found.moves} == {
+        (r, k) for r in ("robot1", "robot2") for k in ("ptp", "lin")
+    }
+    assert not list((tmp_path / "runs").iterdir())
+
+
+def test_arms_that_do_not_are_found_with_a_run_and_what_would_help(tmp_path: Path) -> None:
+    cell = meeting_cell(tmp_path / "cell", guarded=False)
+    found = looked(cell, tmp_path / "runs")
+    assert (found.of_moves, found.of_pairs) == ("yes", "no")
+    (pair,) = found.pairs
+    assert pair.transitions == ("Top.Robot1.Visit1", "Top.Robot2.Visit2")
+    assert pair.run is not None and pair.run.file is not None and pair.run.under_way == 2
+    lines = [json.loads(x) for x in pair.run.file.read_text().splitlines()]
+    assert {x["transition"] for x in lines[-3:-1]} == set(pair.transitions)
+    result = CliRunner().invoke(app, ["replay", str(pair.run.file), str(cell)])
+    assert result.exit_code == 0, result.output
+    (proposal,) = found.proposals
+    assert proposal.works
+    assert proposal.takes == ("Top.Supervisor.Send1", "Top.Supervisor.Send2")
+    assert proposal.gives == ("Top.Supervisor.Got1", "Top.Supervisor.Got2")
+    assert "38 states" in proposal.says  # as many as with the place that the other net has
+
+
+def test_what_is_found_happens_in_a_run(tmp_path: Path) -> None:
+    cell = meeting_cell(tmp_path / "cell", guarded=False)
+    d = Diagnostics()
+    result = run_cell(cell, RunOptions(tmp_path / "run", looks=False, checked=False), d)
+    assert result is not None and result.record.verdict == "failed"
+    assert "collide" in result.record.reason
+
+
+def test_an_arm_that_rests_in_the_way(tmp_path: Path) -> None:
+    """Not only moves count: the first arm stays over the point where both work."""
+    stays = changed(NET, "moveLinear (at (1100.0, rz)); moveHome ())", "())")
+    net = changed(stays, "work ();", "work ()")
+    net = changed(net, "work () ())", "work ())")
+    found = looked(meeting_cell(tmp_path / "cell", guarded=True, net=net), tmp_path / "runs")
+    assert found.of_pairs == "no"
+    assert any("" in p.transitions and "stands" in p.doing for p in found.pairs)
+
+
+def test_from_where_a_move_begins_counts(tmp_path: Path) -> None:
+    """A line that is fine from where one transition leaves the arm, but not from HOME, where another one leaves it."""
+    net = changed(
+        NET,
+        "fun visit rz = (moveJoint (at (1100.0, rz)); moveLinear (at (700.0, rz)); work ();",
+        "fun visit rz = (moveLinear {x = ~900.0, y = 0.0, z = 1300.0, rx = 180.0, ry = 0.0, rz = rz}; work ();",
+    )
+    found = looked(meeting_cell(tmp_path / "cell", guarded=True, net=net), tmp_path / "runs")
+    bad = [m for m in found.moves if m.answer == "no"]
+    assert found.of_moves == "no"
+    assert any(m.robot == "robot1" and m.run is not None for m in bad)
+    assert any("axis 2" in m.problem for m in bad)
+
+
+def test_a_line_through_something_that_stands(tmp_path: Path) -> None:
+    post = '[scene]\nobjects = [{ name = "post", pose = { x = 1.5, z = 0.5 }, size = [0.1, 0.1, 1.0] }]\n'
+    cell = meeting_cell(tmp_path / "cell", guarded=True, toml=TOML + post)
+    found = looked(cell, tmp_path / "runs")
+    bad = [m for m in found.moves if m.answer == "no"]
+    assert {m.kind for m in bad} == {"lin"} and all("`post`" in m.problem for m in bad)
+
+
+def test_parts_that_are_carried(tmp_path: Path) -> None:
+    found = looked(carrying_cell.write(tmp_path / "cell"), tmp_path / "runs")
+    assert (found.of_moves, found.of_pairs, found.open) == ("yes", "yes", "")
+    assert any(m.command.endswith("with box") for m in found.moves)
+
+
+def test_a_part_in_the_way(tmp_path: Path) -> None:
+    """The second box is set where the first one stands."""
+    cell = carrying_cell.write(tmp_path / "cell")
+    text = changed(
+        carrying_cell.NET, "at (1200.0 + 250.0 * Real.fromInt (n mod 2), 600.0", "at (1200.0, 600.0"
+    )
+    text = changed(text, "+ 250.0 * Real.fromInt (n div 2)", "")
+    (cell / "cell.cpn").write_bytes(cpn(text))
+    found = looked(cell, tmp_path / "runs")
+    assert found.of_pairs == "no"
+    assert any(p.doing[1].startswith("box stands at 1200 600") for p in found.pairs)
+
+
+def test_air_that_is_gripped(tmp_path: Path) -> None:
+    cell = carrying_cell.write(tmp_path / "cell")
+    text = changed(carrying_cell.NET, "val infeed = at (1500.0", "val infeed = at (1550.0")
+    (cell / "cell.cpn").write_bytes(cpn(text))
+    found = looked(cell, tmp_path / "runs")
+    assert found.of_moves == "no"
+    assert any("grips air" in m.problem for m in found.moves)
+
+
+def test_the_command(tmp_path: Path) -> None:
+    cell = meeting_cell(tmp_path / "cell", guarded=False)
+    arguments = ["check", "--geometry", str(cell), "-o", str(tmp_path / "runs")]
+    result = CliRunner().invoke(app, [*arguments, "--json", "--pictures"])
+    assert result.exit_code == 1
+    found = json.loads(result.stdout)
+    layout = found["layouts"][0]
+    assert (found["answer"], layout["moves_answer"], layout["pairs_answer"]) == ("no", "yes", "no")
+    (pair,) = layout["pairs"]
+    assert Path(pair["picture"]).is_file() and Path(pair["run"]["trace"]).is_file()
+    assert layout["proposals"][0]["works"]
+    result = CliRunner().invoke(app, arguments)
+    assert result.exit_code == 1
+    assert "may be under way at once" in result.stdout
+    assert "proposal: a place `Top.Zone` of the supervisor" in result.stdout
+
+
+def test_what_it_needs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    cell = meeting_cell(tmp_path / "cell", guarded=False)
+    run = CliRunner()
+    assert run.invoke(app, ["check", str(cell), "--layout", "a"]).exit_code == 2
+    result = run.invoke(app, ["check", "--geometry", str(cell), "--layout", "a"])
+    assert result.exit_code == 1 and "layout" in result.stderr
+    result = run.invoke(app, ["check", "--geometry", str(cell / "cell.cpn")])
+    (cell / "cell.toml").rename(tmp_path / "cell.toml")
+    result = run.invoke(app, ["check", "--geometry", str(cell / "cell.cpn")])
+    assert result.exit_code == 1 and "geometry-no-cell" in result.stderr
+    (tmp_path / "cell.toml").rename(cell / "cell.toml")
+    monkeypatch.setattr("pn2code.geometry.check.importlib.util.find_spec", lambda _name: None)
+    result = run.invoke(app, ["check", "--geometry", str(cell)])
+    assert "geometry-no-library" in result.stderr and "pip install" in result.stderr
+
+
+@pytest.mark.parametrize("seed", [1, 3, 8, *range(100, 100 + amount(0, 40))])
+def test_no_run_contradicts_a_yes(seed: int, tmp_path: Path) -> None:
+    """Random cells of two arms: where a run collides, it was not said that none does."""
+    net, toml = two_arm_cell(Random(seed))
+    cell = tmp_path / "cell"
+    cell.mkdir()
+    (cell / "cell.cpn").write_bytes(cpn(net))
+    (cell / "cell.toml").write_text(toml)
+    found = looked(cell, tmp_path / "runs")
+    d = Diagnostics()
+    result = run_cell(cell, RunOptions(tmp_path / "run", looks=False, checked=False), d)
+    assert result is not None, [i.message for i in d]
+    assert result.record.verdict == "finished" or found.answer == "no", result.record.reason
+    if result.record.verdict != "finished" and "collide" in result.record.reason:
+        robots = [f"robot{i}" for i in (1, 2) if f"`robot{i}/" in result.record.reason]
+        assert (found.of_pairs if len(robots) == 2 else found.of_moves) == "no"
