@@ -36,6 +36,7 @@ LONG = {
     "pn2code verify examples/sorting": CELLS,
     "pn2code verify examples/shared-zone --no-medium": CELLS,
     "pn2code verify examples/timed": "31,014 markings with their times, and the medium",
+    "pn2code check --geometry examples/shared-zone": "test_geometry looks at smaller cells; ./dev geometry at this one",
     "pn2code conform examples/riveting": "10 seconds; test_riveting_net compares it",
     "pn2code conform examples/sorting": "all states of a larger cell: a minute",
     "pn2code conform examples/shared-zone --most 1500": "the same",

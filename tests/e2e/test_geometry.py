@@ -77,9 +77,7 @@ def test_what_is_found_happens_in_a_run(tmp_path: Path) -> None:
 
 def test_an_arm_that_rests_in_the_way(tmp_path: Path) -> None:
     """Not only moves count: the first arm stays over the point where both work."""
-    stays = changed(NET, "moveLinear (at (1100.0, rz)); moveHome ())", "())")
-    net = changed(stays, "work ();", "work ()")
-    net = changed(net, "work () ())", "work ())")
+    net = changed(NET, "work (); moveLinear (at (1100.0, rz)); moveHome ());", "work ());")
     found = looked(meeting_cell(tmp_path / "cell", guarded=True, net=net), tmp_path / "runs")
     assert found.of_pairs == "no"
     assert any("" in p.transitions and "stands" in p.doing for p in found.pairs)
@@ -89,8 +87,8 @@ def test_from_where_a_move_begins_counts(tmp_path: Path) -> None:
     """A line that is fine from where one transition leaves the arm, but not from HOME, where another one leaves it."""
     net = changed(
         NET,
-        "fun visit rz = (moveJoint (at (1100.0, rz)); moveLinear (at (700.0, rz)); work ();",
-        "fun visit rz = (moveLinear {x = ~900.0, y = 0.0, z = 1300.0, rx = 180.0, ry = 0.0, rz = rz}; work ();",
+        "fun come rz = (moveJoint (at (1100.0, rz)); moveLinear (at (700.0, rz)));",
+        "fun come rz = moveLinear {x = ~900.0, y = 0.0, z = 1300.0, rx = 180.0, ry = 0.0, rz = rz};",
     )
     found = looked(meeting_cell(tmp_path / "cell", guarded=True, net=net), tmp_path / "runs")
     bad = [m for m in found.moves if m.answer == "no"]

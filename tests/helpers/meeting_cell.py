@@ -15,7 +15,8 @@ net meeting
   fun moveHome () = ();
   fun work () = ();
   fun at (z, rz) : POSE = {x = 1500.0, y = 0.0, z = z, rx = 180.0, ry = 0.0, rz = rz};
-  fun visit rz = (moveJoint (at (1100.0, rz)); moveLinear (at (700.0, rz)); work (); moveLinear (at (1100.0, rz)); moveHome ());
+  fun come rz = (moveJoint (at (1100.0, rz)); moveLinear (at (700.0, rz)));
+  fun visit rz = (come rz; work (); moveLinear (at (1100.0, rz)); moveHome ());
   var n : INT;
   page Top
     place f1 : INT

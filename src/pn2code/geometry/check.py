@@ -22,7 +22,7 @@ from pn2code.geometry import codes
 from pn2code.geometry.answers import Layout, Verdict, worst
 from pn2code.geometry.graph import CellGraph, explore_cell
 from pn2code.geometry.look import Look, Options
-from pn2code.geometry.words import OPEN
+from pn2code.geometry.words import reason
 from pn2code.robot import scene
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.verdict.opened import OpenNet
@@ -108,7 +108,7 @@ def examine(
     if graph is None:
         return None
     if not graph.arcs:
-        return Geometry((), OPEN.get(graph.why, graph.why))
+        return Geometry((), reason(graph.why))
 
     def explore(changed: Partition) -> CellGraph | None:
         try:

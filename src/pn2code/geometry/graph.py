@@ -33,6 +33,7 @@ from pn2code.semantics.values.colour_json import from_json
 from pn2code.verify.controller.running import Running
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits, Reduction
+from pn2code.verify.exploring.nondeterminism import undetermined
 from pn2code.verify.exploring.programs import Sizes
 
 MOST_STATES = 300_000
@@ -86,7 +87,8 @@ class CellGraph:
         why: str,
     ) -> None:
         self.partition, self.storage, self.running = partition, storage, running
-        self.elements, self.arcs, self.marked, self.why = elements, arcs, marked, why
+        self.elements, self.arcs, self.marked = elements, arcs, marked
+        self.why = why or undetermined(partition.net)
         self.over = frozenset(i for i, m in enumerate(marked) if running.over in m)
         self._game = Game(partition.net, storage, files=Files(None))
         self._listener = Listener(
@@ -97,7 +99,8 @@ class CellGraph:
         self.outside: dict[int, str] = {}
         for t in partition.net.transitions:
             if t.code is not None and partition.transition_owner[t.index] > 0:
-                found = effects.of(t.code.action, *t.guards) & _OUTSIDE
+                taken = [a.inscription.value for a in t.arcs if a.inscription is not None]
+                found = effects.of(t.code.action, *t.guards, *taken) & _OUTSIDE
                 self.outside[t.index] = min((e.value for e in found), default="")
 
     def commands(self, number: int) -> tuple[Command, ...]:
@@ -163,8 +166,13 @@ def explore_cell(
         if found is None:
             return None
         why = "" if found.complete else found.why
-        rows = _rows(file) if file.exists() else ()
-        return _read(partition, storage, running, rows, why if file.exists() else why or "states")
+        if not file.exists():
+            return _read(partition, storage, running, (), why or "states")
+        graph = _read(partition, storage, running, _rows(file), why)
+        seen = len(graph.arcs), sum(map(len, graph.arcs))
+        if not why and seen != (found.nodes, found.arcs):
+            graph.why = "file"
+        return graph
 
 
 def _rows(file: Path) -> Iterator[Mapping[str, Any]]:

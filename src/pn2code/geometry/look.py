@@ -19,7 +19,7 @@ from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.runs import Run, write
 from pn2code.geometry.situations import Met, Side, Situations
 from pn2code.geometry.sweeps import Apart
-from pn2code.geometry.words import OPEN, numbers, words
+from pn2code.geometry.words import numbers, reason, words
 from pn2code.geometry.zones import Explore, Zones
 from pn2code.robot.backend import Clearance
 from pn2code.robot.bullet import BulletBackend
@@ -92,7 +92,7 @@ class Look:
             self.comparison.compared,
             self.comparison.sweeper.queries,
             time.perf_counter() - began,
-            OPEN.get(found.why, found.why),
+            reason(found.why),
             tuple(zones or ()),
             self.nearest,
         )

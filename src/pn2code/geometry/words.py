@@ -14,8 +14,9 @@ from pn2code.robot.commands import (
     ToolAction,
     Wait,
 )
+from pn2code.verify.answers.reasons import clause
 
-OPEN = {
+_OPEN = {
     "states": "the cell has more states than were looked at",
     "seconds": "the time was over before all states of the cell were seen",
     "memory": "the memory was full before all states of the cell were seen",
@@ -25,9 +26,15 @@ OPEN = {
     "overtaken": "a transition of a robot that is under way may be overtaken by another one, and what the robot does "
     "then is not followed",
     "order": "what becomes of a part depends on how far two programs are that handle it at the same time",
+    "file": "the graph of the cell could not be written into a temporary file; is the disk full?",
     "outside": "what a robot is told depends on more than tokens: random numbers, files, the time, or the number of "
     "steps",
 }
+
+
+def reason(why: str) -> str:
+    """Why not all is known, as a clause; "": all is."""
+    return _OPEN.get(why) or clause(why)
 
 
 def words(command: Command | None) -> str:

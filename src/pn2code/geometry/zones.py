@@ -14,7 +14,7 @@ from pn2code.geometry.answers import Proposal
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.situations import Side, Situations
-from pn2code.geometry.words import OPEN
+from pn2code.geometry.words import reason
 
 Explore = Callable[[Partition], CellGraph | None]
 Sides = tuple[Side, Side]
@@ -95,7 +95,7 @@ class Zones:
         found = Situations(graph, self._found.doing, self._found.robots)
         found.explore()
         if found.why:
-            return f"with it, {OPEN.get(found.why, found.why)}", ""
+            return f"with it, {reason(found.why)}", ""
         if self._can_meet(found, zone, bad):
             return "with it, arms can still collide", ""
         end = "the cell comes to its end from each of them"

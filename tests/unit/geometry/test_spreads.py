@@ -1,4 +1,4 @@
-"""What is said to hold between samples: no point of a link is further off than the spread, capsules are around shapes."""
+"""What holds between samples: no point of a link is further off than the spread, and capsules are around shapes."""
 
 from __future__ import annotations
 
