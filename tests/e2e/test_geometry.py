@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from random import Random
 
 import pytest
+from tools.geometry.wander import wander
 from typer.testing import CliRunner
 
 from helpers import carrying_cell
@@ -14,10 +16,16 @@ from helpers.meeting_cell import NET, TOML, meeting_cell
 from helpers.netbuilder import cpn
 from helpers.thorough import amount
 from helpers.two_arm_cells import two_arm_cell
+from pn2code.cell.divide import divide
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
 from pn2code.geometry.answers import Layout
 from pn2code.geometry.check import examine
+from pn2code.geometry.compare import Comparison
+from pn2code.geometry.graph import explore_cell
+from pn2code.geometry.legs import Planner
+from pn2code.robot import scene
+from pn2code.robot.bullet import BulletBackend
 from pn2code.run.cell import RunOptions, run_cell
 from pn2code.verdict.opened import read, with_inputs
 from pn2code.verify.exploring.limits import Limits
@@ -37,6 +45,23 @@ def looked(folder: Path, traces: Path) -> Layout:
 def changed(text: str, old: str, new: str) -> str:
     assert old in text
     return text.replace(old, new)
+
+
+def random_cell(seed: int, folder: Path) -> Path:
+    net, toml = two_arm_cell(Random(seed))
+    cell = folder / "cell"
+    cell.mkdir()
+    (cell / "cell.cpn").write_bytes(cpn(net))
+    (cell / "cell.toml").write_text(toml)
+    return cell
+
+
+def ran(cell: Path, out: Path) -> str:
+    """Why a run in PyBullet fails; "": it does not."""
+    d = Diagnostics()
+    result = run_cell(cell, RunOptions(out, looks=False, checked=False), d)
+    assert result is not None, [i.message for i in d]
+    return result.record.reason
 
 
 def test_arms_that_take_turns_keep_apart(tmp_path: Path) -> None:
@@ -69,10 +94,7 @@ def test_arms_that_do_not_are_found_with_a_run_and_what_would_help(tmp_path: Pat
 
 def test_what_is_found_happens_in_a_run(tmp_path: Path) -> None:
     cell = meeting_cell(tmp_path / "cell", guarded=False)
-    d = Diagnostics()
-    result = run_cell(cell, RunOptions(tmp_path / "run", looks=False, checked=False), d)
-    assert result is not None and result.record.verdict == "failed"
-    assert "collide" in result.record.reason
+    assert "collide" in ran(cell, tmp_path / "run")
 
 
 def test_an_arm_that_rests_in_the_way(tmp_path: Path) -> None:
@@ -169,16 +191,80 @@ def test_what_it_needs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.parametrize("seed", [1, 3, 8, *range(100, 100 + amount(0, 40))])
 def test_no_run_contradicts_a_yes(seed: int, tmp_path: Path) -> None:
     """Random cells of two arms: where a run collides, it was not said that none does."""
-    net, toml = two_arm_cell(Random(seed))
-    cell = tmp_path / "cell"
-    cell.mkdir()
-    (cell / "cell.cpn").write_bytes(cpn(net))
-    (cell / "cell.toml").write_text(toml)
+    cell = random_cell(seed, tmp_path)
     found = looked(cell, tmp_path / "runs")
+    met = ran(cell, tmp_path / "run")
+    assert not met or found.answer == "no", met
+    if "collide" in met:
+        robots = [i for i in (1, 2) if f"`robot{i}/" in met]
+        assert (found.of_pairs if len(robots) == 2 else found.of_moves) == "no", met
+
+
+@pytest.mark.parametrize("seed", range(200, 200 + amount(4, 100)))
+def test_no_walk_contradicts_a_yes(seed: int, tmp_path: Path) -> None:
+    """The same with arms that may take any time for their ways, on random walks."""
+    cell = random_cell(seed, tmp_path)
     d = Diagnostics()
-    result = run_cell(cell, RunOptions(tmp_path / "run", looks=False, checked=False), d)
-    assert result is not None, [i.message for i in d]
-    assert result.record.verdict == "finished" or found.answer == "no", result.record.reason
-    if result.record.verdict != "finished" and "collide" in result.record.reason:
-        robots = [f"robot{i}" for i in (1, 2) if f"`robot{i}/" in result.record.reason]
-        assert (found.of_pairs if len(robots) == 2 else found.of_moves) == "no"
+    opened = read(cell, {}, d)
+    assert opened is not None, [i.message for i in d]
+    found = examine(opened, None, Limits(threads=2), tmp_path / "runs", d)
+    assert found is not None
+    layout, arms = found.layouts[0]
+    partition = divide(opened.flat, opened.config, d)
+    assert partition is not None
+    graph = explore_cell(partition, opened.storage, Limits(), d)
+    assert graph is not None
+    met = [wander(graph, arms, Random(number), 3_000) for number in range(4)]
+    assert layout.answer == "no" or met == [None] * 4
+
+
+def test_what_is_not_known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    cell = meeting_cell(tmp_path / "cell", guarded=True)
+    arguments = ["check", "--geometry", str(cell), "-o", str(tmp_path / "runs")]
+    with monkeypatch.context() as fewer:
+        fewer.setattr("pn2code.geometry.graph.MOST_STATES", 20)
+        result = CliRunner().invoke(app, arguments)
+        assert result.exit_code == 3
+        assert "not known: the cell has more states than were looked at" in result.stdout
+    with monkeypatch.context() as fewer:
+        fewer.setattr("pn2code.geometry.situations.MOST", 20)
+        result = CliRunner().invoke(app, arguments)
+        assert result.exit_code == 3
+        assert "arms and parts can be in more ways together" in result.stdout
+    with monkeypatch.context() as fewer:
+        fewer.setattr("pn2code.geometry.sweeps.MOST_QUERIES", 1)
+        result = CliRunner().invoke(app, arguments)
+        assert result.exit_code == 3
+        assert "more than 1 distances would have to be measured" in result.stdout
+    text = changed(NET, "visit 0.0)", "visit (Real.fromInt (discrete (0, 1))))")
+    (cell / "cell.cpn").write_bytes(cpn(text.replace("TAKE", "").replace("GIVE", "")))
+    result = CliRunner().invoke(app, arguments)
+    assert "random numbers" in result.stdout and result.exit_code != 0
+
+
+def test_arms_that_nearly_touch(tmp_path: Path) -> None:
+    """Two arms at rest whose shapes are less apart than can be told: neither yes nor no."""
+    d = Diagnostics()
+    cell = meeting_cell(tmp_path / "cell", guarded=True)
+    opened = read(cell, {}, d)
+    assert opened is not None and opened.config is not None
+    config = opened.config
+    arms = scene.load(config.geometry, config.folder, config.locator.origin, d)
+    assert arms is not None
+    planner = Planner(arms)
+    backend = BulletBackend(arms, looks=False)
+    compared = Comparison(arms, planner, backend)
+    one, other = (planner.standing(planner.home(r.name)) for r in arms.robots)
+    apart = compared.two((one, None), (other, None))
+    assert apart.outcome == "clear"
+    distance = min(x.distance for x in backend.pairs("robots", "robot1", 5.0, "robot2"))
+    backend.close()
+    for more, outcome in ((5e-6, "open"), (-1e-3, "touch"), (5e-3, "clear")):
+        base = arms.robots[1].base
+        moved = replace(base, x=base.x - distance + more)
+        near = replace(arms, robots=(arms.robots[0], replace(arms.robots[1], base=moved)))
+        planner, backend = Planner(near), BulletBackend(near, looks=False)
+        one, other = (planner.standing(planner.home(r.name)) for r in near.robots)
+        found = Comparison(near, planner, backend).two((one, None), (other, None))
+        backend.close()
+        assert found.outcome == outcome, (more, found)

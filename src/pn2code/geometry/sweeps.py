@@ -150,7 +150,7 @@ class Sweeper:
                 self.queries += 1
                 q_a, q_b = one.q[one_at[i]], two.q[two_at[i]]
                 found = measure(q_a, q_b, float(wide[i]) + 2.0 * ROUNDING)
-                middle = (float(own[:2].mean()), float(own[2:].mean()))
+                middle = ((own[0] + own[1]) / 2.0, (own[2] + own[3]) / 2.0)
                 is_clear = True
                 for gap in found:
                     allowed = None if is_free else gap.allowed
