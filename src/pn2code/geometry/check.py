@@ -81,21 +81,13 @@ def examine(
     Raises:
         GameError: a declaration or an initial marking raises an exception.
     """
-    config = opened.config
-    if config is None:
-        d.error(
-            codes.GEOMETRY_NO_CELL,
-            "only a cell has a geometry, and there is no cell.toml",
-            Origin(opened.flat.file),
-            hint="give a cell.toml or its folder",
-        )
-        return None
-    if not _is_there(config, d):
+    config = cell_of(opened, d)
+    if config is None or not _is_there(config, d):
         return None
     partition = divide(opened.flat, config, d)
     if partition is None:
         return None
-    cells = _cells(config, layout, d)
+    cells = cells_of(config, layout, d)
     if cells is None:
         return None
     if not any(cell.robots for _, cell in cells):
@@ -129,6 +121,18 @@ def examine(
     return Geometry(tuple(found))
 
 
+def cell_of(opened: OpenNet, d: Diagnostics) -> CellConfig | None:
+    """The cell beside a net; None, which is reported: there is none."""
+    if opened.config is None:
+        d.error(
+            codes.GEOMETRY_NO_CELL,
+            "only a cell has a geometry, and there is no cell.toml",
+            Origin(opened.flat.file),
+            hint="give a cell.toml or its folder",
+        )
+    return opened.config
+
+
 def _is_there(config: CellConfig, d: Diagnostics) -> bool:
     if importlib.util.find_spec("pybullet") is not None:
         return True
@@ -142,9 +146,10 @@ def _is_there(config: CellConfig, d: Diagnostics) -> bool:
     return False
 
 
-def _cells(
+def cells_of(
     config: CellConfig, layout: str | None, d: Diagnostics
 ) -> list[tuple[str, RobotCell]] | None:
+    """What stands in each layout, or in one of them; None after an error that was reported."""
     names = list(config.layouts) or [""]
     if layout is not None:
         chosen = load_cell(config.path, d, layout=layout)
