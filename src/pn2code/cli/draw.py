@@ -11,7 +11,7 @@ import typer
 
 from pn2code.base.os_reason import os_reason
 from pn2code.base.whole_file import whole_file
-from pn2code.base.writable import file_obstacle, folder_obstacle
+from pn2code.base.writable import why_file_unwritable, why_folder_unwritable
 from pn2code.cell.codes import INPUT_MISSING
 from pn2code.cell.locate import locate
 from pn2code.cli.options import (
@@ -29,6 +29,7 @@ from pn2code.cli.options import (
 )
 from pn2code.diagnostics import Diagnostics, Origin, Severity
 from pn2code.diagnostics.suggestions import nearest
+from pn2code.drawing import raster
 from pn2code.drawing.codes import DRAW_ARRANGED, DRAW_OUTPUT, DRAW_PAGE, DRAW_TRACE
 from pn2code.input_files import begin
 from pn2code.net import front
@@ -49,13 +50,14 @@ EPILOG = """Examples:
 
   pn2code draw net.cpn -o pages/
 
+  pn2code draw net.cpn -o net.pdf
+
   pn2code draw net.cpn --trace net.dead-40.trace.jsonl -o steps.html
 """
 
 _AROUND = 300
 """Steps before and after the chosen one that are told in an HTML file."""
 _HTML = (".html", ".htm")
-_PICTURES = (".png", ".pdf", ".jpg", ".jpeg", ".eps", ".ps")
 
 
 def draw(
@@ -65,8 +67,8 @@ def draw(
         typer.Option(
             *OUTPUT_FLAGS,
             metavar="FILE|DIR|-",
-            help="Where to write: FILE.svg, FILE.html (all pages, linked), DIR/ (an SVG for each page), "
-            "or - (an SVG on stdout).",
+            help="Where to write: FILE.svg, FILE.png, FILE.pdf, FILE.html (all pages, linked), DIR/ (an SVG "
+            "for each page), or - (an SVG on stdout).",
         ),
     ],
     page: Annotated[
@@ -119,7 +121,7 @@ def draw(
         stop(d, form)
     pages = _chosen(document, page, form)
     state: State | None = None
-    moments: list[TraceFrame] = []
+    frames: list[TraceFrame] = []
     chosen = last = 0
     storage = config.storage if config else {}
     if step is not None and trace is None:
@@ -139,21 +141,25 @@ def draw(
     if flat is not None and not d.has_errors:
         if trace is not None:
             around = _AROUND if kind == "html" else 0
-            moments, chosen, last = _moments(flat, storage, trace, step, around, form)
-            state = next(m.state for m in moments if m.number == chosen)
+            frames, chosen, last = _frames(flat, storage, trace, step, around, form)
+            state = next(m.state for m in frames if m.number == chosen)
         elif marking:
             state = _state(flat, storage, seed, form)
     if instance is not None:
         _check_instance(state, pages, instance, form)
     drawing = _Drawing(document, pages, _problems(d), state, instance)
-    if kind == "html" and moments:
-        _write({Path(output): drawing.steps(path, moments, chosen, last, trace)}, form)
+    if kind == "html" and frames:
+        _write({Path(output): drawing.steps(path, frames, chosen, last, trace)}, form)
     elif kind == "html":
         _write({Path(output): drawing.html(path)}, form)
     elif kind == "folder":
         _write({Path(output) / name: text for name, text in drawing.files().items()}, form)
     elif kind == "-":
         sys.stdout.write(drawing.svg())
+    elif kind == ".png":
+        _write({Path(output): raster.png(drawing.svg())}, form)
+    elif kind == ".pdf":
+        _write({Path(output): raster.pdf(list(drawing.files().values()))}, form)
     else:
         _write({Path(output): drawing.svg()}, form)
     drawing.note_arranged(d)
@@ -161,18 +167,22 @@ def draw(
 
 
 def _kind(output: str, form: Format) -> str:
-    """What `-o` asks for: "html", "svg", "folder" or "-"."""
+    """What `-o` asks for: "html", "svg", ".png", ".pdf", "folder" or "-"."""
     path = Path(output)
     if output == "-":
         return "-"
     if output.endswith(("/", "\\")) or path.is_dir():
         return "folder"
     suffix = path.suffix.lower()
+    if suffix in raster.KINDS:
+        missing = raster.why_not(suffix)
+        if missing:
+            hint = f"{raster.INSTALL} brings it, or draw an .svg and convert it"
+            _refuse(DRAW_OUTPUT, f"a `{suffix}` file needs {missing}, which is missing", hint, form)
+        return suffix
     if suffix not in (*_HTML, ".svg"):
         wrong = f"`{suffix}` is no format of drawings" if suffix else f"`{output}` has no extension"
-        hint = "use .svg or .html, or a folder with `/` at the end"
-        if suffix in _PICTURES:
-            hint = "draw an .svg and convert it: rsvg-convert, inkscape, a browser's print dialogue"
+        hint = "use .svg, .png, .pdf or .html, or a folder with `/` at the end"
         _refuse(DRAW_OUTPUT, wrong, hint, form)
     return "svg" if suffix == ".svg" else "html"
 
@@ -182,7 +192,11 @@ def _check_output(output: Path, kind: str, form: Format) -> None:
     if kind == "-":
         return
     is_folder = kind == "folder"
-    why = folder_obstacle(output) if is_folder else file_obstacle(output, makes_folders=True)
+    why = (
+        why_folder_unwritable(output)
+        if is_folder
+        else why_file_unwritable(output, makes_folders=True)
+    )
     if why:
         hint = "give another file or folder with -o"
         _refuse(DRAW_OUTPUT, f"cannot write `{output}`: {why}", hint, form)
@@ -240,7 +254,7 @@ def _state(flat: FlatNet, storage: Mapping[str, str], seed: int, form: Format) -
         return State(flat, marking, enabled_in(game, marking))
 
 
-def _moments(
+def _frames(
     flat: FlatNet,
     storage: Mapping[str, str],
     trace: Path,
@@ -344,14 +358,14 @@ class _Drawing:
         return draw_net(shown, Facts(path.name, remark, self.base.problems), figures)
 
     def steps(
-        self, path: Path, moments: list[TraceFrame], chosen: int, last: int, trace: Path | None
+        self, path: Path, frames: list[TraceFrame], chosen: int, last: int, trace: Path | None
     ) -> str:
         """One HTML file with the steps of a trace."""
         from pn2code.verify.answers.lasso import read_loop
         from pn2code.verify.report.steps_page import steps_page
 
         loop = None if trace is None else read_loop(trace)
-        return steps_page(self.document, self.pages, moments, chosen, last, path.name, loop)
+        return steps_page(self.document, self.pages, frames, chosen, last, path.name, loop)
 
     def note_arranged(self, d: Diagnostics) -> None:
         """A note for each page whose positions are ours."""
@@ -366,13 +380,14 @@ class _Drawing:
                 )
 
 
-def _write(files: dict[Path, str], form: Format) -> None:
+def _write(files: Mapping[Path, str | bytes], form: Format) -> None:
     """Write the files; folders that are missing are made."""
-    for path, text in files.items():
+    for path, drawn in files.items():
+        data = drawn.encode("utf-8") if isinstance(drawn, str) else drawn
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             with whole_file(path) as beside:
-                beside.write_bytes(text.encode("utf-8"))
+                beside.write_bytes(data)
         except OSError as problem:
             hint = "give another file or folder with -o"
             _refuse(DRAW_OUTPUT, f"cannot write `{path}`: {os_reason(problem)}", hint, form)

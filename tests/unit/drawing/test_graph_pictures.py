@@ -86,7 +86,7 @@ def test_what_the_graph_says(graph: StateGraph) -> None:
     assert graph.components == 2 and graph.cyclic == {0}
     assert graph.dead == {3} and graph.home == {3}
     assert len(graph.arcs) == 4  # equal ones count once
-    assert [graph.arcs[i].label for i in graph.way] == ['Move s="<b>&"', 'Burn s="<b>&"']
+    assert [graph.arcs[i].label for i in graph.path] == ['Move s="<b>&"', 'Burn s="<b>&"']
 
 
 def test_the_picture_has_every_node_and_line_once(graph: StateGraph) -> None:

@@ -57,7 +57,7 @@ def page(net: FlatNet, graph: StateGraph, remarks: Sequence[str] = ()) -> str:
         remarks=remarks,
         legend=[{"sample": Markup(sample(item)), "text": item.text} for item in legend(graph)],
         picture=Markup(picture),
-        way=[graph.arcs[i] for i in graph.way],
+        path=[graph.arcs[i] for i in graph.path],
         timed=net.timed,
         nodes=[
             {
