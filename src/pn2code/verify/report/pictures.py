@@ -25,7 +25,7 @@ from pn2code.verify.exploring.result import Exploration
 
 GRAPH_KINDS = (".svg", ".html")
 PLOT_KINDS = (".svg", ".png")
-MOST_SVG, MOST_HTML = 300, 2000
+MOST_SVG, MOST_HTML = 300, 5000
 """Nodes in a picture; with a page around it more can be found."""
 _MOST_ARCS = 12
 """Times as many arcs."""
