@@ -204,18 +204,28 @@ def test_no_run_contradicts_a_yes(seed: int, tmp_path: Path) -> None:
 def test_no_walk_contradicts_a_yes(seed: int, tmp_path: Path) -> None:
     """The same with arms that may take any time for their ways, on random walks."""
     cell = random_cell(seed, tmp_path)
+    layout, met = walked(cell, tmp_path / "runs")
+    assert layout.answer == "no" or met == [None] * 4
+
+
+def test_walks_with_parts(tmp_path: Path) -> None:
+    layout, met = walked(carrying_cell.write(tmp_path / "cell"), tmp_path / "runs")
+    assert layout.answer == "yes" and met == [None] * 4
+
+
+def walked(cell: Path, runs: Path) -> tuple[Layout, list[str | None]]:
+    """What is said of a cell, and what happens on four walks."""
     d = Diagnostics()
     opened = read(cell, {}, d)
     assert opened is not None, [i.message for i in d]
-    found = examine(opened, None, Limits(threads=2), tmp_path / "runs", d)
+    found = examine(opened, None, Limits(threads=2), runs, d)
     assert found is not None
     layout, arms = found.layouts[0]
     partition = divide(opened.flat, opened.config, d)
     assert partition is not None
     graph = explore_cell(partition, opened.storage, Limits(), d)
     assert graph is not None
-    met = [wander(graph, arms, Random(number), 3_000) for number in range(4)]
-    assert layout.answer == "no" or met == [None] * 4
+    return layout, [wander(graph, arms, Random(number), 3_000) for number in range(4)]
 
 
 def test_what_is_not_known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,11 +15,14 @@ import numpy as np
 
 from pn2code.geometry.graph import CellGraph
 from pn2code.robot.bullet import BulletBackend
-from pn2code.robot.commands import Command
+from pn2code.robot.commands import Command, ToolAction
 from pn2code.robot.executor import MotionKind, RobotExecutor
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion import MotionFault
+from pn2code.robot.parts import PartFault
 from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.transforms import matrix_of
+from pn2code.run.handling import PartKeeper
 
 
 class _Arm:
@@ -46,16 +49,25 @@ class _Arm:
         self.part = 0.0
         self.executor.begin(self.left.pop(0), 0.0)
 
-    def advance(self, most: float) -> bool:
+    def advance(self, most: float, parts: PartKeeper) -> bool:
         """Goes on; whether all of its commands are done."""
+        motion = self.executor.motion
         self.part = min(1.0, self.part + most)
-        if self.part < 1.0:
+        if self.part < 1.0 or motion is None:
             return False
         self.executor.finish()
+        handle(self.executor.robot.name, motion.command, self.executor, parts)
         if self.left:
             self.begin()
             return False
         return True
+
+
+def handle(name: str, command: Command, executor: RobotExecutor | None, parts: PartKeeper) -> None:
+    """What a command does to a part at its end."""
+    if isinstance(command, ToolAction) and command.handling is not None:
+        tcp = None if executor is None else matrix_of(executor.pose)
+        parts.handle(name, command.handling, tcp)
 
 
 def wander(graph: CellGraph, cell: RobotCell, choice: Random, steps: int) -> str | None:
@@ -65,6 +77,8 @@ def wander(graph: CellGraph, cell: RobotCell, choice: Random, steps: int) -> str
         return _walk(graph, cell, backend, choice, steps)
     except MotionFault as fault:
         return f"cannot move: {fault.message}"
+    except PartFault as fault:
+        return f"cannot handle a part: {fault}"
     finally:
         backend.close()
 
@@ -73,9 +87,13 @@ def _walk(
     graph: CellGraph, cell: RobotCell, backend: BulletBackend, choice: Random, steps: int
 ) -> str | None:
     monitor = Monitor(cell, backend, searched=0.05)
+    parts = PartKeeper(cell, backend)
+    parts.begin()
+    names = {r.name for r in cell.robots}
     arms = {
         o.index: _Arm(RobotExecutor(cell.robot(o.name), cell.motion))
-        for o in graph.partition.owners[1:]
+        for o in graph.partition.owners
+        if o.name in names
     }
     state = 0
     pace = {owner: choice.choice([0.02, 0.1, 0.4]) for owner in arms}
@@ -94,10 +112,12 @@ def _walk(
                 arms[owner].element, arms[owner].left = element, list(commands)
                 arms[owner].begin()
             else:
+                for command in commands:  # of a device
+                    handle(graph.partition.owners[owner].name, command, None, parts)
                 state = target
         elif busy:
             owner = choice.choice(sorted(busy))
-            if busy[owner].advance(choice.random() * pace[owner]):
+            if busy[owner].advance(choice.random() * pace[owner], parts):
                 state = dict(graph.arcs[state])[busy[owner].element]
                 busy[owner].element = -1
         else:

@@ -197,10 +197,17 @@ class Layout:
             "pairs_compared": self.looked,
             "distances_measured": self.queries,
             "seconds": round(self.seconds, 2),
+            "nearest": self._nearest_row(),
             "moves": [m.row() for m in self.moves],
             "pairs": [p.row() for p in self.pairs],
             "proposals": [p.row() for p in self.proposals],
         }
+
+    def _nearest_row(self) -> dict[str, Any] | None:
+        if self.nearest is None:
+            return None
+        links = [self.nearest.a, self.nearest.b]
+        return {"links": links, "distance_m": round(self.nearest.distance, 5)}
 
 
 def run_row(run: Run | None) -> dict[str, Any] | None:

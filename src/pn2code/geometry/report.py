@@ -51,6 +51,12 @@ def _verdicts(layout: Layout) -> Iterator[str]:
         f"{_ANSWERS[layout.of_pairs]:>9}  no two arms collide, nor an arm and a part, in any interleaving that the net "
         f"permits ({resolution})"
     )
+    if layout.of_pairs == "yes" and layout.nearest is not None:
+        near = layout.nearest
+        yield (
+            f"           the nearest that was measured: `{near.a}` and `{near.b}`, "
+            f"{1000.0 * near.distance:.0f} mm"
+        )
 
 
 def _table(moves: Sequence[Move], full: bool) -> Iterator[str]:
