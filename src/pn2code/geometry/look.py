@@ -1,6 +1,7 @@
 """The whole check of a layout: situations, moves, pairs, and what would keep pairs apart.
 
-answer = look(graph, cell, Options(folder, "cell"))        # answers.Layout
+looking = Look(graph, cell, Options(folder, "cell"), "")
+looking.answer()                                          # answers.Layout
 """
 
 from __future__ import annotations
