@@ -24,7 +24,7 @@ from pn2code.diagnostics import Span
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.terms import Symbol
-from pn2code.net.flat import ArcKind, BindAll, BindEquation, BindRandom
+from pn2code.net.flat import ArcKind, BindAll, BindEquation, BindRandom, FlatPlace
 from pn2code.robot_scripts import codes as codes
 from pn2code.robot_scripts import membership
 from pn2code.robot_scripts.conditions import Asked, Order, all_hold
@@ -37,6 +37,7 @@ from pn2code.robot_scripts.not_a_number import may_be_nan
 from pn2code.robot_scripts.strict import Owed, Path, open_of, statements, without_repetition
 from pn2code.robot_scripts.values import (
     FALSE,
+    TRUE,
     Closure,
     Env,
     Fields,
@@ -49,8 +50,10 @@ from pn2code.robot_scripts.values import (
     as_quantity,
     as_real,
     choose,
+    conjunction,
     equal,
     flatten,
+    logical_not,
     select,
     shape_of_colset,
 )
@@ -449,6 +452,7 @@ class StepTranslator:
         outputs = statements(
             open_of(self._outputs(situation, env), None, self.known(situation.ordered))
         )
+        outputs += self._illegal(situation, env)
         out = without_repetition([*acts, *outputs], situation.ordered, expressions_of(mark))
         out.append(Line(mark))
         out += [Line(t.Clear(t.Target(self.file_names[p]))) for p in situation.channels]
@@ -480,6 +484,17 @@ class StepTranslator:
         env: Env,
     ) -> list[Owed]:
         """What is computed for some of the ways in which an inscription turns out."""
+        path, out = self._way(conditions, env)
+        if path is not None:
+            for e in values:
+                if e is not None:
+                    out += self.pure.owing(e, env, path)[1]
+        return out
+
+    def _way(
+        self, conditions: Iterable[tuple[core.Exp, bool]], env: Env
+    ) -> tuple[Path | None, list[Owed]]:
+        """Where an inscription turns out in some way (None: never), and what is computed to ask that."""
         out: list[Owed] = []
         path: Path = ()
         for condition, holds in conditions:
@@ -488,13 +503,58 @@ class StepTranslator:
             assert isinstance(value, Scalar)
             if isinstance(value.exp, t.Value):
                 if value.exp.value is not holds:
-                    return out
+                    return None, out
                 continue
             path = (*path, (value.exp, holds))
-        for e in values:
-            if e is not None:
-                out += self.pure.owing(e, env, path)[1]
-        return out
+        return path, out
+
+    def _illegal(self, situation: Situation, env: Env) -> list[Node]:
+        """A stop for each token that is put and is not in the colour set of its place: the net raises an exception."""
+        transition = situation.step.transition
+        results = {v.uid for v in transition.code.outputs} if transition.code else set()
+        taken = {v.uid for v in transition.variables} - results
+        known = self.known(situation.ordered).with_colours(transition.variables, taken, env)
+        out: list[Node] = []
+        for arc in transition.arcs:
+            if arc.kind not in (ArcKind.OUTPUT, ArcKind.BOTH) or arc.inscription is None:
+                continue
+            place = self.machine.net.places[arc.place]
+            for conditions, values, _ in delayed_tokens(
+                arc.inscription.value, arc.inscription.form
+            ):
+                try:
+                    path, _ = self._way(conditions, env)
+                    if path is None:
+                        continue
+                    there = known
+                    for condition, holds in path:
+                        there = there.with_condition(condition, holds)
+                    for e in values or ():
+                        value = self.pure.evaluate(e, env)
+                        asked = membership.of_token(place.colset, value, e, taken, there)
+                        if asked:
+                            out.append(self._refused(situation, place, value, path, asked))
+                except UnsupportedError:
+                    if arc.place not in self.machine.sinks:
+                        raise
+        return list(dict.fromkeys(out))
+
+    def _refused(
+        self,
+        situation: Situation,
+        place: FlatPlace,
+        value: Value,
+        path: Path,
+        asked: list[t.Expression],
+    ) -> Node:
+        """`if not (s + 1 <= 3) then stop "Report: place Count cannot hold", s + 1`."""
+        way = Owed(path, FALSE).condition if path else TRUE
+        test = conjunction([way, logical_not(conjunction(asked))])
+        name = situation.step.transition.short
+        text = f"{name}: colour set {place.colset.name} of place {place.short} does not have"
+        return Chain(
+            ((test, (Line(t.Stop((t.Value(text), *(x.exp for x in _scalars(value))))),)),), None
+        )
 
     def datum(self, value: Value, colset: Colset | None, span: Span) -> t.Datum:
         """A value as traces write it: records with their fields in declared order."""
