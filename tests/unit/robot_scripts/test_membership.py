@@ -1,4 +1,4 @@
-"""Variables and places hold only what is in their colour sets: a script asks that where it is not known, or is refused."""
+"""Variables and places hold only what is in their colour sets: a script asks where it is not known, or is refused."""
 
 from __future__ import annotations
 
