@@ -78,7 +78,7 @@ def summarise(
         "final": list(record.final),
         "cycle_seconds": round(record.time, 6),
         "rows": len(merged_rows(record.messages, report.rows)) if report.rows else 0,
-        **summary_counts(record, dict(report.count), occurrences),
+        "counts": summary_counts(record, dict(report.count), occurrences),
         "activities": totals,
         "robots": per_robot,
         "clearances": _minima(record),
@@ -156,7 +156,7 @@ def _counted(entry: dict[str, Any]) -> str:
         if label != key and values:
             shown = " ".join(condition_text(v, 1) for v in values[:MOST_NUMBERS])
             more = " ..." if len(values) > MOST_NUMBERS else ""
-            out += f"; at the {len(values)} {label}: {shown}{more}"
+            out += f"; at {label}: {shown}{more}"
     return out
 
 
@@ -183,10 +183,8 @@ def page(summary: dict[str, Any]) -> RenderableType:
     facts.add_row("cycle time", f"{summary['cycle_seconds']:.2f} s (simulated)")
     if summary["rows"]:
         facts.add_row("rows sent", str(summary["rows"]))
-    known = {"cell", "layout", "backend", "verdict", "reason", "cycle_seconds", "rows"}
-    for key, value in summary.items():
-        if key not in known and isinstance(value, int):
-            facts.add_row(key, str(value))
+    for label, number in summary["counts"].items():
+        facts.add_row(label, str(number))
     for name, entry in summary["clearances"].items():
         facts.add_row(
             f"least clearance, {name}", f"{entry['m'] * 1000:.1f} mm at {entry['t']:.2f} s"
