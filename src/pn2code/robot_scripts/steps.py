@@ -24,13 +24,14 @@ from pn2code.diagnostics import Span
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.terms import Symbol
-from pn2code.net.flat import ArcKind, BindAll, BindEquation, BindRandom, FlatPlace
+from pn2code.net.flat import ArcKind, BindAll, BindEquation, BindRandom
 from pn2code.robot_scripts import codes as codes
 from pn2code.robot_scripts import membership
 from pn2code.robot_scripts.assignments import one_after_the_other
 from pn2code.robot_scripts.conditions import Asked, Order
 from pn2code.robot_scripts.evaluate import Evaluator
 from pn2code.robot_scripts.failing import Known
+from pn2code.robot_scripts.illegal_tokens import stops
 from pn2code.robot_scripts.ir import Chain, Comment, Element, Line, Node
 from pn2code.robot_scripts.machine import Machine, Outcome, Step, delayed_tokens
 from pn2code.robot_scripts.names import Names, identifier
@@ -39,7 +40,6 @@ from pn2code.robot_scripts.situation import Situation
 from pn2code.robot_scripts.strict import Owed, Path, open_of, statements, without_repetition
 from pn2code.robot_scripts.values import (
     FALSE,
-    TRUE,
     Closure,
     Env,
     Fields,
@@ -52,10 +52,8 @@ from pn2code.robot_scripts.values import (
     as_quantity,
     as_real,
     choose,
-    conjunction,
     equal,
     flatten,
-    logical_not,
     scalars_in,
     select,
     shape_of_colset,
@@ -426,7 +424,7 @@ class StepTranslator:
         outputs = statements(
             open_of(self._outputs(situation, env), None, self.known(situation.ordered))
         )
-        outputs += self._illegal(situation, env)
+        outputs += stops(self.machine, self.pure, situation, env, self.known, self._way)
         out = without_repetition([*acts, *outputs], situation.ordered, expressions_of(mark))
         out.append(Line(mark))
         out += [Line(t.Clear(t.Target(self.file_names[p]))) for p in situation.channels]
@@ -481,54 +479,6 @@ class StepTranslator:
                 continue
             path = (*path, (value.exp, holds))
         return path, out
-
-    def _illegal(self, situation: Situation, env: Env) -> list[Node]:
-        """A stop for each token that is put and is not in the colour set of its place: the net raises an exception."""
-        transition = situation.step.transition
-        results = {v.uid for v in transition.code.outputs} if transition.code else set()
-        taken = {v.uid for v in transition.variables} - results
-        known = self.known(situation.ordered).with_colours(transition.variables, taken, env)
-        out: list[Node] = []
-        for arc in transition.arcs:
-            if arc.kind not in (ArcKind.OUTPUT, ArcKind.BOTH) or arc.inscription is None:
-                continue
-            place = self.machine.net.places[arc.place]
-            for conditions, values, _ in delayed_tokens(
-                arc.inscription.value, arc.inscription.form
-            ):
-                try:
-                    path, _ = self._way(conditions, env)
-                    if path is None:
-                        continue
-                    there = known
-                    for condition, holds in path:
-                        there = there.with_condition(condition, holds)
-                    for e in values or ():
-                        value = self.pure.evaluate(e, env)
-                        asked = membership.of_token(place.colset, value, e, taken, there)
-                        if asked:
-                            out.append(self._refused(situation, place, value, path, asked))
-                except UnsupportedError:
-                    if arc.place not in self.machine.sinks:
-                        raise
-        return list(dict.fromkeys(out))
-
-    def _refused(
-        self,
-        situation: Situation,
-        place: FlatPlace,
-        value: Value,
-        path: Path,
-        asked: list[t.Expression],
-    ) -> Node:
-        """`if not (s + 1 <= 3) then stop "Report: place Count cannot hold", s + 1`."""
-        way = Owed(path, FALSE).condition if path else TRUE
-        test = conjunction([way, logical_not(conjunction(asked))])
-        name = situation.step.transition.short
-        text = f"{name}: colour set {place.colset.name} of place {place.short} does not have"
-        return Chain(
-            ((test, (Line(t.Stop((t.Value(text), *(x.exp for x in scalars_in(value))))),)),), None
-        )
 
     def datum(self, value: Value, colset: Colset | None, span: Span) -> t.Datum:
         """A value as traces write it: records with their fields in declared order."""
