@@ -12,8 +12,8 @@ from pn2code.base.frozen import frozen
 
 REACHED = ("states", "seconds", "memory")
 """Why an exploration has ended, where it was for a limit."""
-TURNS_FROM = 100_000
-"""States of a cell that are looked at before its programs are looked at in turns; as many as are seen quickly."""
+TURNS_FROM = 1_000_000
+"""States of a cell that are looked at before its programs are looked at in turns; fewer are all seen in seconds."""
 _LEAST = 64
 _UNKNOWN = 2048
 """MiB, when the system does not say what is free."""
