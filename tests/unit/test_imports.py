@@ -58,10 +58,14 @@ ALLOWED: dict[str, set[str]] = {
     "replay": {"cell", "channels", "drawing", "emission", "net", "reading", "robot", "run", "semantics", "trace"},
     "verdict": {"arms", "cell", "channel_model", "channels", "diagnostics", "division", "input_files", "ml", "net",
         "pipeline", "properties", "robot", "robot_scripts", "run", "semantics", "tdl", "trace", "verify"},
+    "web": set(),
+    "play": {"cell", "diagnostics", "drawing", "ml", "monitors", "net", "properties", "reading", "replay", "semantics",
+        "simulate", "trace", "verdict", "verify", "web"},
     "cli": {"cell", "cell_file", "channels", "conform", "contest", "convert", "diagnostics", "division", "drawing",
-        "emission", "input_files", "ir", "lowering", "ml", "net", "new_cell", "pipeline", "reading", "replay", "report",
+        "emission", "input_files", "ir", "lowering", "ml", "net", "new_cell", "pipeline", "play", "reading", "replay", "report",
         "robot",
-        "robot_scripts", "run", "semantics", "simulate", "structure", "tdl", "trace", "unfold", "verdict", "verify"},
+        "robot_scripts", "run", "semantics", "simulate", "structure", "tdl", "trace", "unfold", "verdict", "verify",
+        "web"},
     "start": {"cli"},
 }  # fmt: skip
 EVERYWHERE = {"base"}
