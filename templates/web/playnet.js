@@ -52,10 +52,21 @@ export class PlayNet extends NetView {
     const position = this.position;
     if (!position) return; // while the page is built
     const entry = position.entry(k);
-    if (k < 1) this.status.textContent = "The beginning";
+    if (!this.net.transitions.length) this.status.textContent = "";
+    else if (k < 1) this.status.textContent = "The beginning";
     else if (!entry) this.status.textContent = "";
     else if (entry.kind !== "step") this.status.textContent = position.words(entry);
     this.enable();
+  }
+
+  /**
+   * @param {number} k
+   * @param {number} t
+   * @param {{isPlaying: boolean, speed: number}} how
+   */
+  update(k, t, how) {
+    super.update(k, t, how);
+    if (this.isFitted) this.fit(); // a marking may have grown beyond the edge
   }
 
   /** Marks what is enabled on this page, and the pages on which anything is. */

@@ -7,7 +7,7 @@ import { wrong } from "./parts.js";
 /** @typedef {import("./link.js").Link} Link */
 /** @typedef {import("./position.js").Position} Position */
 
-const WIDTH = 150;
+const WIDTH = 172;
 const HEIGHT = 54;
 const GAP_X = 18;
 const GAP_Y = 46;
@@ -122,7 +122,7 @@ export class SpaceView {
     const group = svg("g", { class: "occurrence" }, svg("title", { text: shorten(full.join("\n"), 2000) }), svg("path", { d: path, "marker-end": "url(#tip)" }));
     if (isLabelled && isDown) {
       const label = own.length > 1 ? `${name(own[0])} … ${own.length}` : name(own[0]);
-      group.append(svg("text", { x: (from.x + to.x) / 2 + 4, y: (from.y + to.y) / 2 + 3, text: shorten(label, 22) }));
+      group.append(svg("text", { x: from.x + (to.x - from.x) * 0.7 + 4, y: from.y + (to.y - from.y) * 0.7 + 2, text: shorten(label, 22) }));
     }
     return group;
   }
