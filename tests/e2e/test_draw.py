@@ -4,11 +4,14 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import imageio.v2 as imageio
+import pypdf
 import pytest
 from lxml import etree
 
 from helpers import netbuilder
 from pn2code.cli import main
+from pn2code.drawing import raster
 
 SVG = "{http://www.w3.org/2000/svg}"
 
@@ -140,7 +143,7 @@ def test_an_unknown_page_gets_a_suggestion(
     assert not (tmp_path / "x.svg").exists()
 
 
-@pytest.mark.parametrize("name", ["net.png", "net.xyz", "net"])
+@pytest.mark.parametrize("name", ["net.jpg", "net.xyz", "net"])
 def test_other_formats_are_refused(
     net: Path, tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -184,3 +187,38 @@ def test_the_riveting_cell(root: Path, tmp_path: Path) -> None:
     out = tmp_path / "cell.html"
     assert draw(root / "examples" / "riveting", "-o", out, "--marking") == 0
     assert out.read_text(encoding="utf-8").count("<section") >= 12
+
+
+def test_png(net: Path, tmp_path: Path) -> None:
+    assert draw(net, "-o", tmp_path / "top.png", "--page", "Top", "--marking") == 0
+    assert draw(net, "-o", tmp_path / "top.svg", "--page", "Top", "--marking") == 0
+    picture = imageio.imread(tmp_path / "top.png")
+    root = etree.parse(tmp_path / "top.svg").getroot()
+    size = [2 * float(root.attrib[name]) for name in ("height", "width")]
+    assert picture.shape[:2] == pytest.approx(size, abs=1)
+    colours = {tuple(map(int, p)) for row in picture[..., :3] for p in row}
+    assert (255, 255, 255) in colours and len(colours) > 10
+    green = [c for c in colours if c[1] > c[0] + 40 and c[1] > c[2] + 40]
+    assert green, "the number of tokens"
+
+
+def test_pdf(net: Path, tmp_path: Path) -> None:
+    assert draw(net, "-o", tmp_path / "net.pdf", "--marking") == 0
+    top, sub = pypdf.PdfReader(tmp_path / "net.pdf").pages
+    assert "Left" in top.extract_text() and "1`7" in top.extract_text()
+    assert "Eat" in sub.extract_text() and "[n > 5]" in sub.extract_text()
+
+
+def test_what_is_missing_is_named(
+    net: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    assert draw(net, "-o", tmp_path / "net.png") == 2
+    assert "`resvg_py`" in (error := capsys.readouterr().err) and "pn2code[pictures]" in error
+
+
+def test_a_drawing_that_is_too_large_for_its_pixels(monkeypatch: pytest.MonkeyPatch) -> None:
+    svg = '<svg xmlns="http://www.w3.org/2000/svg" width="400" height="100"></svg>'
+    assert imageio.imread(raster.png(svg)).shape[:2] == (200, 800)
+    monkeypatch.setattr(raster, "_MOST_PIXELS", 10_000)
+    assert imageio.imread(raster.png(svg)).shape[:2] == (50, 200)

@@ -91,8 +91,8 @@ VERB: dict[str, tuple[list[str], Callable[[Done, Path], int]]] = {
     "run": (["run", "--backend", "fake", "--no-pictures", "-o", "out"], ran),
 }
 """The command of each verb, and how many pieces there were by what it says."""
-UNREAD = {"dump", "contest", "robot", "explain", "show", "init", "cell"}
-"""Verbs that read no such file."""
+UNREAD = {"dump", "contest", "robot", "explain", "show", "init", "cell", "report"}
+"""Verbs that read no such file themselves."""
 
 
 def table(root: Path) -> Iterator[tuple[list[str], list[str]]]:

@@ -29,6 +29,7 @@ from pn2code.cli.options import (
 )
 from pn2code.diagnostics import Diagnostics, Origin, Severity
 from pn2code.diagnostics.suggestions import nearest
+from pn2code.drawing import raster
 from pn2code.drawing.codes import DRAW_ARRANGED, DRAW_OUTPUT, DRAW_PAGE, DRAW_TRACE
 from pn2code.input_files import begin
 from pn2code.net import front
@@ -49,13 +50,14 @@ EPILOG = """Examples:
 
   pn2code draw net.cpn -o pages/
 
+  pn2code draw net.cpn -o net.pdf
+
   pn2code draw net.cpn --trace net.dead-40.trace.jsonl -o steps.html
 """
 
 _AROUND = 300
 """Steps before and after the chosen one that are told in an HTML file."""
 _HTML = (".html", ".htm")
-_PICTURES = (".png", ".pdf", ".jpg", ".jpeg", ".eps", ".ps")
 
 
 def draw(
@@ -65,8 +67,8 @@ def draw(
         typer.Option(
             *OUTPUT_FLAGS,
             metavar="FILE|DIR|-",
-            help="Where to write: FILE.svg, FILE.html (all pages, linked), DIR/ (an SVG for each page), "
-            "or - (an SVG on stdout).",
+            help="Where to write: FILE.svg, FILE.png, FILE.pdf, FILE.html (all pages, linked), DIR/ (an SVG "
+            "for each page), or - (an SVG on stdout).",
         ),
     ],
     page: Annotated[
@@ -154,6 +156,10 @@ def draw(
         _write({Path(output) / name: text for name, text in drawing.files().items()}, form)
     elif kind == "-":
         sys.stdout.write(drawing.svg())
+    elif kind == ".png":
+        _write({Path(output): raster.png(drawing.svg())}, form)
+    elif kind == ".pdf":
+        _write({Path(output): raster.pdf(list(drawing.files().values()))}, form)
     else:
         _write({Path(output): drawing.svg()}, form)
     drawing.note_arranged(d)
@@ -161,18 +167,22 @@ def draw(
 
 
 def _kind(output: str, form: Format) -> str:
-    """What `-o` asks for: "html", "svg", "folder" or "-"."""
+    """What `-o` asks for: "html", "svg", ".png", ".pdf", "folder" or "-"."""
     path = Path(output)
     if output == "-":
         return "-"
     if output.endswith(("/", "\\")) or path.is_dir():
         return "folder"
     suffix = path.suffix.lower()
+    if suffix in raster.KINDS:
+        missing = raster.why_not(suffix)
+        if missing:
+            hint = f"{raster.INSTALL} brings it, or draw an .svg and convert it"
+            _refuse(DRAW_OUTPUT, f"a `{suffix}` file needs {missing}, which is missing", hint, form)
+        return suffix
     if suffix not in (*_HTML, ".svg"):
         wrong = f"`{suffix}` is no format of drawings" if suffix else f"`{output}` has no extension"
-        hint = "use .svg or .html, or a folder with `/` at the end"
-        if suffix in _PICTURES:
-            hint = "draw an .svg and convert it: rsvg-convert, inkscape, a browser's print dialogue"
+        hint = "use .svg, .png, .pdf or .html, or a folder with `/` at the end"
         _refuse(DRAW_OUTPUT, wrong, hint, form)
     return "svg" if suffix == ".svg" else "html"
 
@@ -366,13 +376,14 @@ class _Drawing:
                 )
 
 
-def _write(files: dict[Path, str], form: Format) -> None:
+def _write(files: Mapping[Path, str | bytes], form: Format) -> None:
     """Write the files; folders that are missing are made."""
-    for path, text in files.items():
+    for path, drawn in files.items():
+        data = drawn.encode("utf-8") if isinstance(drawn, str) else drawn
         try:
             path.parent.mkdir(parents=True, exist_ok=True)
             with whole_file(path) as beside:
-                beside.write_bytes(text.encode("utf-8"))
+                beside.write_bytes(data)
         except OSError as problem:
             hint = "give another file or folder with -o"
             _refuse(DRAW_OUTPUT, f"cannot write `{path}`: {os_reason(problem)}", hint, form)

@@ -37,6 +37,7 @@ VERBS = {
     "run": "Run a cell: build the supervisor, run it together with the robots' programs, and report.",
     "robot": "Run one robot's script in real time, as a process of its own.",
     "show": "Write a run as one HTML page that shows the net, the arms, the messages and the time together.",
+    "report": "Check, draw, verify, generate, compare and run a cell, and write a report of all of it.",
     "draw": "Draw the pages of a net. Elements with errors are red.",
     "convert": "Convert a net to PNML or to a Promela model for SPIN, or a PNML net to a net of CPN Tools.",
     "contest": "Answer an examination of the Model Checking Contest, in its own words.",

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import typer
 
 from pn2code.base.os_reason import os_reason
+from pn2code.cell.codes import INPUT_MISSING
 from pn2code.cli.options import (
     DEFAULT_SEED,
     Exit,
@@ -20,7 +21,7 @@ from pn2code.cli.options import (
     print_diagnostics,
     stop,
 )
-from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.diagnostics import Diagnostic, Diagnostics, Origin, Severity
 from pn2code.diagnostics.codes import register
 
 if TYPE_CHECKING:
@@ -88,6 +89,8 @@ def play(
         stop(d, form)
     if loaded.opened is None:
         print_diagnostics(d.sorted(), form)
+    else:
+        print_diagnostics((i for i in d.sorted() if _is_urgent(i)), form)
     seats = None
     try:
         if loaded.opened is not None:
@@ -112,6 +115,12 @@ def play(
             seats.close()
     if loaded.opened is None:
         raise typer.Exit(Exit.MODEL)
+
+
+def _is_urgent(item: Diagnostic) -> bool:
+    """What changes what is played, or will stop it; the page has the other warnings."""
+    is_warning = item.severity is Severity.WARNING
+    return is_warning and (item.code.startswith("unsupported-") or item.code == INPUT_MISSING)
 
 
 def _try(seats: Seats, trace: Path | None, form: Format) -> None:

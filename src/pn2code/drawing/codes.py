@@ -11,10 +11,10 @@ DRAW_PAGE = register(
 DRAW_OUTPUT = register(
     "draw-output",
     "the drawing cannot be written",
-    "`-o` names what to write: a file that ends in `.svg` (with `--page` one page, otherwise all pages, one below the "
-    "other), a file that ends in `.html` (all pages, linked), a folder (one SVG for each page), or `-` for an SVG on "
-    "standard output. Other formats are made from an SVG by other programs, for example `rsvg-convert page.svg -o "
-    "page.png`.",
+    "`-o` names what to write: a file that ends in `.svg` or `.png` (with `--page` one page, otherwise all pages, one "
+    "below the other), in `.pdf` (a page for each page of the net) or in `.html` (all pages, linked), a folder (one "
+    "SVG for each page), or `-` for an SVG on standard output. PNG and PDF need libraries that `pip install "
+    "'pn2code[pictures]'` brings.",
 )
 DRAW_TRACE = register(
     "draw-trace",

@@ -71,7 +71,7 @@ def load(
     if examined.flat is not None and not d.has_errors:
         emptiness.warn(examined.flat, d)
         opened = with_inputs(OpenNet(examined.flat, config, examined), d, inputs)
+        if d.has_errors:  # of the input files: the net itself is right
+            return None
         monitors = monitors_of(examined, d)
-    if d.has_errors:
-        opened = None
     return Loaded(file, document, opened, tuple(d.sorted()), monitors)

@@ -1,0 +1,223 @@
+"""`pn2code report`: everything about a cell in one folder, with a first page that leads to all of it."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, NoReturn
+
+import typer
+
+from pn2code.base.os_reason import os_reason
+from pn2code.base.writable import folder_obstacle
+from pn2code.cli.options import (
+    OUTPUT_FLAGS,
+    Exit,
+    Format,
+    FormatOption,
+    InputOption,
+    SetOption,
+    parse_values,
+    seconds_option,
+    stop,
+)
+from pn2code.diagnostics import Diagnostics
+
+if TYPE_CHECKING:
+    from pn2code.cell.config import CellConfig
+    from pn2code.dossier.findings import Chapter
+    from pn2code.dossier.steps import Done, Step
+
+EPILOG = """Examples:
+
+  pn2code report examples/minimal -o report
+
+  pn2code report examples/riveting -o report --layout paper --backend fake
+
+  cd report && sha256sum --check SHA256SUMS
+"""
+INDEX, SUMS, TABLE = "index.html", "SHA256SUMS", "traceability.csv"
+
+
+class BackendChoice(StrEnum):
+    """What carries the arms."""
+
+    BULLET = "bullet"
+    FAKE = "fake"
+
+
+def report(
+    net: Annotated[
+        Path, typer.Argument(help="The folder of a cell (with cell.toml), or a net without one.")
+    ],
+    out: Annotated[
+        Path,
+        typer.Option(
+            *OUTPUT_FLAGS, help="The folder for the report: a new or empty one, or an older report."
+        ),
+    ] = Path("report"),
+    layouts: Annotated[
+        list[str],
+        typer.Option(
+            "--layout",
+            metavar="L",
+            help="Run this layout of cell.toml (default: all). This option may be given several times.",
+            show_default=False,
+        ),
+    ] = [],  # noqa: B006 - typer reads the default only
+    backend: Annotated[
+        BackendChoice, typer.Option(help="What carries the arms, as of `pn2code run`.")
+    ] = BackendChoice.BULLET,
+    max_seconds: Annotated[
+        float | None, seconds_option("Stop verification after S seconds.")
+    ] = None,
+    inputs: InputOption = None,
+    settings: SetOption = [],  # noqa: B006 - typer reads the default only
+    form: FormatOption = Format.FULL,
+) -> None:
+    """Check, draw, verify, generate, compare and run a cell, and write a report of all of it.
+
+    The report is a folder with a first page, `index.html`: all answers and what they assume, the programs, the runs,
+    which line of which program comes from which element of the net, and the hashes of all files.
+
+    The exit code is 0 if all is as it should be, 1 if something is not, and 3 if something is not known.
+    """
+    from rich.console import Console
+
+    from pn2code.cell.locate import locate
+    from pn2code.dossier import findings, steps
+
+    parse_values(settings)
+    d = Diagnostics()
+    found = locate(net, d)
+    if found is None:
+        stop(d, form)
+    path, config = found
+    console = Console(highlight=False)
+    _prepare(out)
+    wanted = steps.steps(
+        _seen_from(out, net),
+        _layouts(config, layouts),
+        backend=backend.value,
+        values=settings,
+        inputs=None if inputs is None else _seen_from(out, inputs),
+        max_seconds=max_seconds,
+    )
+
+    def told(step: Step, done: Done | None) -> None:
+        if done is None:
+            console.print(f"{step.command}", style="dim", soft_wrap=True)
+        else:
+            ended = (
+                "left out" if done.code is None else f"exit code {done.code}, {done.seconds:.1f} s"
+            )
+            console.print(f"  {step.name}: {ended}")
+
+    try:
+        carried = steps.carry_out(wanted, out, told)
+        chapters = [findings.read(done, out) for done in carried]
+        _write(chapters, path, config, net, out)
+    except OSError as problem:
+        _refuse(f"cannot work in `{out}`: {os_reason(problem)}")
+    verdict = findings.worst([c.answer for c in chapters])
+    console.print(f"report in {out / INDEX}: {_SAYS[verdict]}", soft_wrap=True)
+    code = _CODES[verdict]
+    if code is not Exit.OK:
+        raise typer.Exit(code)
+
+
+_SAYS = {
+    "yes": "all is as it should be",
+    "no": "something is not as it should be",
+    "not known": "something is not known",
+}
+_CODES = {"yes": Exit.OK, "no": Exit.MODEL, "not known": Exit.INCONCLUSIVE}
+
+
+def _refuse(message: str) -> NoReturn:
+    typer.echo(f"pn2code: {message}", err=True)
+    raise typer.Exit(Exit.USAGE)
+
+
+def _seen_from(out: Path, path: Path) -> str:
+    """A path relative to the folder of the report, so that the report says nothing of other folders."""
+    try:
+        return os.path.relpath(path.resolve(), out.resolve())
+    except ValueError:  # on another drive
+        return str(path.resolve())
+
+
+def _layouts(config: CellConfig | None, wanted: list[str]) -> tuple[str, ...]:
+    """The layouts to run; "" for a cell that has none, and nothing for a net without a cell."""
+    if config is None:
+        if wanted:
+            _refuse("a net without a cell.toml has no layouts")
+        return ()
+    unknown = [name for name in wanted if name not in config.layouts]
+    if unknown:
+        known = ", ".join(f"`{name}`" for name in config.layouts) or "none"
+        _refuse(f"there is no layout `{unknown[0]}`; the cell's layouts: {known}")
+    return tuple(dict.fromkeys(wanted)) or tuple(config.layouts) or ("",)
+
+
+def _prepare(out: Path) -> None:
+    """An empty folder; what an older report has left there is removed, and nothing else."""
+    why = folder_obstacle(out)
+    if why:
+        _refuse(f"cannot write `{out}`: {why}")
+    try:
+        if out.is_dir() and any(out.iterdir()):
+            if not (out / SUMS).is_file():
+                _refuse(f"`{out}` is not empty, and no report: give a new folder with -o")
+            shutil.rmtree(out)
+        out.mkdir(parents=True, exist_ok=True)
+        (out / SUMS).touch()  # from now on it is a report, if an unfinished one
+    except OSError as problem:
+        _refuse(f"cannot write `{out}`: {os_reason(problem)}")
+
+
+def _write(
+    chapters: list[Chapter], path: Path, config: CellConfig | None, net: Path, out: Path
+) -> None:
+    """The first page, the table of traceability and the hashes."""
+    from pn2code.base.whole_file import whole_file
+    from pn2code.dossier import hashes, origin, traceability
+    from pn2code.dossier.page import Facts, index
+    from pn2code.dossier.steps import PROGRAMS
+
+    runs = [
+        r
+        for c in chapters
+        if c.done.step.verb == "run"
+        for r in c.done.step.results
+        if (out / r / "replay.html").is_file()
+    ]
+    has_programs = (out / PROGRAMS / "manifest.json").is_file()
+    elements = (
+        traceability.read(out / PROGRAMS, [out / run for run in runs]) if has_programs else ()
+    )
+    if elements:
+        (out / TABLE).write_text(traceability.table(elements, runs), encoding="utf-8")
+    folder = path.parent
+    subject = [path, *folder.glob("*.toml")]
+    if config is not None:
+        subject += [config.path, *(config.input_path(i) for i in config.inputs)]
+        subject += [config.folder / s.file for s in config.sensors if s.file]
+    results = [p for p in out.rglob("*") if p.name not in (INDEX, SUMS)]
+    rows = hashes.of_files(out, results)
+    facts = Facts(
+        title=net.resolve().name,
+        written=origin.date(),
+        versions=origin.versions(),
+        subject=hashes.of_files(folder, subject),
+        results=rows,
+        runs=runs,
+        elements=elements,
+    )
+    with whole_file(out / INDEX) as beside:
+        beside.write_text(index(chapters, facts), encoding="utf-8")
+    rows.append((INDEX, hashes.sha256(out / INDEX)))
+    with whole_file(out / SUMS) as beside:
+        beside.write_text(hashes.listing(sorted(rows)), encoding="utf-8")

@@ -1,0 +1,200 @@
+"""What the commands of a report have found out, read from what they have written."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from pn2code.base.frozen import frozen
+from pn2code.dossier.steps import Done
+
+Json = Mapping[str, Any]
+YES, NO, OPEN = "yes", "no", "not known"
+_MOST = 2_000
+"""Characters of a message that are shown."""
+
+
+@frozen
+class Finding:
+    """An answer, and where it comes from.
+
+    Args:
+        about: what was asked.
+        answer: `YES`, `NO` or `OPEN`.
+        says: in words.
+        assumes: what it rests on besides what was looked at.
+    """
+
+    about: str
+    answer: str
+    says: str
+    assumes: tuple[str, ...] = ()
+
+
+@frozen
+class Chapter:
+    """What one command has found out.
+
+    Args:
+        done: the command.
+        answer: the worst of its answers.
+        says: a sentence.
+        findings: one by one.
+        messages: what it complained of.
+    """
+
+    done: Done
+    answer: str
+    says: str
+    findings: tuple[Finding, ...] = ()
+    messages: str = ""
+
+
+def worst(answers: Sequence[str]) -> str:
+    """`NO` before `OPEN` before `YES`; nothing is not known."""
+    found = [a for a in (NO, OPEN, YES) if a in answers]
+    return found[0] if found else OPEN
+
+
+def read(done: Done, folder: Path) -> Chapter:
+    """What a command has said.
+
+    Raises:
+        OSError: what it has written cannot be read.
+    """
+    if done.code is None:
+        return Chapter(done, OPEN, f"It was left out: {done.why}.")
+    by_code = {0: YES, 1: NO}.get(done.code, OPEN)
+    reader = _READERS.get(done.step.verb)
+    said = _json(folder, done) if reader is not None else None
+    if reader is None or said is None:
+        says = (
+            "It has succeeded." if done.code == 0 else f"It has ended with exit code {done.code}."
+        )
+        return Chapter(done, by_code, says, messages=done.complaint[:_MOST])
+    says, findings = reader(said)
+    answer = worst([by_code, *(f.answer for f in findings)])
+    return Chapter(done, answer, says, tuple(findings), done.complaint[:_MOST])
+
+
+def _json(folder: Path, done: Done) -> Json | None:
+    name = done.step.said
+    if done.step.verb == "run":
+        name = f"{Path(name).stem}/summary.json"
+    try:
+        found = json.loads((folder / name).read_text(encoding="utf-8"))
+    except (FileNotFoundError, ValueError):  # it had nothing to say, which its exit code tells
+        return None
+    return found if isinstance(found, dict) else None
+
+
+def _checked(said: Json) -> tuple[str, list[Finding]]:
+    counts = ", ".join(f"{said[k]:,} {k}" for k in ("pages", "places", "transitions", "arcs"))
+    rows = [
+        Finding(
+            f"{d.get('page') or 'the net'}{': ' + d['element'] if d.get('element') else ''}",
+            {"error": NO}.get(d["severity"], YES),
+            f"{d['severity']} {d['code']}: {d['message']}",
+        )
+        for d in said["diagnostics"]
+    ]
+    return f"{counts[0].upper()}{counts[1:]}; {len(rows)} remarks.", rows
+
+
+def _verified(said: Json) -> tuple[str, list[Finding]]:
+    found = [
+        _answer(p.get("name") or p["holds"], p, p["says"] or p["holds"])
+        for p in said.get("properties", ())
+    ]
+    found += [_answer(c["check"], c, c["says"]) for c in said.get("controller") or ()]
+    found += [_answer(m["check"], m, m["says"]) for m in said.get("medium") or ()]
+    whole = "all" if said["complete"] else f"a part ({said['why']}): {said['nodes']:,} of its"
+    nodes = f" {said['nodes']:,}" if said["complete"] else ""
+    says = f"The net was seen in {whole}{nodes} markings, with {said['arcs']:,} steps between them."
+    cell = said.get("cell")
+    if cell and cell.get("modelled"):
+        part = "" if cell["complete"] else ", not to the end"
+        says += f" The cell as its programs run has {cell['states']:,} states{part}."
+    return says, found
+
+
+def _answer(about: str, row: Json, says: str) -> Finding:
+    """A row of `verify --json`."""
+    answer = row["answer"]
+    expected = row.get("expect", True)
+    if answer in ("yes", "no"):
+        is_good = (answer == "yes") == expected or bool(row.get("accepted"))
+        answer = YES if is_good else NO
+    else:
+        answer = OPEN
+    why = f" ({row['why']})" if row.get("why") and answer != YES else ""
+    assumed = row.get("assumes") or ()
+    listed = (assumed,) if isinstance(assumed, str) else tuple(assumed)
+    return Finding(about, answer, says + why, listed)
+
+
+def _compared(said: Json) -> tuple[str, list[Finding]]:
+    core, supervisor = said["core"], said["supervisor"]
+    found = [
+        _equal("files", not _listed(said["files"]), f"{said['files']['files']} files", True),
+        _equal(
+            "net.c",
+            core["deviation"] is None,
+            core["deviation"] or f"{core['nodes']:,} markings, {core['arcs']:,} occurrences",
+            core["complete"] or bool(core["walks"]),
+        ),
+    ]
+    rows = [("supervisor", supervisor)] if supervisor else []
+    rows += [(r["robot"], r) for r in said.get("robots") or ()]
+    for name, row in rows:
+        says = row["deviation"] or f"{row['states']:,} states"
+        found.append(_equal(name, row["deviation"] is None, says, row["complete"]))
+    return "Each program does what its page of the net says, or the difference is named.", found
+
+
+def _listed(files: Json) -> list[str]:
+    return [x for kind in ("differing", "intruding", "foreign") for x in files.get(kind) or ()]
+
+
+def _equal(about: str, is_equal: bool, says: str, is_whole: bool) -> Finding:
+    answer = (YES if is_whole else OPEN) if is_equal else NO
+    return Finding(about, answer, says if is_whole else f"{says}; not to the end")
+
+
+def _ran(said: Json) -> tuple[str, list[Finding]]:
+    ended = said["verdict"]
+    found = [
+        Finding("end", YES if ended == "finished" else NO, f"{ended} {said['reason']}".strip())
+    ]
+    cycle = said.get("cycle_seconds")
+    says = f"It has {ended}" + (f" after {cycle:.2f} s of its time" if cycle else "") + "."
+    found += [
+        Finding(f"clearance, {name}", YES, _at(row, "mm", 1000.0))
+        for name, row in _rows(said, "clearances")
+    ]
+    found += [
+        Finding(f"conditioning, {name}", YES, _at(row, "", 1.0))
+        for name, row in _rows(said, "conditioning")
+    ]
+    found += [Finding("warning", YES, str(w)) for w in said.get("warnings") or ()]
+    return says, found
+
+
+def _rows(said: Json, key: str) -> Iterator[tuple[str, Any]]:
+    yield from (said.get(key) or {}).items()
+
+
+def _at(row: Any, unit: str, scale: float) -> str:
+    """The worst of a curve, and when."""
+    if not isinstance(row, dict):
+        return str(row)
+    worst_of = next((row[k] for k in ("worst", "least", "metres", "d") if k in row), None)
+    value = (
+        f"{worst_of * scale:.4g} {unit}".strip() if isinstance(worst_of, int | float) else str(row)
+    )
+    return f"worst {value} at {row['t']:.2f} s" if "t" in row else f"worst {value}"
+
+
+_READERS = {"check": _checked, "verify": _verified, "conform": _compared, "run": _ran}

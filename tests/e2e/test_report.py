@@ -1,0 +1,151 @@
+"""`pn2code report`: one folder with everything about a cell, whose first page says what the commands have said."""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import json
+from collections import Counter
+from pathlib import Path
+
+import pytest
+from lxml import html
+
+from e2e.test_input_sizes import STOCK
+from e2e.test_input_sizes import cell as stock
+from helpers.netbuilder import cpn, write
+from helpers.processes import pn2code
+from pn2code.dossier.steps import Done
+
+pytestmark = pytest.mark.cc
+
+
+def first_page(folder: Path) -> html.HtmlElement:
+    return html.fromstring((folder / "index.html").read_text(encoding="utf-8"))
+
+
+def verdict(folder: Path) -> str:
+    return " ".join(
+        " ".join(p.text_content().split())
+        for p in first_page(folder).xpath("//header/p[contains(@class, 'verdict')]")
+    )
+
+
+def commands(folder: Path) -> dict[str, str]:
+    """Exit codes by verb."""
+    rows = first_page(folder).xpath("//section[@id='commands']//tbody/tr")
+    return {r[0].text_content().split()[1]: r[1].text_content() for r in rows}
+
+
+def broken(folder: Path) -> list[str]:
+    """Hashes that are not those of the files, and files without a hash."""
+    listed = {}
+    for line in (folder / "SHA256SUMS").read_text().splitlines():
+        digest, name = line.split("  ", 1)
+        listed[name] = digest
+    there = {
+        p.relative_to(folder).as_posix(): hashlib.sha256(p.read_bytes()).hexdigest()
+        for p in folder.rglob("*")
+        if p.is_file() and p.name != "SHA256SUMS"
+    }
+    return sorted(name for name in {*listed, *there} if listed.get(name) != there.get(name))
+
+
+@pytest.fixture(scope="module")
+def minimal(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    out = tmp_path_factory.mktemp("minimal") / "report"
+    done = pn2code("report", root / "examples/minimal", "-o", out, "--backend", "fake")
+    assert done.returncode == 0, done.stdout + done.stderr
+    return out
+
+
+def test_a_cell_that_is_as_it_should_be(minimal: Path) -> None:
+    assert verdict(minimal) == "Every check was made, and every answer is as it should be."
+    verbs = ("check", "draw", "verify", "generate", "conform", "run")
+    assert commands(minimal) == dict.fromkeys(verbs, "0")
+    assert broken(minimal) == []
+    said = json.loads((minimal / "verification.json").read_text())
+    text = first_page(minimal).xpath("//section[@id='answers']")[0].text_content()
+    for row in (*said["properties"], *said["controller"], *said["medium"]):
+        assert row["says"] in text
+    assumed = first_page(minimal).xpath("//section[@id='assumptions']")[0].text_content()
+    for row in said["controller"]:
+        assert all(clause in assumed for clause in row["assumes"])
+
+
+def test_each_link_of_the_first_page_leads_to_something(minimal: Path) -> None:
+    links = first_page(minimal).xpath("//main//a/@href | //iframe/@src")
+    assert len(links) > 5
+    assert all((minimal / link).exists() for link in links)
+
+
+def test_traceability(minimal: Path) -> None:
+    manifest = json.loads((minimal / "generated/manifest.json").read_text())
+    table = (minimal / "traceability.csv").read_text(encoding="utf-8")
+    rows = list(csv.DictReader(table.splitlines()))
+    assert len(rows) == sum(len(e["code"]) or 1 for e in manifest["elements"])
+    steps = [json.loads(x) for x in (minimal / "run/cell.trace.jsonl").read_text().splitlines()]
+    occurred = Counter(s["transition"] for s in steps if "transition" in s)
+    for row in rows:
+        lines = (minimal / "generated" / row["file"]).read_text().splitlines()
+        assert 1 <= int(row["first"]) <= int(row["last"]) <= len(lines)
+        if row["kind"] == "transition":
+            assert int(row["run"]) == occurred[row["element"]] > 0
+    page = first_page(minimal).xpath("//section[@id='traceability']//tbody")
+    there, back = ([" ".join(r.itertext()) for r in body] for body in page)
+    assert len(there) == len(manifest["elements"]) and len(back) == len(rows)
+
+
+def test_what_is_not_as_it_should_be_is_named(tmp_path: Path) -> None:
+    cell = stock(tmp_path / "cell", "2\n")
+    text = '[[property]]\nname = "no <b>end</b>"\nholds = "never { size (Mark.Sup\'Finished 1) > 0 }"\n'
+    (cell / "cell.properties.toml").write_text(text)
+    done = pn2code("report", cell, "-o", tmp_path / "out", "--backend", "fake")
+    assert done.returncode == 1, done.stdout + done.stderr
+    assert verdict(tmp_path / "out").startswith("Not as it should be: no <b>end</b>")
+    assert commands(tmp_path / "out")["verify"] == "1"
+    assert commands(tmp_path / "out")["conform"] == "0"  # the programs are those of the net
+    assert broken(tmp_path / "out") == []
+
+
+def test_what_cannot_be_made_is_left_out(tmp_path: Path) -> None:
+    cell = stock(tmp_path / "cell", "2\n", STOCK.replace("in Pieces : n", "in Pieces : nn"))
+    done = pn2code("report", cell, "-o", tmp_path / "out", "--backend", "fake")
+    assert done.returncode == 1, done.stdout + done.stderr
+    found = commands(tmp_path / "out")
+    assert found["check"] == "1" and found["draw"] == "0"
+    assert {found[v] for v in ("verify", "generate", "conform", "run")} == {"left out"}
+    assert "nn" in first_page(tmp_path / "out").xpath("//section[@id='answers']")[0].text_content()
+    assert "the programs (left out)" in verdict(tmp_path / "out")
+
+
+def test_a_net_without_a_cell(tmp_path: Path) -> None:
+    net = write(
+        "net n\n  standard\n  page P\n    place A = 1\n    place B\n    trans T\n      in A : ()\n      out B : ()\n",
+        tmp_path / "n.cpn",
+    )
+    done = pn2code("report", net, "-o", tmp_path / "out")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert commands(tmp_path / "out").keys() == {"check", "draw", "verify", "generate", "conform"}
+    done = pn2code("report", net, "-o", tmp_path / "out", "--layout", "a")
+    assert done.returncode == 2 and "has no layouts" in done.stderr
+
+
+def test_folders_that_are_no_reports_are_left_alone(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("pn2code.dossier.steps._carried_out", lambda step, _: Done(step, 3))
+    net = tmp_path / "n.cpn"
+    net.write_bytes(cpn("net n\n  standard\n  page P\n    place A = 1\n"))
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "mine.txt").write_text("mine")
+    done = pn2code("report", net, "-o", out)
+    assert done.returncode == 2 and "is not empty, and no report" in done.stderr
+    assert (out / "mine.txt").read_text() == "mine"
+    (out / "SHA256SUMS").write_text("")
+    done = pn2code("report", net, "-o", out)
+    assert done.returncode == 3 and not (out / "mine.txt").exists()
+    assert verdict(out).startswith("Nothing is known to be wrong, but not everything is known.")
+    done = pn2code("report", net, "-o", net)
+    assert done.returncode == 2 and "is not a folder" in done.stderr
