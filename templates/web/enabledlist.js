@@ -37,7 +37,7 @@ export class EnabledList {
     else if (!enabled.length) this.what.textContent = "The marking is dead: nothing is enabled, now or later.";
     this.rows.replaceChildren(...shown.map((t) => this.row(net, t)));
     if (enabled.length > MOST) this.rows.append(el("li", { class: "note", text: `and ${enabled.length - MOST} more` }));
-    if (this.transition >= 0) this.list(this.transition);
+    if (this.transition >= 0) this.list(this.transition); // an answer to which no state belongs
   }
 
   /**

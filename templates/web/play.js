@@ -269,7 +269,8 @@ class Page {
       if (this.bar?.isPlaying) this.bar.toggle();
     }
     if (e.ctrlKey || e.metaKey || e.altKey || document.querySelector("dialog[open]")) return;
-    if (target.matches("input:not([type=range], [type=checkbox]), select, textarea")) return;
+    // A dialogue that has just been closed may still have the focus.
+    if (target.matches("input:not([type=range], [type=checkbox]), select, textarea") && !target.closest("dialog")) return;
     if (target.matches("input[type=range]") && e.key.startsWith("Arrow")) return;
     if (e.key === " " && target.matches("button, [role=button], input")) return;
     if (target.closest("[role=listbox]") && e.key.startsWith("Arrow")) return;

@@ -147,7 +147,7 @@ def start(*arguments: str | Path) -> subprocess.Popen[str]:
     )
 
 
-class Refused(Exception):
+class Refused(Exception):  # noqa: N818
     """The server does not talk with us: the status of its answer."""
 
 
@@ -261,3 +261,19 @@ class Talk:
                 self.heard.remove(found)
                 return found
             self.heard.append(self._read(until))
+
+
+def first_page(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
+    """The command, ended when its first page has been told the marking, which is the last line of the output."""
+    process = start(*arguments)
+    assert process.stdout is not None
+    line = process.stdout.readline()
+    told = ""
+    if "http://" in line:
+        with Talk(Served(process, line.split()[-1])) as talk:
+            told = json.dumps(talk.marking) + "\n"
+        process.send_signal(signal.SIGINT)
+    output, errors = process.communicate(timeout=PATIENCE_S)
+    return subprocess.CompletedProcess(
+        process.args, process.returncode, line + output + told, errors
+    )

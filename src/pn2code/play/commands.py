@@ -28,7 +28,9 @@ Tell = Callable[[Json], None]
 MOST_ANSWER = 200_000
 """Characters of the value of an expression."""
 MOST_ROWS = 500
-_READING = frozenset({"state", "bindings", "place", "evaluate", "entries", "space"})
+_SILENT = frozenset({"bindings", "place", "entries", "space"})
+"""Commands that change nothing that a page shows."""
+_READING = frozenset({"state", "evaluate", *_SILENT})
 """Commands after which lists of bindings and nodes are still those of the marking."""
 _NODE_TEXT = 120
 _MAX_SEED = 2**63 - 1
@@ -92,7 +94,7 @@ class Player:
             done = {"ok": False, "message": told.message, "rows": told.rows}
         finally:
             self._changes += said.get("do") not in _READING
-        return {**done, "state": self.view.state()}
+        return done if said.get("do") in _SILENT else {**done, "state": self.view.state()}
 
     # --- steps -----------------------------------------------------------------------------------
 
