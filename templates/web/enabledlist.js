@@ -7,14 +7,15 @@ import { bound, field, wrong } from "./parts.js";
 /** @typedef {import("./link.js").Link} Link */
 /** @typedef {import("./position.js").Position} Position */
 
-const MOST = 300;
+/** Transitions that are listed; those of the shown page come first. */
+const MOST = 100;
 
 export class EnabledList {
   /**
    * @param {HTMLElement} host
    * @param {Link} link
    * @param {Position} position
-   * @param {{fire: (t: number) => void, show: (t: number) => void, said: (answer: any) => void, breakpoints: Set<number>, onBreakpoint: (t: number) => void}} actions
+   * @param {{fire: (t: number) => void, show: (t: number) => void, said: (answer: any) => void, breakpoints: Set<number>, onBreakpoint: (t: number) => void, instance: () => number}} actions
    */
   constructor(host, link, position, actions) {
     this.link = link;
@@ -26,17 +27,27 @@ export class EnabledList {
     this.chosen = el("section", { class: "chosen", hidden: true, "aria-label": "Bindings" });
     host.append(this.chosen, this.what, this.rows);
     this.asked = 0;
+    /** Rows that were made, by transition. @type {Map<number, any>} */
+    this.made = new Map();
+    this.shown = "";
   }
 
   update() {
+    if (this.rows.closest("[hidden]")) return;
     const { net, enabled, state } = this.position;
-    const shown = enabled.slice(0, MOST);
+    const here = this.actions.instance();
+    const isHere = (/** @type {number} */ t) => net.transitions[t].instance === here;
+    const shown = (enabled.length > MOST ? [...enabled.filter(isHere), ...enabled.filter((t) => !isHere(t))] : enabled).slice(0, MOST);
     this.what.hidden = shown.length > 0;
     if (state.error) this.what.textContent = `The net cannot go on: ${state.error.message}.`;
     else if (state.later !== null && state.later !== undefined) this.what.textContent = `Nothing is enabled before time ${state.later}. A step moves the clock on.`;
     else if (!enabled.length) this.what.textContent = "The marking is dead: nothing is enabled, now or later.";
-    this.rows.replaceChildren(...shown.map((t) => this.row(net, t)));
-    if (enabled.length > MOST) this.rows.append(el("li", { class: "note", text: `and ${enabled.length - MOST} more` }));
+    const now = `${shown} ${enabled.length}`;
+    if (now !== this.shown) {
+      this.shown = now;
+      this.rows.replaceChildren(...shown.map((t) => this.row(net, t)));
+      if (enabled.length > MOST) this.rows.append(el("li", { class: "note", text: `and ${enabled.length - MOST} more` }));
+    }
     if (this.transition >= 0) this.list(this.transition); // an answer to which no state belongs
   }
 
@@ -45,9 +56,11 @@ export class EnabledList {
    * @param {number} t
    */
   row(net, t) {
+    const known = this.made.get(t);
+    if (known) return known;
     const { name, short, variables } = net.transitions[t];
     const page = name.split(".").slice(0, -1).join(" › ");
-    return el("li", {},
+    const made = el("li", {},
       el("button", { class: "fire", text: short.replace(/\s+/g, " "), title: "Let it occur, with a binding at random", onclick: () => this.actions.fire(t) }),
       el("span", { class: "page", text: page }),
       el("button", {
@@ -56,6 +69,8 @@ export class EnabledList {
           this.list(t);
         },
       }));
+    this.made.set(t, made);
+    return made;
   }
 
   /**

@@ -37,6 +37,7 @@ export class Past {
       for (const number of this.blocks.keys()) if (isWhole || number >= block) this.blocks.delete(number);
     }
     this.length = state.length;
+    if (this.list.host.closest("[hidden]")) return;
     this.list.resize(state.length - state.forgotten + 1);
     this.list.go(state.position - state.forgotten);
   }

@@ -87,7 +87,7 @@ class Page {
     if (link) {
       this.enabled = new EnabledList(add("Enabled"), link, position, {
         fire: (t) => this.fire(t), show: (t) => this.net.reveal([position.net.transitions[t].instance]), said,
-        breakpoints: this.breakpoints, onBreakpoint: (t) => this.toggleBreakpoint(t),
+        instance: () => this.net.current, breakpoints: this.breakpoints, onBreakpoint: (t) => this.toggleBreakpoint(t),
       });
       this.marking = new MarkingList(add("Marking"), link, position, { show: (p) => this.reveal(p), said });
       this.bar = new PlayBar(byId("transport"), link, position, { said, breakpoints: this.breakpoints });
@@ -111,9 +111,10 @@ class Page {
       body.hidden = own !== name;
       if (own === name) tab.scrollIntoView({ block: "nearest", inline: "nearest" });
     }
+    this.enabled?.update();
     this.marking?.update();
     this.plots?.draw();
-    this.past?.list.paint();
+    this.past?.update();
   }
 
   /** @param {string} name */
@@ -225,12 +226,14 @@ class Page {
     this.net.reveal([this.position.net.transitions[t].instance]);
     this.net.mark(t, -1);
     this.tab("Enabled");
+    this.pane("panels");
     this.enabled?.list(t);
   }
 
   /** @param {number} p */
   place(p) {
     this.tab("Marking");
+    this.pane("panels");
     this.marking?.choose(p);
   }
 

@@ -36,7 +36,9 @@ export class PlayNet extends NetView {
         this.onList(t);
       };
       nodes[0].onkeydown = (/** @type {KeyboardEvent} */ e) => {
-        if (e.key !== "Enter") return;
+        if (e.key !== "Enter" && e.key !== " ") return;
+        e.preventDefault();
+        e.stopPropagation();
         if (e.shiftKey) this.onList(t);
         else this.actions.onTransition(t);
       };
