@@ -10,6 +10,7 @@ new marking is drawn.
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import tempfile
 from pathlib import Path
@@ -24,16 +25,24 @@ from helpers.played import served
 PAGES = 59
 RING = 10
 
+_LISTEN = """() => {
+  const link = play.page.link, hear = link.hear.bind(link);
+  link.hear = said => { play.heard = performance.now(); hear(said); play.done = performance.now(); };
+}"""
 _CLICK = """() => new Promise(done => {
   const node = document.querySelector(".sheet .enabled");
-  const before = play.page.position.state.position;
+  play.done = 0;
   const start = performance.now();
   node.dispatchEvent(new MouseEvent("click", { bubbles: true }));
   (function look() {
-    if (play.page.position.state.position === before) { setTimeout(look, 0); return; }
-    requestAnimationFrame(() => setTimeout(() => done(performance.now() - start), 0));
+    if (!play.done) { setTimeout(look, 0); return; }
+    requestAnimationFrame(() => setTimeout(() => {
+      const end = performance.now();
+      done([end - start, play.heard - start, play.done - play.heard, end - play.done]);
+    }, 0));
   })();
 })"""
+PARTS = ("in all", "answer of the server", "script of the page", "drawing by the browser")
 
 
 def net() -> str:
@@ -55,7 +64,7 @@ def net() -> str:
 
 def main() -> int:
     """Prints a line of the table."""
-    options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    options = argparse.ArgumentParser(description=__doc__)
     options.add_argument("--clicks", type=int, default=300)
     clicks = options.parse_args().clicks
     with tempfile.TemporaryDirectory() as folder:
@@ -65,12 +74,13 @@ def main() -> int:
             page.page.goto(server.url)
             page.page.wait_for_selector("body[data-ready=true]")
             page.ask("() => play.page.net.pin(1)")
-            times = sorted(float(page.ask(_CLICK)) for _ in range(clicks))
-            size = len(page.ask("() => play.page.position.net.transitions"))
-    print(
-        f"{PAGES + 1} pages, {size} transitions, {clicks} clicks: "
-        f"p50 {median(times):.1f} ms, p95 {times[int(0.95 * len(times))]:.1f} ms, most {times[-1]:.1f} ms"
-    )
+            page.ask(_LISTEN)
+            times = [page.ask(_CLICK) for _ in range(clicks)]
+            size = page.ask("() => play.page.position.net.transitions.length")
+    print(f"{PAGES + 1} pages, {size} transitions, {clicks} clicks, load {os.getloadavg()[0]:.1f}")
+    for part, name in enumerate(PARTS):
+        own = sorted(float(row[part]) for row in times)
+        print(f"{name}: p50 {median(own):.1f} ms, p95 {own[int(0.95 * len(own))]:.1f} ms")
     return 0
 
 
