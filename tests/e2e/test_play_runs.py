@@ -10,7 +10,7 @@ import pytest
 from helpers.played import session
 from helpers.shown import PAIR
 from pn2code.play import saving
-from pn2code.play.running import Ended, Wish, run
+from pn2code.play.running import MANY, Ended, Wish, is_worth_it, run
 from pn2code.play.session import Session
 from pn2code.play.trouble import Trouble
 from pn2code.trace.replay import replay
@@ -85,6 +85,16 @@ class TestCompiled:
         assert done(game, steps=5000).engine == "the token game"
         with pytest.raises(Trouble, match="does not begin with the initial marking"):
             done(game, steps=5000, engine="compiled")
+
+
+def test_a_short_run_after_a_long_one_is_not_repeated(tmp_path: Path) -> None:
+    game = session(tmp_path, RING)
+    game.fire_any(0)
+    wish = Wish(steps=MANY)
+    assert is_worth_it(game, wish)
+    game.game.steps = MANY * 100
+    assert not is_worth_it(game, wish)
+    assert not is_worth_it(game, Wish(steps=MANY - 1))
 
 
 def test_conditions_and_breakpoints_end_a_run(tmp_path: Path) -> None:

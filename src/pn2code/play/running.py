@@ -29,6 +29,8 @@ from pn2code.trace.writing import TraceUnwritableError
 
 MANY = 3_000
 """From so many steps on the compiled simulator is worth its compilation."""
+REPEATED = 8
+"""So many steps are repeated by the compiled simulator while the token game makes one."""
 MOST_STEPS = 100_000_000
 MOST_TRACED = 3_000_000
 """A longer leap writes no trace."""
@@ -86,10 +88,19 @@ def run(session: Session, wish: Wish, tell: Tell) -> Ended:
     why_not = _obstacle(session, wish)
     if wish.engine == "compiled" and why_not:
         raise Trouble(f"the compiled simulator cannot make this run: {why_not}")
-    is_compiled = wish.engine == "compiled" or (wish.engine == "auto" and wish.steps >= MANY)
+    is_compiled = wish.engine == "compiled" or (
+        wish.engine == "auto" and is_worth_it(session, wish)
+    )
     if is_compiled and not why_not:
         return _leap(session, wish, tell)
     return _walk(session, wish, tell)
+
+
+def is_worth_it(session: Session, wish: Wish) -> bool:
+    """Whether the compiled simulator is faster: it repeats first what was not chosen at random from the start."""
+    if wish.steps < MANY:
+        return False
+    return wish.steps * REPEATED >= session.game.steps or session.history.chosen_by(session.seed)
 
 
 # --- by the token game -----------------------------------------------------------------------------
