@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
+from helpers import tiny_compiler
 from helpers.compiled import DELIVERED, FAST, SANITIZERS, Workshop
 from helpers.session import alone, common, once
 from helpers.thorough import THOROUGH
@@ -80,7 +81,7 @@ def quick_programs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
         changed.setattr(programs, "MOST_PROGRAMS", 512)
         if not THOROUGH:
             flags = tuple("-O0" if flag == "-O2" else flag for flag in DELIVERED)
-            changed.setattr(programs, "FLAGS", flags)
+            changed.setattr(programs, "FLAGS", (*flags, *tiny_compiler.use(changed)))
         yield
 
 

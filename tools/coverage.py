@@ -29,8 +29,8 @@ PARTS = ("supervisor", "channel", "port")
 TESTS = (
     "test_branches", "test_supervisor_host", "test_supervisor_rows", "test_generated_supervisor", "test_dry_runs",
     "test_faults", "test_riveting_faults", "test_messages_c", "test_message_cell", "test_minimal_cell",
-    "test_input_sizes",
-    "test_bad_coordinates", "test_monitor_chance", "test_monitor_references", "test_timed_channels", "test_files_c",
+    "test_input_sizes", "test_bad_coordinates",
+    "test_monitor_random_draws", "test_monitor_references", "test_timed_channels", "test_files_c",
     "test_library_files_c", "test_shared_files", "test_running_ends", "test_who_waits", "test_order_of_asking",
     "test_dry_run_turns",
 )  # fmt: skip

@@ -33,7 +33,7 @@ from pn2code.net.front import load
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.verify.exploring.programs import Sizes
-from pn2code.verify.exploring.time_reduction import obstacle
+from pn2code.verify.exploring.time_reduction import why_not_reducible
 
 ROOT = Path(__file__).resolve().parents[1]
 COMPARED = 100
@@ -109,7 +109,7 @@ def explored(
         ("--approximate", "bitstate"),
         ("--spill", explorers.folder),
     ]
-    if obstacle(flat) is None:
+    if why_not_reducible(flat) is None:
         others.append(("--reduce", "time"))
     for options in others:
         ends.append(explorers.said(folder, *limits, *options).report["why"])

@@ -127,51 +127,51 @@ static bool have_common(const nodes_t a, const nodes_t b)
 
 /* From where to where there is a way of at least one arc, without a transition, and, if so wished, only where it is
  * enabled. */
-static void find_ways(relation_t way, uint32_t without, bool is_among_enabled)
+static void find_paths(relation_t reaches, uint32_t without, bool is_among_enabled)
 {
     nodes_t enabled;
     find_enabled(enabled, without);
-    (void)memset(way, 0, sizeof(relation_t));
+    (void)memset(reaches, 0, sizeof(relation_t));
     for (uint32_t i = 0U; i < s_arcs; i++) {
         const bool is_inside =
             !is_among_enabled || ((EX_BIT(enabled, s_arc[i].from) & EX_BIT(enabled, s_arc[i].to)) != 0U);
         if ((s_arc[i].label != without) && is_inside) {
-            EX_SET_BIT(way[s_arc[i].from], s_arc[i].to);
+            EX_SET_BIT(reaches[s_arc[i].from], s_arc[i].to);
         }
     }
     for (uint32_t k = 0U; k < s_nodes; k++) {
         for (uint32_t i = 0U; i < s_nodes; i++) {
-            for (uint32_t w = 0U; (EX_BIT(way[i], k) != 0U) && (w < (uint32_t)WORDS); w++) {
-                way[i][w] |= way[k][w];
+            for (uint32_t w = 0U; (EX_BIT(reaches[i], k) != 0U) && (w < (uint32_t)WORDS); w++) {
+                reaches[i][w] |= reaches[k][w];
             }
         }
     }
 }
 
 /* Whether there is a cycle through one of those nodes; NULL: through any. */
-static bool has_cycle(relation_t way, const uint64_t *among)
+static bool has_cycle(relation_t reaches, const uint64_t *among)
 {
     bool is_found = false;
     for (uint32_t i = 0U; i < s_nodes; i++) {
-        is_found = is_found || ((EX_BIT(way[i], i) != 0U) && ((among == NULL) || (EX_BIT(among, i) != 0U)));
+        is_found = is_found || ((EX_BIT(reaches[i], i) != 0U) && ((among == NULL) || (EX_BIT(among, i) != 0U)));
     }
     return is_found;
 }
 
 static uint8_t fairness_of(uint32_t t)
 {
-    relation_t way;
+    relation_t reaches;
     nodes_t enabled;
     find_enabled(enabled, t);
-    find_ways(way, t, false);
-    if (!has_cycle(way, NULL)) {
+    find_paths(reaches, t, false);
+    if (!has_cycle(reaches, NULL)) {
         return (uint8_t)EX_IMPARTIAL;
     }
-    if (!has_cycle(way, enabled)) {
+    if (!has_cycle(reaches, enabled)) {
         return (uint8_t)EX_FAIR;
     }
-    find_ways(way, t, true);
-    return (uint8_t)(!has_cycle(way, NULL) ? EX_JUST : EX_UNFAIR);
+    find_paths(reaches, t, true);
+    return (uint8_t)(!has_cycle(reaches, NULL) ? EX_JUST : EX_UNFAIR);
 }
 
 static bool s_is_fine;
@@ -184,7 +184,7 @@ static void check(bool is_fine, const char *what)
     }
 }
 
-static void check_components(const ex_graph_t *g, relation_t way)
+static void check_components(const ex_graph_t *g, relation_t reaches)
 {
     uint32_t home = 0U;
     uint64_t between = 0U;
@@ -192,8 +192,8 @@ static void check_components(const ex_graph_t *g, relation_t way)
     for (uint32_t i = 0U; i < s_nodes; i++) {
         bool is_home = true;
         for (uint32_t j = 0U; j < s_nodes; j++) {
-            const bool there = EX_BIT(way[i], j) != 0U;
-            const bool back = EX_BIT(way[j], i) != 0U;
+            const bool there = EX_BIT(reaches[i], j) != 0U;
+            const bool back = EX_BIT(reaches[j], i) != 0U;
             const bool is_one = (i == j) || (there && back);
             is_home = is_home && ((i == j) || back);
             check((g->component[i] == g->component[j]) == is_one, "components");
@@ -204,22 +204,22 @@ static void check_components(const ex_graph_t *g, relation_t way)
         most = (g->component[i] > most) ? g->component[i] : most;
     }
     for (uint32_t i = 0U; i < s_arcs; i++) {
-        between += ((s_arc[i].from != s_arc[i].to) && (EX_BIT(way[s_arc[i].to], s_arc[i].from) == 0U)) ? 1U : 0U;
+        between += ((s_arc[i].from != s_arc[i].to) && (EX_BIT(reaches[s_arc[i].to], s_arc[i].from) == 0U)) ? 1U : 0U;
     }
     check(g->components == (most + 1U), "number of components");
     check(g->component_arcs == between, "arcs between components");
     check(g->home_count == home, "home markings");
-    check(g->is_acyclic == !has_cycle(way, NULL), "acyclic");
+    check(g->is_acyclic == !has_cycle(reaches, NULL), "acyclic");
 }
 
-static void check_live(const ex_graph_t *g, relation_t way)
+static void check_live(const ex_graph_t *g, relation_t reaches)
 {
     for (uint32_t t = 0U; t < (uint32_t)TRANSITIONS; t++) {
         bool is_live = true;
         nodes_t enabled;
         find_enabled(enabled, t);
         for (uint32_t i = 0U; i < s_nodes; i++) {
-            is_live = is_live && ((EX_BIT(enabled, i) != 0U) || have_common(way[i], enabled));
+            is_live = is_live && ((EX_BIT(enabled, i) != 0U) || have_common(reaches[i], enabled));
         }
         check(g->is_live[t] == is_live, "live");
     }
@@ -227,7 +227,7 @@ static void check_live(const ex_graph_t *g, relation_t way)
 
 static void try_graph(ex_run_t *run)
 {
-    relation_t way;
+    relation_t reaches;
     nodes_t dead = { 0U };
     ex_graph_t g = {
         .row = s_row, .target = s_target, .label = s_label, .dead = dead, .is_whole = true, .home_component = EX_NO_NODE
@@ -238,12 +238,12 @@ static void try_graph(ex_run_t *run)
     for (uint32_t node = 0U; node < s_nodes; node++) {
         g.dead_count += (s_row[node] == s_row[node + 1U]) ? 1U : 0U;
     }
-    find_ways(way, UINT32_MAX, false);
+    find_paths(reaches, UINT32_MAX, false);
     s_is_fine = true;
     check(ex_components(run, &g) && ex_properties(run, &g) && (g.is_acyclic || ex_fairness(run, &g)), "no memory");
     if (s_is_fine) {
-        check_components(&g, way);
-        check_live(&g, way);
+        check_components(&g, reaches);
+        check_live(&g, reaches);
     }
     for (uint32_t t = 0U; s_is_fine && !g.is_acyclic && (t < (uint32_t)TRANSITIONS); t++) {
         check(g.fairness[t] == fairness_of(t), "fairness");

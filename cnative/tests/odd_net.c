@@ -54,7 +54,7 @@ enum {
     LONG_TEXT = 16,    /* more than a message may have */
     TWO_COMMANDS = 17, /* the second one when Timer's time has come */
     NO_TIME_LATER = 18,
-    CHANCE = 19,     /* the long loop, which something ends that is not in the marking */
+    DRAWN = 19,      /* the long loop, which something ends that is not in the marking */
     COUNT = 20,      /* up to 999, without ever repeating itself, to the end */
     LOOP_BEGIN = 50, /* 50 .. 52, 50 .. 62: the loops */
     COUNTED = 100
@@ -268,9 +268,9 @@ static void odd_more(pn_ctx_t *cx, marking_t *m, int64_t n)
         break;
     case SHORT_LOOP:
     case LONG_LOOP:
-    case CHANCE:
-        s_left = (n == CHANCE) ? 121 : -1;
-        PUT(loop, (n == SHORT_LOOP) ? LOOP_BEGIN : (LOOP_BEGIN + 10) + ((n == CHANCE) ? 5 : 0), 1U);
+    case DRAWN:
+        s_left = (n == DRAWN) ? 121 : -1;
+        PUT(loop, (n == SHORT_LOOP) ? LOOP_BEGIN : (LOOP_BEGIN + 10) + ((n == DRAWN) ? 5 : 0), 1U);
         break;
     case NO_TIME_LATER: PUT(orders, NO_TIME, 1U); break;
     case TWO_COMMANDS:

@@ -290,14 +290,14 @@ static void test_arrivals(void)
     pn_arena_init(&arena, NULL, 0U); /* numbers need none */
     pn_ctx_init(&cx, &arena, 1U);
     pn_arena_seal(&arena);
-    const pn_leaf_t number = { .kind = PN_LEAF_INT, .integer = 2 };
+    const pn_scalar_value_t number = { .kind = PN_VALUE_INT, .integer = 2 };
     CHECK(pn_multiset_put(&cx, &s_plain, &m, &number, 1U) && is_text(json(&s_plain, &m), "[[1, 2]]"));
     CHECK(pn_ok(&cx));
 
     pn_arena_init(&arena, s_memory, 512U);
     pn_arena_seal(&arena);
-    const pn_leaf_t longer = { .kind = PN_LEAF_STRING, .text = "longer", .length = 6U };
-    const pn_leaf_t fine = { .kind = PN_LEAF_STRING, .text = "abc", .length = 3U };
+    const pn_scalar_value_t longer = { .kind = PN_VALUE_STRING, .text = "longer", .length = 6U };
+    const pn_scalar_value_t fine = { .kind = PN_VALUE_STRING, .text = "abc", .length = 3U };
     for (uint32_t i = 0U; i < 100U; i++) { /* it is sent again and again */
         CHECK(!pn_multiset_put(&cx, &place, &words, &longer, 1U) && (cx.error == PN_ERR_COLOUR));
         pn_clear_error(&cx);

@@ -27,10 +27,10 @@ static void parse(pn_scalar_kind_t kind, const char *text)
     if (!pn_scalars_parse(&scalar, 1U, text, strlen(text), &s_message)) {
         (void)printf("refused %u %s\n", (unsigned)s_message.column, s_message.report);
     } else if (kind == PN_SCALAR_REAL) {
-        (void)printf("%a\n", s_message.leaf[0].real);
+        (void)printf("%a\n", s_message.value[0].real);
     } else {
-        const size_t length = pn_scalars_format(&scalar, 1U, s_message.leaf, again, sizeof again);
-        for (const char *c = s_message.leaf[0].text; *c != '\0'; c++) {
+        const size_t length = pn_scalars_format(&scalar, 1U, s_message.value, again, sizeof again);
+        for (const char *c = s_message.value[0].text; *c != '\0'; c++) {
             (void)printf("%02x", (unsigned)(unsigned char)*c);
         }
         (void)printf(" %.*s\n", (int)length, again);
@@ -59,7 +59,7 @@ static void parse_scalar(const char *argument)
         (void)printf("refused %u\n", (unsigned)s_message.column);
         return;
     }
-    const size_t length = pn_scalars_format(scalar, 1U, s_message.leaf, again, sizeof again);
+    const size_t length = pn_scalars_format(scalar, 1U, s_message.value, again, sizeof again);
     (void)printf("%.*s\n", (int)length, again);
 }
 
@@ -90,7 +90,7 @@ static void parse_file(const char *argument)
     switch (pn_channel_parse(&channel, text, length, "0123abcd", consumed, &s_message)) {
     case PN_CHANNEL_EMPTY: (void)puts("empty"); break;
     case PN_CHANNEL_MESSAGE:
-        (void)printf("message %a %a %ld\n", s_message.leaf[0].real, s_message.leaf[1].real,
+        (void)printf("message %a %a %ld\n", s_message.value[0].real, s_message.value[1].real,
                      s_message.sealed ? (long)s_message.seq : -1L);
         break;
     case PN_CHANNEL_REFUSED: (void)printf("refused %s\n", why[s_message.refusal]); break;

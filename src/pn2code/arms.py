@@ -1,7 +1,7 @@
 """Where the arms of a cell can go, in each of its layouts, by closed-form inverse kinematics.
 
 arms = Arms.of(config, d)                   # None: there are no arms, or something is wrong with them
-arms.obstacle("robot", MoveJoint(pose))     # "" or "robot `robot`: the pose is out of reach: 3200 mm from the base..."
+arms.why_unreachable("robot", MoveJoint(pose))  # "" or "robot `robot`: the pose is out of reach: 3200 mm from the..."
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Arms:
         found = Arms(cells)
         return found if found.robots else None
 
-    def obstacle(self, robot: str, command: MoveJoint | MoveLinear) -> str:
+    def why_unreachable(self, robot: str, command: MoveJoint | MoveLinear) -> str:
         """Why the arm cannot come to the pose of a command, in words that name robot, pose and layout; "": it can.
 
         Moves relative to the tool are not looked at: where they lead depends on where they begin. Of lines only the

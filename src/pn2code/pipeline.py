@@ -36,7 +36,7 @@ from pn2code.net.reached import unused_functions
 from pn2code.robot_scripts import translate as lower_robot
 from pn2code.semantics.evaluation.constants import compute
 from pn2code.verify.controller.proofs import prove
-from pn2code.verify.exploring.place_capacity import PlaceCapacity, with_rooms
+from pn2code.verify.exploring.place_capacity import PlaceCapacity, with_place_capacities
 
 if TYPE_CHECKING:
     from pn2code.arms import Arms
@@ -53,7 +53,7 @@ class Generated:
         partition: the net and its owners.
         config: the cell, None for a net without one.
         digest: SHA-256 of the net and of what the cell contributes to the programs.
-        rooms: how many tokens each place can hold, and why.
+        place_capacities: how many tokens each place can hold, and why.
         arena: bytes that the supervisor has for lists, strings and the moves of a firing.
         is_checked: whether the supervisor was checked, with the input files that were there.
     """
@@ -62,7 +62,7 @@ class Generated:
     partition: Partition
     config: CellConfig | None
     digest: str
-    rooms: tuple[PlaceCapacity, ...]
+    place_capacities: tuple[PlaceCapacity, ...]
     arena: int
     is_checked: bool
 
@@ -132,7 +132,7 @@ def generate(
         return None
 
     version = pn2code.__version__
-    deployed = with_rooms(ir, proofs.rooms)
+    deployed = with_place_capacities(ir, proofs.place_capacities)
     net_files = emit_c.emit(deployed, version)
     arena = arena_size.of(deployed, proofs.arena)
     files = [
@@ -159,7 +159,7 @@ def generate(
         partition=partition,
         config=config,
         digest=digest,
-        rooms=proofs.rooms,
+        place_capacities=proofs.place_capacities,
         arena=arena.bytes,
         is_checked=checked,
     )

@@ -56,7 +56,7 @@ export class CellView {
 
   start() {
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-    this.renderer.shadowMap.enabled = true;
+    this.renderer.shadowMap.enabled = false; // the first picture is there sooner without
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
     this.renderer.outputEncoding = THREE.LinearEncoding;
     const canvas = this.renderer.domElement;
@@ -367,7 +367,19 @@ export class CellView {
     }
     this.gaps?.size(w, h);
     this.renderer.render(this.cell?.scene, this.camera);
-    this.spare(performance.now() - start);
+    if (this.hasShadows === undefined) {
+      setTimeout(() => this.shadows(true), 0);
+    } else {
+      this.spare(performance.now() - start);
+    }
+  }
+
+  /** @param {boolean} wanted */
+  shadows(wanted) {
+    this.hasShadows = wanted;
+    this.renderer.shadowMap.enabled = wanted;
+    for (const material of this.cell?.materials.values() ?? []) material.needsUpdate = true;
+    this.request();
   }
 
   /**
@@ -375,11 +387,9 @@ export class CellView {
    * @param {number} ms
    */
   spare(ms) {
-    if (!this.renderer.shadowMap.enabled) return;
+    if (!this.hasShadows) return;
     this.slow = ms > SLOW_MS ? (this.slow ?? 0) + 1 : 0;
-    if (this.slow < 12) return;
-    this.renderer.shadowMap.enabled = false;
-    for (const material of this.cell?.materials.values() ?? []) material.needsUpdate = true;
+    if (this.slow >= 12) this.shadows(false);
   }
 }
 

@@ -10,7 +10,7 @@ import pytest
 from helpers import explorations
 from helpers.compiled import DELIVERED
 from helpers.explored import SANITIZERS, Explorers
-from helpers.generated import Remembered
+from helpers.generated import Cached
 from helpers.objects import Objects
 from helpers.session import common, once
 from pn2code import pipeline
@@ -40,7 +40,7 @@ def large_explorations(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Non
     folder = common(tmp_path_factory) / "explorations"
     folder.mkdir(exist_ok=True)
     with pytest.MonkeyPatch.context() as changed:
-        changed.setattr(explore, "_run", explorations.Remembered(explore._run, folder))
+        changed.setattr(explore, "_run", explorations.Cached(explore._run, folder))
         yield
 
 
@@ -53,15 +53,15 @@ def quick_build() -> Iterator[None]:
 
 
 @pytest.fixture(scope="session")
-def remembered(tmp_path_factory: pytest.TempPathFactory) -> Remembered:
+def cached(tmp_path_factory: pytest.TempPathFactory) -> Cached:
     """What `generated_once` remembers, for all workers."""
     folder = common(tmp_path_factory) / "generated"
     folder.mkdir(exist_ok=True)
-    return Remembered(pipeline.generate, folder)
+    return Cached(pipeline.generate, folder)
 
 
 @pytest.fixture(scope="session")
-def of_example(root: Path, remembered: Remembered) -> Callable[[str], Generated]:
+def of_example(root: Path, cached: Cached) -> Callable[[str], Generated]:
     """An example cell, generated once a session, of which there is nothing to say."""
 
     def generated(name: str) -> Generated:
@@ -69,7 +69,7 @@ def of_example(root: Path, remembered: Remembered) -> Callable[[str], Generated]
         with pytest.MonkeyPatch.context() as changed:
             if name in LARGE:
                 changed.setattr(programs, "FLAGS", DELIVERED)
-            found = remembered(root / "examples" / name, d)
+            found = cached(root / "examples" / name, d)
         assert found is not None and not list(d), render.report(d)
         return found
 
@@ -77,10 +77,10 @@ def of_example(root: Path, remembered: Remembered) -> Callable[[str], Generated]
 
 
 @pytest.fixture(scope="module")
-def generated_once(remembered: Remembered) -> Iterator[None]:
+def generated_once(cached: Cached) -> Iterator[None]:
     """Runs of a cell with the same files and options share its programs: generating them takes seconds."""
     with pytest.MonkeyPatch.context() as changed:
-        changed.setattr(pipeline, "generate", remembered)
+        changed.setattr(pipeline, "generate", cached)
         yield
 
 

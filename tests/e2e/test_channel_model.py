@@ -21,7 +21,7 @@ from pn2code.semantics.game.token_game import Game
 from pn2code.verdict.channel_model import rows, told, verdict
 from pn2code.verify.exploring.limits import Limits
 
-CALM = Crashes(lives=False)
+CALM = Crashes(life_cycle=False)
 RULES = {
     # flags are published before their data
     "flag-before-data": Rules(data_first=False),

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
-from pn2code.base.writable import file_obstacle, folder_obstacle
+from pn2code.base.writable import why_file_unwritable, why_folder_unwritable
 from pn2code.cli.main import app
 
 
@@ -39,12 +39,15 @@ def test_refused_before_the_net_is_read(
 def test_permission(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Who runs the tests may be allowed everything, so the system's answer is given here."""
     monkeypatch.setattr("os.access", lambda path, mode: Path(path) != tmp_path)
-    for why in (folder_obstacle(tmp_path / "a" / "b"), file_obstacle(tmp_path / "net.svg")):
+    for why in (
+        why_folder_unwritable(tmp_path / "a" / "b"),
+        why_file_unwritable(tmp_path / "net.svg"),
+    ):
         assert why == "permission denied"
 
 
 def test_what_can_be_written(tmp_path: Path) -> None:
-    assert file_obstacle(tmp_path / "new.svg") == ""
-    assert file_obstacle(tmp_path / "a" / "new.svg", makes_folders=True) == ""
-    assert file_obstacle(Path("/dev/null")) == ""
-    assert folder_obstacle(tmp_path / "a" / "b") == ""
+    assert why_file_unwritable(tmp_path / "new.svg") == ""
+    assert why_file_unwritable(tmp_path / "a" / "new.svg", makes_folders=True) == ""
+    assert why_file_unwritable(Path("/dev/null")) == ""
+    assert why_folder_unwritable(tmp_path / "a" / "b") == ""

@@ -44,9 +44,11 @@ def slots(pitch: float, *more: tuple[str, str], begin: float = 1200.0) -> str:
     return changed(NET, (AT, at), *more)
 
 
-def verified(cell: Path, *options: str, medium: bool = False) -> tuple[Result, dict[str, Any]]:
+def verified(
+    cell: Path, *options: str, channel_model: bool = False
+) -> tuple[Result, dict[str, Any]]:
     """What `verify` says, and its checks by name; those of the medium take longer, and say nothing of poses."""
-    left_out = [] if medium else ["--no-medium"]
+    left_out = [] if channel_model else ["--no-medium"]
     done = CliRunner().invoke(app, ["verify", str(cell), "--json", *left_out, *options])
     rows = json.loads(done.stdout)["controller"]
     return done, {row["check"]: row for row in rows}
@@ -63,7 +65,7 @@ def ran(cell: Path) -> tuple[str, str]:
 
 def test_poses_in_messages_within_reach(tmp_path: Path) -> None:
     cell = write(tmp_path, slots(50.0), TOML + ARM)
-    done, checks = verified(cell, medium=True)
+    done, checks = verified(cell, channel_model=True)
     assert done.exit_code == 0, done.output
     assert checks["reach"]["answer"] == "yes"
     assert checks["reach"]["value"] == 3
@@ -192,7 +194,7 @@ class NoArms:
 
     robots = frozenset({"robot1"})
 
-    def obstacle(self, robot: str, command: object) -> str:
+    def why_unreachable(self, robot: str, command: object) -> str:
         return f"{robot} cannot"
 
 

@@ -590,7 +590,7 @@ def test_a_declared_capacity_is_looked_at(tmp_path: Path) -> None:
 
 
 def test_an_end_is_reached_in_the_medium_or_it_says_no(tmp_path: Path) -> None:
-    from pn2code.channel_model.check import WHOLE, medium
+    from pn2code.channel_model.check import WHOLE, check_channel_model
 
     for name in ("no end", "free variable"):
         text, cell, _, _ = CELLS[name]
@@ -598,7 +598,7 @@ def test_an_end_is_reached_in_the_medium_or_it_says_no(tmp_path: Path) -> None:
         d = Diagnostics()
         partition = divide(opened.flat, opened.config, d)
         assert partition is not None
-        whole = next(a for a in medium(partition, {}, Limits(), d) if a.check == WHOLE)
+        whole = next(a for a in check_channel_model(partition, {}, Limits(), d) if a.check == WHOLE)
         assert whole.answer == "no", name
 
 

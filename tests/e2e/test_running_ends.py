@@ -282,8 +282,8 @@ def test_a_deadlock_beside_an_exception_of_the_model_alone(tmp_path: Path) -> No
 
 def test_whoever_is_told_nothing_speaks_once(tmp_path: Path) -> None:
     """In the exchange with B the file would be overwritten if B spoke again, which it has no reason to do."""
-    medium = said(write(tmp_path / "cell", PASSED_ON, PASSING))["medium"]
-    assert [(m["check"], m["answer"]) for m in medium] == [
+    channel_model = said(write(tmp_path / "cell", PASSED_ON, PASSING))["medium"]
+    assert [(m["check"], m["answer"]) for m in channel_model] == [
         ("the cell with its medium", "yes"),
         ("the exchange with A", "yes"),
         ("the exchange with B", "yes"),

@@ -15,7 +15,7 @@ from helpers.netbuilder import flat, write
 from helpers.quotient import quotient
 from pn2code.cli.main import app
 from pn2code.net.flat import FlatNet
-from pn2code.verify.exploring.time_reduction import obstacle
+from pn2code.verify.exploring.time_reduction import why_not_reducible
 
 pytestmark = pytest.mark.cc
 
@@ -139,7 +139,7 @@ def parts(found: Explored) -> tuple[Counter[str], Counter[tuple[str, str, str]]]
 
 
 def assert_is_quotient(explorers: Explorers, net: FlatNet, *options: object) -> Explored:
-    assert obstacle(net) is None
+    assert why_not_reducible(net) is None
     found = explorers.explore(net, "--reduce", "time", *options)
     expected = quotient(net)
     assert found.report["complete"] and found.report["reductions"] == ["time"]
@@ -205,7 +205,7 @@ REFUSED = """
     ],
 )
 def test_what_reads_the_time_is_refused(clauses: str, output: str, why: str) -> None:
-    found = obstacle(flat(REFUSED % (clauses, output)))
+    found = why_not_reducible(flat(REFUSED % (clauses, output)))
     assert found is not None and why in found.message
 
 
@@ -218,11 +218,11 @@ def test_early_delays_must_not_be_negative(delay: str, refused: bool) -> None:
     values = "val soon = 2 * 3; val past = ~2; val (odd, even) = (~1, 2);"
     text = text.replace("globref", f"{values}\n      globref", 1)
     net = flat(text % ("", "t"))
-    assert (obstacle(net) is not None) == refused
+    assert (why_not_reducible(net) is not None) == refused
 
 
 def test_real_clocks_are_refused() -> None:
-    found = obstacle(
+    found = why_not_reducible(
         flat(TWO_MACHINES.replace("net Machines", "net Machines\n      option realtimestamp true"))
     )
     assert found is not None and "rounded" in found.message

@@ -12,7 +12,7 @@ from helpers.netbuilder import write as write_net
 from helpers.processes import pn2code
 from helpers.property_nets import MUTEX
 from helpers.small_cell import NET, write
-from pn2code.verify.answers.assumptions import MEDIUM
+from pn2code.verify.answers.assumptions import FILE_SYSTEM
 
 pytestmark = pytest.mark.cc
 
@@ -68,4 +68,4 @@ def test_a_net(tmp_path: Path) -> None:
 
 def test_what_is_assumed_of_files_is_that_of_the_document(root: Path) -> None:
     table = (root / "docs" / "protocol.md").read_text()
-    assert [one for one in MEDIUM if f"| {one} |" not in table] == []
+    assert [one for one in FILE_SYSTEM if f"| {one} |" not in table] == []

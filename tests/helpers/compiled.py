@@ -50,8 +50,8 @@ ARENA = "arena"
 DELIVERED = programs.FLAGS
 """Those with which users have explorers and simulators; the tests mostly have others."""
 RUNTIME = (
-    "arena", "big", "codec", "file", "leaves", "library", "list", "marking", "moves", "multiset", "num", "random",
-    "read", "root", "stack", "string", "text", "trace", "type",
+    "arena", "big", "codec", "file", "library", "list", "marking", "moves", "multiset", "num", "random", "read", "root",
+    "scalars", "stack", "string", "text", "trace", "type",
 )  # fmt: skip
 
 

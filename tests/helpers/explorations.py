@@ -34,7 +34,7 @@ OUTSIDE = ("--max-seconds", "--late-seconds", "--spill", "--write-graph", "--app
 """With one of these it is always explored."""
 
 
-class Remembered:
+class Cached:
     """`explore._run`, which starts no process for a large exploration that has been done before.
 
     Args:

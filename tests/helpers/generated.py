@@ -23,7 +23,7 @@ Generate = Callable[..., Generated | None]
 Said = tuple[Generated, list[Diagnostic]]
 
 
-class Remembered:
+class Cached:
     """`pipeline.generate`, which generates a second time only what has changed since the first.
 
     Calls that come with diagnostics, and those that fail, are always done anew. `examine` is asked each time; when it

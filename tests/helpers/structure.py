@@ -79,13 +79,13 @@ def wrong_proofs(a: Analysis) -> Iterator[str]:
 def wrong_on_walk(a: Analysis, net: FlatNet, *, steps: int, seed: int) -> list[str]:
     """What is false somewhere on a random walk; a GameError of the net goes through."""
     game = Game(net, seed=seed)
-    chance = random.Random(seed)
+    draws = random.Random(seed)
     wrong = list(wrong_in(a, game.marking))
     for _ in range(steps):
         if wrong or not game.advance():
             break
         before = game.marking
-        element = chance.choice(game.enabled())
+        element = draws.choice(game.enabled())
         game.fire(element, checked=False)
         wrong += [*wrong_step(a, before, element, game.marking), *wrong_in(a, game.marking)]
     return wrong

@@ -33,7 +33,7 @@ from pn2code.semantics.game.marking import Marking, PlaceMarking, binding_to_jso
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.verify.exploring.elements import Elements, NotPossibleError, elements
 from pn2code.verify.exploring.programs import Sizes
-from pn2code.verify.exploring.time_reduction import obstacle
+from pn2code.verify.exploring.time_reduction import why_not_reducible
 
 PER_UNION = 50
 """Nets in a union; about forty of them have graphs that are compared."""
@@ -269,7 +269,7 @@ def _compare(
     outcome.nodes += nodes - 1
     outcome.arcs += sum(len(p.graph.arcs) for p in parts)
     outcome.five += sum(len(p.graph.nodes) >= 5 for p in parts)
-    if union.style in ("timed", "untimed") and obstacle(net) is None:
+    if union.style in ("timed", "untimed") and why_not_reducible(net) is None:
         compare_time(explorers, parts, net)
         outcome.reduced["time"] += 1
     if is_reduced:

@@ -194,9 +194,9 @@ class Pace:
             return
         self._estimate.done(report.nodeid)
         if self._says():
-            self._tell(self._estimate, time.monotonic() - self._began)
+            self._show_estimate(self._estimate, time.monotonic() - self._began)
 
-    def _tell(self, estimate: Estimate, elapsed: float) -> None:
+    def _show_estimate(self, estimate: Estimate, elapsed: float) -> None:
         terminal = self._config.pluginmanager.getplugin("terminalreporter")
         if terminal is not None and terminal.isatty:
             if elapsed - self._told_at >= _AGAIN_S:

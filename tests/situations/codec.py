@@ -126,29 +126,29 @@ def values_that_no_net_has(lab: Lab) -> None:
 @situation
 def read_alike(lab: Lab) -> None:
     """Files damaged in small ways, and edges: both sides take the same values, and refuse for the same reason."""
-    chance = random.Random(3)
+    draws = random.Random(3)
     cases: list[tuple[ChannelSpec, bytes]] = [(spec, text) for spec in CHANNELS for text in EDGES]
     good = [(ALL, GOOD)] * 3 + [(TEXT, ("", "b")), (TEXT, ('" \\', "\xff"))]
     while len(cases) < 1500:
-        spec, values = chance.choice(good)
+        spec, values = draws.choice(good)
         text = compose(
             spec,
             values,
-            seq=chance.choice([6, 7, 7, 7, 8]),
-            session=chance.choice([SESSION] * 5 + ["x"]),
+            seq=draws.choice([6, 7, 7, 7, 8]),
+            session=draws.choice([SESSION] * 5 + ["x"]),
         )
         assert text is not None
         data = bytearray(text.encode("latin-1"))
-        for _ in range(chance.choice([0, 1, 1, 2])):
-            at = chance.randrange(len(data))
-            match chance.randrange(4):
+        for _ in range(draws.choice([0, 1, 1, 2])):
+            at = draws.randrange(len(data))
+            match draws.randrange(4):
                 case 0:
                     del data[at:]
                     data += b"\n"
                 case 1:
-                    data[at : at + 1] = bytes([chance.choice(b'0 1\n#.-e"\\\x00\xff\t\rx')])
+                    data[at : at + 1] = bytes([draws.choice(b'0 1\n#.-e"\\\x00\xff\t\rx')])
                 case 2:
-                    data[at:at] = bytes([chance.choice(b'0 1\n#.-e+"\\')])
+                    data[at:at] = bytes([draws.choice(b'0 1\n#.-e+"\\')])
                 case _:
                     del data[at : at + 1]
         cases.append((spec, bytes(data)))

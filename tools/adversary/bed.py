@@ -68,7 +68,7 @@ def judge(seed: int, folder: Path, runs: int) -> Verdict:
     counts.update([" ".join(how) or "as by itself"])
     counts.update(f"{name} {c['answer']}" for name, c in said.controller.items())
     counts.update(f"claim {answer}" for answer in said.claims)
-    counts.update(f"medium {m['answer']}" for m in said.medium[:1])
+    counts.update(f"medium {m['answer']}" for m in said.channel_model[:1])
     r = Random(seed)
     if all(c["answer"] != "no" for name, c in said.controller.items() if name != "confluence"):
         deployed = wander.prepare(folder, Diagnostics(), checked=True)

@@ -31,7 +31,7 @@ class Said:
 
     code: int
     controller: Mapping[str, Mapping[str, Any]]
-    medium: tuple[Mapping[str, Any], ...]
+    channel_model: tuple[Mapping[str, Any], ...]
     claims: tuple[str, ...]
     whole: Mapping[str, Any]
 
@@ -119,9 +119,9 @@ def markings(
             game.set_time(
                 max(game.marking.time, line["t"] + 1e-6)
             )  # rounded as the supervisor does
-        obstacle = game.why_disabled(game.marking, element, priorities=False)
-        if obstacle is not None:
-            return f"{t.name}: {obstacle}"
+        why = game.why_disabled(game.marking, element, priorities=False)
+        if why is not None:
+            return f"{t.name}: {why}"
         try:
             game.marking, _ = game.occur(game.marking, element)
         except GameError as error:
@@ -168,7 +168,7 @@ def _of_run(cell: Cell, said: Said, run: Run, found: list[Moment] | str) -> Iter
         for claim in cell.capacities:
             if claim.broken(found, is_over=is_over) is not None:
                 yield f"capacity is yes, but {claim.places[0]} holds more than {claim.most} tokens"
-    whole = [m["answer"] for m in said.medium[:1]]
+    whole = [m["answer"] for m in said.channel_model[:1]]
     # A script may stop by itself before anybody notices; only where non-blocking is yes that may not be.
     is_own = _SCRIPT.search(run.why) and _answer(said, "non-blocking") != "yes"
     is_said = any(w in run.why for w in ("died", "dead", "ended", "gone", "has not answered"))

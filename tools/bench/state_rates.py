@@ -72,7 +72,7 @@ def threads(net: Path, repeat: int) -> tuple[float, float, float]:
     return min(one), min(two), min(both)
 
 
-def tell(shared: Path, repeat: int) -> None:
+def print_rates(shared: Path, repeat: int) -> None:
     """Prints both."""
     print(
         "\n| net with strings or lists | states | arcs a state | states/s | bytes a state | target |"

@@ -212,7 +212,7 @@ def measure(repeat: int, threads: int) -> int:
     print("\n| peer | model | states | states/s |\n|---|---|---|---|")
     for name, model_name, states, seconds in state_peers.all_of_them(SHARED):
         print(f"| {name} | {model_name} | {states:,} | {states / seconds:,.0f} |")
-    state_rates.tell(SHARED, repeat)
+    state_rates.print_rates(SHARED, repeat)
     missed = [r for r in table if r[8] != "-" and r[9] != "-" and float(r[8]) < float(r[9])]
     missed += [r for r in table if float(r[10]) > float(r[11])]
     return int(bool(missed) and load < (os.cpu_count() or 1) / 2)

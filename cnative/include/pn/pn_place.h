@@ -7,7 +7,8 @@
  *     array_held(p, v)             the number of tokens of that value
  *     array_holds(p, v, w)         whether there is a token v and another token w
  *     array_take(p, v, n)          takes n of them; false, and nothing taken, when there are fewer
- *     array_add(cx, p, multiset, v, n)  puts n of them; false (PN_ERR_CAPACITY) when there are now more than the place may
+ *     array_add(cx, p, multiset, v, n)
+ *                                  puts n of them; false (PN_ERR_CAPACITY) when there are now more than the place may
  *                                  hold
  *     array_undo(p, v, n)          takes them out again, also where they are now more than can be counted
  *

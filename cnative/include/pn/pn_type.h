@@ -130,16 +130,17 @@ uint64_t pn_type_position(const pn_type_t *type, const void *value);
 /* Whether all numbers in a value of a small colour set are within their bounds; those of an index are not looked at. */
 bool pn_type_has_position(const pn_type_t *type, const void *value);
 
-/* Leaves: see pn_net.h. How many there are in a value; 0: no fixed number. */
-uint32_t pn_leaf_count(const pn_type_t *type);
+/* Scalars: see pn_net.h. How many there are in a value; 0: no fixed number. */
+uint32_t pn_scalar_count(const pn_type_t *type);
 /* How an input file is laid out: a line for each component, if any is composed itself; otherwise one line for all. 0:
  * not at all. */
 uint32_t pn_line_count(const pn_type_t *type);
-uint32_t pn_line_leaves(const pn_type_t *type, uint32_t line);
-/* Number of leaves written, 0 if there are more than `capacity` or no fixed number. */
-uint32_t pn_to_leaves(const pn_type_t *type, const void *value, pn_leaf_t *leaf, uint32_t capacity);
-/* A value from its leaves. False (PN_ERR_COLOUR) when kinds, numbers or ranges do not fit. */
-bool pn_from_leaves(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn_leaf_t *leaf, uint32_t leaves);
+uint32_t pn_line_scalars(const pn_type_t *type, uint32_t line);
+/* Number of scalars written, 0 if there are more than `capacity` or no fixed number. */
+uint32_t pn_to_scalars(const pn_type_t *type, const void *value, pn_scalar_value_t *scalar_value, uint32_t capacity);
+/* A value from its scalars. False (PN_ERR_COLOUR) when kinds, numbers or ranges do not fit. */
+bool pn_from_scalars(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn_scalar_value_t *scalar_value,
+                     uint32_t scalars);
 
 /* A cell in the arena that holds a copy of a value; NULL when the arena is full. */
 void *pn_ref_new(pn_ctx_t *cx, const void *value, size_t size);

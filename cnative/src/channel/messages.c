@@ -49,33 +49,34 @@ static void print_hex(const char *bytes, size_t length)
     }
 }
 
-static void leaf_of(const pn_scalar_t *scalar, const char *word, pn_leaf_t *leaf, size_t *used)
+static void scalar_of(const pn_scalar_t *scalar, const char *word, pn_scalar_value_t *scalar_value, size_t *used)
 {
-    *leaf = (pn_leaf_t){ .kind = PN_LEAF_INT };
+    *scalar_value = (pn_scalar_value_t){ .kind = PN_VALUE_INT };
     if (scalar->kind == PN_SCALAR_REAL) {
-        leaf->real = strtod(word, NULL);
+        scalar_value->real = strtod(word, NULL);
     } else if (scalar->kind == PN_SCALAR_STRING) {
-        leaf->text = &s_text[*used];
-        leaf->length = (uint32_t)from_hex(&word[1], &s_text[*used], sizeof s_text - *used);
-        *used += leaf->length;
+        scalar_value->text = &s_text[*used];
+        scalar_value->length = (uint32_t)from_hex(&word[1], &s_text[*used], sizeof s_text - *used);
+        *used += scalar_value->length;
     } else {
-        leaf->integer = strtoll(word, NULL, 10);
+        scalar_value->integer = strtoll(word, NULL, 10);
     }
 }
 
 static bool answer_write(const pn_cell_channel_t *channel, const char *seq, char **rest)
 {
     static char file[PN_CHANNEL_TEXT];
-    pn_leaf_t leaf[PN_CHANNEL_SCALARS];
+    pn_scalar_value_t scalar_value[PN_CHANNEL_SCALARS];
     size_t used = 0U;
     for (uint32_t i = 0U; i < channel->scalar_count; i++) {
         const char *const word = strtok_r(NULL, " ", rest);
         if (word == NULL) {
             return false;
         }
-        leaf_of(&channel->scalar[i], word, &leaf[i], &used);
+        scalar_of(&channel->scalar[i], word, &scalar_value[i], &used);
     }
-    const size_t length = pn_channel_compose(channel, leaf, strtoull(seq, NULL, 10), SESSION, file, sizeof file);
+    const size_t length =
+        pn_channel_compose(channel, scalar_value, strtoull(seq, NULL, 10), SESSION, file, sizeof file);
     if (length == 0U) {
         (void)printf("unwritable");
     }
@@ -83,15 +84,15 @@ static bool answer_write(const pn_cell_channel_t *channel, const char *seq, char
     return true;
 }
 
-static void print_leaf(const pn_scalar_t *scalar, const pn_leaf_t *leaf)
+static void print_scalar_value(const pn_scalar_t *scalar, const pn_scalar_value_t *scalar_value)
 {
     if (scalar->kind == PN_SCALAR_REAL) {
-        (void)printf(" %a", leaf->real);
+        (void)printf(" %a", scalar_value->real);
     } else if (scalar->kind == PN_SCALAR_STRING) {
         (void)printf(" x");
-        print_hex(leaf->text, leaf->length);
+        print_hex(scalar_value->text, scalar_value->length);
     } else {
-        (void)printf(" %" PRId64, leaf->integer);
+        (void)printf(" %" PRId64, scalar_value->integer);
     }
 }
 
@@ -111,7 +112,7 @@ static bool answer_read(const pn_cell_channel_t *channel, const char *consumed, 
             (void)printf("message -");
         }
         for (uint32_t i = 0U; i < s_message.count; i++) {
-            print_leaf(&channel->scalar[i], &s_message.leaf[i]);
+            print_scalar_value(&channel->scalar[i], &s_message.value[i]);
         }
         return true;
     case PN_CHANNEL_REFUSED: (void)printf("refused %s", why[s_message.refusal]); return true;

@@ -59,22 +59,22 @@ static bool write_step(void *user, uint32_t transition, const void *binding, con
 }
 
 /* The nodes from the initial marking to `node`, both included; the caller frees them. NULL: no memory. */
-static uint32_t *way_to(const ex_graph_t *graph, uint32_t node, uint64_t *length)
+static uint32_t *path_to(const ex_graph_t *graph, uint32_t node, uint64_t *length)
 {
     uint64_t count = 1U;
     for (uint32_t at = node; at != 0U; at = graph->parent[at]) {
         count += 1U;
     }
-    uint32_t *const way = malloc(count * sizeof *way);
+    uint32_t *const on_path = malloc(count * sizeof *on_path);
     *length = count;
-    if (way == NULL) {
+    if (on_path == NULL) {
         return NULL;
     }
     for (uint32_t at = node; count > 0U; at = graph->parent[at]) {
         count -= 1U;
-        way[count] = at;
+        on_path[count] = at;
     }
-    return way;
+    return on_path;
 }
 
 /* --- with symmetries: the states of the way stand for others, and a run goes through one of them after the other -- */
@@ -100,7 +100,8 @@ static bool walk_step(void *user, uint32_t transition, const void *binding, cons
     return false;
 }
 
-static bool write_walk(ex_run_t *run, const ex_graph_t *graph, const uint32_t *way, uint64_t length, pn_trace_t *trace)
+static bool write_walk(ex_run_t *run, const ex_graph_t *graph, const uint32_t *on_path, uint64_t length,
+                       pn_trace_t *trace)
 {
     ex_worker_t *const worker = &run->worker[0];
     uint64_t *const wanted = calloc(1U, pn_net.marking_size + sizeof *wanted);
@@ -112,7 +113,7 @@ static bool write_walk(ex_run_t *run, const ex_graph_t *graph, const uint32_t *w
         (void)memcpy(marking, worker->marking, pn_net.marking_size);
     }
     for (uint64_t i = 1U; is_fine && (i < length); i++) {
-        is_fine = ex_store_fetch(&run->store, graph->slot[way[i]], &key) && ex_load(worker, &key);
+        is_fine = ex_store_fetch(&run->store, graph->slot[on_path[i]], &key) && ex_load(worker, &key);
         if (is_fine) {
             (void)memcpy(wanted, worker->marking, pn_net.packed_size);
             (void)memcpy(worker->marking, marking, pn_net.marking_size);
@@ -144,13 +145,13 @@ int64_t ex_write_trace(ex_run_t *run, const ex_graph_t *graph, uint32_t node, co
 int64_t ex_write_run(ex_run_t *run, const ex_graph_t *graph, uint32_t node, const char *path, const char *why)
 {
     uint64_t length = 0U;
-    uint32_t *const way = way_to(graph, node, &length);
-    const int64_t steps = (way != NULL) ? ex_write_path(run, graph, way, NULL, length - 1U, path, why) : -1;
-    free(way);
+    uint32_t *const on_path = path_to(graph, node, &length);
+    const int64_t steps = (on_path != NULL) ? ex_write_path(run, graph, on_path, NULL, length - 1U, path, why) : -1;
+    free(on_path);
     return steps;
 }
 
-int64_t ex_write_path(ex_run_t *run, const ex_graph_t *graph, const uint32_t *way, const uint16_t *label,
+int64_t ex_write_path(ex_run_t *run, const ex_graph_t *graph, const uint32_t *on_path, const uint16_t *label,
                       uint64_t steps, const char *path, const char *why)
 {
     ex_worker_t *const worker = &run->worker[0];
@@ -170,23 +171,23 @@ int64_t ex_write_path(ex_run_t *run, const ex_graph_t *graph, const uint32_t *wa
     pn_trace_header_with(&trace, &pn_net, "simulate", run->options.initial, members);
     const bool is_symmetric = (run->reduction != NULL) && run->reduction->is_symmetric;
     if (is_symmetric) {
-        is_fine = write_walk(run, graph, way, length, &trace);
+        is_fine = write_walk(run, graph, on_path, length, &trace);
     }
     for (uint64_t i = 0U; is_fine && !is_symmetric && ((i + 1U) < length); i++) {
         ex_key_t from;
         step_search_t search = { .worker = worker, .trace = &trace, .before = elapsed };
         search.transition = (label != NULL) ? label[i + 1U] : ANY_TRANSITION;
-        is_fine = ex_store_fetch(&run->store, graph->slot[way[i]], &from)
-                  && ex_store_fetch(&run->store, graph->slot[way[i + 1U]], &search.wanted);
+        is_fine = ex_store_fetch(&run->store, graph->slot[on_path[i]], &from)
+                  && ex_store_fetch(&run->store, graph->slot[on_path[i + 1U]], &search.wanted);
         is_fine = is_fine && (ex_successors(worker, &from, write_step, &search) == EX_STOPPED) && search.is_found;
         elapsed += worker->elapsed;
     }
     ex_key_t last;
-    is_fine =
-        is_fine
-        && (is_symmetric || (ex_store_fetch(&run->store, graph->slot[way[steps]], &last) && ex_load(worker, &last)));
+    is_fine = is_fine
+              && (is_symmetric
+                  || (ex_store_fetch(&run->store, graph->slot[on_path[steps]], &last) && ex_load(worker, &last)));
     if (is_fine) {
-        const char *const usual = (EX_BIT(graph->dead, way[steps]) != 0U) ? "finished" : "steps";
+        const char *const usual = (EX_BIT(graph->dead, on_path[steps]) != 0U) ? "finished" : "steps";
         pn_trace_model_end(&trace, time_of(worker, elapsed), pn_net.real_time, (why != NULL) ? why : usual);
     }
     is_fine = pn_trace_close(&trace) && is_fine;

@@ -45,11 +45,11 @@ bool pn_marking_init(const pn_net_t *net, pn_ctx_t *cx, void *marking)
     return pn_ok(cx);
 }
 
-bool pn_marking_put(const pn_net_t *net, pn_ctx_t *cx, void *marking, uint32_t place, const pn_leaf_t *leaf,
-                    uint32_t leaves)
+bool pn_marking_put(const pn_net_t *net, pn_ctx_t *cx, void *marking, uint32_t place,
+                    const pn_scalar_value_t *scalar_value, uint32_t scalars)
 {
     cx->now = pn_now(net, marking);
-    return pn_multiset_put(cx, net->place[place].multiset, marking, leaf, leaves);
+    return pn_multiset_put(cx, net->place[place].multiset, marking, scalar_value, scalars);
 }
 
 bool pn_next_time(const pn_net_t *net, pn_ctx_t *cx, const void *marking, pn_time_t *next)

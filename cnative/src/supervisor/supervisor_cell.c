@@ -89,13 +89,13 @@ static bool accept_message(sup_t *sup, uint32_t index)
     const pn_place_t *const place = &sup->net->place[channel->place];
     channel_state_t *const state = &s_cell.channel[index];
     pn_message_t *const message = &s_cell.message;
-    if (!pn_marking_put(sup->net, &sup->cx, sup->marking, channel->place, message->leaf, message->count)) {
+    if (!pn_marking_put(sup->net, &sup->cx, sup->marking, channel->place, message->value, message->count)) {
         char text[PN_CHANNEL_TEXT];
         if (sup->cx.error != PN_ERR_COLOUR) {
             return sup_stop_error(sup, "putting the token of a message");
         }
         sup->cx.error = PN_OK;
-        if (pn_scalars_format(channel->scalar, channel->scalar_count, message->leaf, text, sizeof text) == 0U) {
+        if (pn_scalars_format(channel->scalar, channel->scalar_count, message->value, text, sizeof text) == 0U) {
             text[0] = '\0';
         }
         message->refusal = PN_REFUSAL_COLOUR;
@@ -170,7 +170,7 @@ static bool clear_consumed(sup_t *sup)
 
 static bool publish_token(sup_t *sup, uint32_t index)
 {
-    pn_leaf_t leaf[PN_CHANNEL_SCALARS];
+    pn_scalar_value_t scalar_value[PN_CHANNEL_SCALARS];
     const pn_cell_channel_t *const channel = &sup->cell->channel[index];
     const pn_place_t *const place = &sup->net->place[channel->place];
     peer_state_t *const peer = &s_cell.peer[channel->peer];
@@ -183,13 +183,14 @@ static bool publish_token(sup_t *sup, uint32_t index)
                         "channel-overrun: %" PRIu64 " messages for %s in one cycle; it can hold one", tokens,
                         channel->file);
     }
-    if (pn_multiset_token(place->multiset, sup->marking, 0U, leaf, PN_CHANNEL_SCALARS) != channel->scalar_count) {
+    if (pn_multiset_token(place->multiset, sup->marking, 0U, scalar_value, PN_CHANNEL_SCALARS)
+        != channel->scalar_count) {
         return sup_stop(sup, SUP_EXIT_CHANNEL,
                         "the token of place `%s` cannot be written to %s: an integer in it does not fit into 64 "
                         "bits",
                         place->name, channel->file);
     }
-    if (!s_cell.transport.write(s_cell.transport.self, index, leaf)) {
+    if (!s_cell.transport.write(s_cell.transport.self, index, scalar_value)) {
         return stop_for_transport(sup);
     }
     if (sup->options.verbosity >= 1) {

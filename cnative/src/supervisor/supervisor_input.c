@@ -98,7 +98,7 @@ static bool parse(sup_t *sup, const pn_cell_input_t *input, input_text_t *text, 
     token->count = 0U;
     token->text_length = 0U;
     for (uint32_t i = 0U; i < lines; i++) {
-        const uint32_t wanted = pn_line_leaves(type, i);
+        const uint32_t wanted = pn_line_scalars(type, i);
         const pn_scalar_t *const scalar = &input->scalar[done];
         (void)labels(scalar, wanted, text->columns, sizeof text->columns);
         if (!take_line(text, &line, &length)) {
@@ -134,12 +134,12 @@ static bool stop_for_colour(sup_t *sup, const pn_cell_input_t *input, const inpu
 {
     const pn_place_t *const place = &sup->net->place[input->place];
     for (uint32_t i = 0U; i < token->count; i++) {
-        if ((token->leaf[i].kind == PN_LEAF_REAL) && (fabs(token->leaf[i].real) > (double)FLT_MAX)) {
+        if ((token->value[i].kind == PN_VALUE_REAL) && (fabs(token->value[i].real) > (double)FLT_MAX)) {
             return sup_stop(sup, SUP_EXIT_USAGE,
                             "%s:%" PRIu32 ":%" PRIu32
                             ": %g is too large for `%s` of colour set `%s`, which is stored in single "
                             "precision",
-                            text->path, text->line_of[i], token->column_of[i], token->leaf[i].real,
+                            text->path, text->line_of[i], token->column_of[i], token->value[i].real,
                             input->scalar[i].label, input->scalar[i].colset);
         }
     }
@@ -153,10 +153,10 @@ static bool stop_for_colour(sup_t *sup, const pn_cell_input_t *input, const inpu
  * is another one. */
 static void compare_with_checked(const sup_t *sup, const pn_cell_input_t *input, input_text_t *text)
 {
-    pn_leaf_t leaf[PN_CHANNEL_SCALARS];
+    pn_scalar_value_t scalar_value[PN_CHANNEL_SCALARS];
     const pn_multiset_t *const multiset = sup->net->place[input->place].multiset;
-    const uint32_t count = pn_multiset_token(multiset, sup->marking, 0U, leaf, PN_CHANNEL_SCALARS);
-    const size_t length = pn_scalars_format(input->scalar, count, leaf, text->bytes, sizeof text->bytes);
+    const uint32_t count = pn_multiset_token(multiset, sup->marking, 0U, scalar_value, PN_CHANNEL_SCALARS);
+    const size_t length = pn_scalars_format(input->scalar, count, scalar_value, text->bytes, sizeof text->bytes);
     if (pn_crc32(0U, text->bytes, length) != input->checked) {
         sup_warn("%s: not the token that the cell was checked with: `pn2code verify --input` checks it with this one",
                  text->path);
@@ -174,7 +174,7 @@ bool sup_read_inputs(sup_t *sup)
             return false;
         }
         pn_multiset_clear(place->multiset, sup->marking);
-        if (!pn_marking_put(sup->net, &sup->cx, sup->marking, input->place, token.leaf, token.count)) {
+        if (!pn_marking_put(sup->net, &sup->cx, sup->marking, input->place, token.value, token.count)) {
             if (sup->cx.error != PN_ERR_COLOUR) {
                 return sup_stop_error(sup, "putting the token of an input file");
             }

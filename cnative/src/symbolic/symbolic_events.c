@@ -90,17 +90,17 @@ static sy_path_t step(paths_t *p, sy_step_t s)
     return p->slot[at];
 }
 
-typedef enum way { FORWARDS, BACKWARDS, TEST } way_t;
+typedef enum direction { FORWARDS, BACKWARDS, TEST } direction_t;
 
-static sy_path_t path(paths_t *p, const effects_t *e, way_t way)
+static sy_path_t path(paths_t *p, const effects_t *e, direction_t direction)
 {
     sy_path_t rest = (sy_path_t)SY_END;
     for (uint32_t i = 0U; i < e->count; i++) {
         const effect_t *f = &e->of[i];
-        const int64_t change = (way == TEST) ? 0 : ((int64_t)f->put - (int64_t)f->take);
-        const tb_count_t take = (way == BACKWARDS) ? f->put : f->take;
+        const int64_t change = (direction == TEST) ? 0 : ((int64_t)f->put - (int64_t)f->take);
+        const tb_count_t take = (direction == BACKWARDS) ? f->put : f->take;
         if ((take > 0U) || (change != 0)) {
-            const sy_step_t s = { f->level, take, (way == BACKWARDS) ? -change : change, rest };
+            const sy_step_t s = { f->level, take, (direction == BACKWARDS) ? -change : change, rest };
             rest = step(p, s);
         }
     }

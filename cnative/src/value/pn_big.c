@@ -717,7 +717,7 @@ pn_string_t pn_big_string(pn_ctx_t *cx, pn_big_t a)
     return (pn_string_t){ text, (uint32_t)length };
 }
 
-/* --- chance ------------------------------------------------------------------------------------------------------- */
+/* --- random numbers ----------------------------------------------------------------------------------------------- */
 
 pn_big_t pn_big_random_below(pn_ctx_t *cx, pn_big_t n)
 {

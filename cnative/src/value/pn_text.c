@@ -181,20 +181,20 @@ void pn_text_json_real(pn_text_t *text, double value)
     }
 }
 
-void pn_text_json_leaf(pn_text_t *text, const pn_leaf_t *leaf)
+void pn_text_json_scalar(pn_text_t *text, const pn_scalar_value_t *scalar_value)
 {
-    switch (leaf->kind) {
-    case PN_LEAF_BOOL: pn_text_str(text, (leaf->integer != 0) ? "true" : "false"); break;
-    case PN_LEAF_REAL: pn_text_json_real(text, leaf->real); break;
-    case PN_LEAF_STRING: pn_text_json_string(text, leaf->text, leaf->length); break;
-    case PN_LEAF_ENUM:
-        if (leaf->text != NULL) {
-            pn_text_json_str(text, leaf->text);
+    switch (scalar_value->kind) {
+    case PN_VALUE_BOOL: pn_text_str(text, (scalar_value->integer != 0) ? "true" : "false"); break;
+    case PN_VALUE_REAL: pn_text_json_real(text, scalar_value->real); break;
+    case PN_VALUE_STRING: pn_text_json_string(text, scalar_value->text, scalar_value->length); break;
+    case PN_VALUE_ENUM:
+        if (scalar_value->text != NULL) {
+            pn_text_json_str(text, scalar_value->text);
         } else {
-            pn_text_int(text, leaf->integer);
+            pn_text_int(text, scalar_value->integer);
         }
         break;
-    case PN_LEAF_INT:
-    default: pn_text_int(text, leaf->integer); break;
+    case PN_VALUE_INT:
+    default: pn_text_int(text, scalar_value->integer); break;
     }
 }

@@ -156,9 +156,9 @@ class Marking:
         """
         game = self.net.game
         with playing():
-            obstacle = game.why_disabled(self._state, binding._element)
-            if obstacle is not None:
-                raise NotEnabled(f"{binding}: {obstacle}")
+            why = game.why_disabled(self._state, binding._element)
+            if why is not None:
+                raise NotEnabled(f"{binding}: {why}")
             after, _ = game.occur(self._state, binding._element)
         return Marking(self.net, after)
 

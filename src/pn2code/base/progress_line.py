@@ -65,14 +65,14 @@ class Line:
     def stage(self, text: str) -> None:
         """Shows a text that begins a new part of the work: it is a line of its own where lines stay."""
         if self._is_plain:
-            self._tell(text)
+            self._write_line(text)
         else:
             self.say(text)
 
     def say(self, text: str) -> None:
         """Shows a text instead of the one before; what the terminal's width cannot hold is left out."""
         if self._is_plain and self._clock() - self._told >= PLAIN_PERIOD_S:
-            self._tell(text)
+            self._write_line(text)
         if self._shown:
             self._written = True
             # A text that went on in a second row would leave the first one behind.
@@ -84,11 +84,11 @@ class Line:
         """Writes a line that stays, in a terminal, too."""
         if self._shown:
             self.clear()
-            self._tell(text)
+            self._write_line(text)
         elif self._is_plain:
-            self._tell(text)
+            self._write_line(text)
 
-    def _tell(self, text: str) -> None:
+    def _write_line(self, text: str) -> None:
         self._told = self._clock()
         self._stream.write(f"{text}\n")
         self._stream.flush()

@@ -1,7 +1,7 @@
 """What would keep a file or folder from being written, found before any work is done for it.
 
-file_obstacle(Path("missing/report.html"))     # "there is no folder `missing`"
-folder_obstacle(Path("net.cpn/out"))           # "`net.cpn` is not a folder"
+why_file_unwritable(Path("missing/report.html"))     # "there is no folder `missing`"
+why_folder_unwritable(Path("net.cpn/out"))           # "`net.cpn` is not a folder"
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import os
 from pathlib import Path
 
 
-def file_obstacle(path: Path, *, makes_folders: bool = False) -> str:
+def why_file_unwritable(path: Path, *, makes_folders: bool = False) -> str:
     """Why a file cannot be written, as a clause; "": it can, as far as can be seen.
 
     Args:
@@ -24,14 +24,14 @@ def file_obstacle(path: Path, *, makes_folders: bool = False) -> str:
             return ""
         if not path.parent.is_dir():
             missing = f"there is no folder `{path.parent}`"
-            return folder_obstacle(path.parent) if makes_folders else missing
+            return why_folder_unwritable(path.parent) if makes_folders else missing
         is_refused = path.exists() and not os.access(path, os.W_OK)
-        return "permission denied" if is_refused else folder_obstacle(path.parent)
+        return "permission denied" if is_refused else why_folder_unwritable(path.parent)
     except OSError as problem:  # a name that is too long, a folder that must not be entered
         return (problem.strerror or str(problem)).lower()
 
 
-def folder_obstacle(folder: Path) -> str:
+def why_folder_unwritable(folder: Path) -> str:
     """The same for a folder that is made with all that is missing above it."""
     try:
         there = next(p for p in (folder, *folder.parents) if p.exists() or p.is_symlink())

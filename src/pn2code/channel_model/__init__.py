@@ -1,1 +1,1 @@
-"""The medium in the model: the shared-file protocol between the owners of a cell, as a net."""
+"""The channel model: the shared-file protocol between the owners of a cell, as a net."""

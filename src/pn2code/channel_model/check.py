@@ -1,6 +1,6 @@
-"""The checks of a cell's medium: which net is explored for which question, and what the answer means.
+"""The checks of a cell's channel model: which net is explored for which question, and what the answer means.
 
-for answer in medium(partition, storage, Limits(), d): ...
+for answer in check_channel_model(partition, storage, Limits(), d): ...
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pn2code.base.frozen import frozen
 from pn2code.cell.partition import Partition
 from pn2code.channel_model.compose import compose
 from pn2code.channel_model.faults import SAYS, Fault
-from pn2code.channel_model.places import Crashes, MediumNet, modelled
+from pn2code.channel_model.places import ChannelModel, Crashes, modelled
 from pn2code.channel_model.rules import Rules
 from pn2code.channel_model.run_text import RunText
 from pn2code.channel_model.skeleton import Skeleton, Topology, topology
@@ -120,7 +120,7 @@ WHOLE_PART = 0.6
 """Of the time, what the cell with its medium may take."""
 
 
-def medium(
+def check_channel_model(
     partition: Partition,
     storage: Mapping[str, str],
     limits: Limits,
@@ -178,7 +178,7 @@ def whole(
     left_out: Sequence[str] = (),
 ) -> Answer:
     """The cell's own net with its medium; no side crashes."""
-    net = compose(partition, rules, Crashes(lives=False))
+    net = compose(partition, rules, Crashes(life_cycle=False))
     assumes = "no side crashes"
     if net.net.timed:
         assumes += (
@@ -248,7 +248,7 @@ def exchange(
 def _explored(
     check: str,
     says: str,
-    net: MediumNet,
+    net: ChannelModel,
     storage: Mapping[str, str],
     run: Run,
     assumes: str,
@@ -302,7 +302,7 @@ def _explored(
     )
 
 
-def _question(net: MediumNet) -> str:
+def _question(net: ChannelModel) -> str:
     """Whether an end, or a verdict, can be reached from everywhere: AG EF."""
     lines = ["dead", *(f"enabled {t}" for t in net.ends)]
     last = 0
@@ -314,7 +314,7 @@ def _question(net: MediumNet) -> str:
 
 
 def _evidence(
-    net: MediumNet, storage: Mapping[str, str], found: Exploration, judged: bool
+    net: ChannelModel, storage: Mapping[str, str], found: Exploration, judged: bool
 ) -> Iterator[Evidence]:
     """The shortest run to each fault, and one to a deadlock, or to where no end can be reached from."""
     teller = RunText(net, storage)
@@ -338,7 +338,7 @@ _STUCK = "an end cannot be reached from every state"
 
 
 def _verdict(
-    net: MediumNet, found: Exploration | None, runs: tuple[Evidence, ...], judged: bool
+    net: ChannelModel, found: Exploration | None, runs: tuple[Evidence, ...], judged: bool
 ) -> tuple[Verdict, str]:
     if found is None or found.error is not None:
         return "inconclusive", "it could not be explored"

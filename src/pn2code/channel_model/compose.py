@@ -1,6 +1,6 @@
-"""A cell's net with its medium: between writer and reader of each channel the stages that a message goes through.
+"""A cell's net with its channel model: the stages that a message goes through between writer and reader of a channel.
 
-In: a `Partition` and the `Rules` that the sides keep. Out: a `MediumNet`, an ordinary flat net that the explorer takes.
+In: a `Partition` and the `Rules` that the sides keep. Out: a `ChannelModel`, a flat net that can be explored.
 
     writer's memory          `.f.side.tmp`         file `f`                 reader's memory
     c  --begin--> c.tmp (half, whole) --rename--> c.file(v, session, seq, used) --look--> c.read --net--> consumed
@@ -22,7 +22,7 @@ from collections.abc import Callable, Iterator
 from pn2code.cell.partition import ChannelKind, Partition
 from pn2code.channel_model.faults import Fault
 from pn2code.channel_model.life_cycle import LifeCycle
-from pn2code.channel_model.places import Crashes, Files, MediumNet, modelled
+from pn2code.channel_model.places import ChannelModel, Crashes, Files, modelled
 from pn2code.channel_model.rules import Emptying, Rules
 from pn2code.ml.core.terms import Exp
 from pn2code.net.builder import Arc
@@ -59,8 +59,8 @@ Extra = Callable[["Composer"], None]
 
 def compose(
     partition: Partition, rules: Rules, crashes: Crashes, extra: Extra | None = None
-) -> MediumNet:
-    """The net of a cell with its medium."""
+) -> ChannelModel:
+    """The net of a cell with its channel model."""
     composer = Composer(partition, rules, crashes)
     if extra is not None:
         extra(composer)
@@ -77,9 +77,9 @@ class Composer(LifeCycle):
         for o in range(len(self.sides)):
             self._publishing(o)
             self._reading(o)
-            if crashes.lives:
+            if crashes.life_cycle:
                 self._stopping(o)
-        if crashes.lives:
+        if crashes.life_cycle:
             self._supervisor()
             for o in range(1, len(self.sides)):
                 self._robot(o)
@@ -424,7 +424,7 @@ class Composer(LifeCycle):
 
     def _rest(self) -> None:
         b = self.b
-        if not self.crashes.lives:
+        if not self.crashes.life_cycle:
             for i, place in enumerate(self.partition.final_places):
                 says = "the supervisor has finished"
                 self.step(f"rest {i + 1}", says, self.has(self.sides[0].calm), self.any(place))
@@ -434,7 +434,7 @@ class Composer(LifeCycle):
         self.step("rest after the end", "all have finished", self.has(self.done), *robots)
         self.step("rest after a stop", "all have ended", self.has(self.sides[0].off), last, *robots)
 
-    def finish(self) -> MediumNet:
+    def finish(self) -> ChannelModel:
         """The net."""
         b = self.b
         everything = [p.index for p in b.places if p.index not in (self.fault_place, self.verdict)]
@@ -450,7 +450,7 @@ class Composer(LifeCycle):
         )
         self.says[made] = ""
         net = b.net()
-        return MediumNet(
+        return ChannelModel(
             net=net,
             partition=self.partition,
             verdict=self.verdict,

@@ -1,4 +1,4 @@
-"""The places of a cell's medium: of its channels, of its parties; what both parts of the composition build with."""
+"""The places of a cell's channel model: of channels and parties; what both parts of the composition build with."""
 
 from __future__ import annotations
 
@@ -24,13 +24,13 @@ class Crashes:
     Args:
         supervisor, robots: crashes at most; `robots`: of each.
         sessions: how often the supervisor is started at most; None: as often as crashes may make it necessary.
-        lives: whether starts, stops, locks and statuses are modelled; else all sides run from the beginning.
+        life_cycle: whether starts, stops, locks and statuses are modelled; else all sides run from the beginning.
     """
 
     supervisor: int = 0
     robots: int = 0
     sessions: int | None = None
-    lives: bool = True
+    life_cycle: bool = True
 
     @property
     def all_sessions(self) -> int:
@@ -78,13 +78,13 @@ class Side:
 
 
 @frozen
-class MediumNet:
+class ChannelModel:
     """The net, and what is needed to understand its runs.
 
     Args:
         verdict: the place of the verdict; `ending`: the transition that ends a run with one.
         ends: transitions that are enabled where all have come to an end.
-        says: what each transition of the medium does, in words.
+        says: what each transition of the channel model does, in words.
         files, sides: the places of channels and owners.
     """
 
@@ -128,7 +128,7 @@ class Parts:
         self.slow = max(priorities) + 3
         # Nobody sees a temporary file, so it matters only to crashes when it is begun. Whether its place is empty is
         # found out at the earliest: what is empty stays so until its one writer writes.
-        self.unseen = self.slow if crashes.lives else self.local
+        self.unseen = self.slow if crashes.life_cycle else self.local
         self.says: dict[str, str] = {}
         self.fault_place = b.place("medium.fault", b.int)
         self.verdict = b.place("medium.verdict", b.int)
@@ -156,7 +156,7 @@ class Parts:
     def step(
         self, name: str, says: str, *arcs: Arc, at: int | None = None, guard: Exp | None = None
     ) -> None:
-        """A transition of the medium, by default a step that others may see."""
+        """A transition of the channel model, by default a step that others may see."""
         made = self.b.transition(
             f"medium.{name}",
             arcs,
@@ -222,7 +222,7 @@ class Parts:
             self.wrong(fault),
             guard=guard,
         )
-        if not self.crashes.lives:
+        if not self.crashes.life_cycle:
             return
         self.step(
             name,
@@ -248,10 +248,10 @@ class Parts:
             off=b.place(f"medium.{name}.off", b.unit, b.dot),
             stopping=self.memory(o, "stopping"),
         )
-        if not self.crashes.lives:
+        if not self.crashes.life_cycle:
             b.begin(side.calm, b.dot)
-        if o == 0 or not self.crashes.lives:
-            b.begin(side.session, b.number(0 if self.crashes.lives else 1))
+        if o == 0 or not self.crashes.life_cycle:
+            b.begin(side.session, b.number(0 if self.crashes.life_cycle else 1))
         return side
 
     def _files(self, c: Channel) -> Files:
@@ -272,7 +272,7 @@ class Parts:
             next_in=b.place(f"medium.{c.name}.next in", b.int),
         )
         one = b.number(1)
-        if not self.crashes.lives:
+        if not self.crashes.life_cycle:
             for place in (made.next_out, made.next_in):
                 b.begin(place, one)
         writer, reader = self.programs[c.writer], self.programs[c.reader]
@@ -290,7 +290,7 @@ class Parts:
                 continue
             program = self.programs[owner or 0]
             program.memory.append(place)
-            if not self.crashes.lives:
+            if not self.crashes.life_cycle:
                 continue
             initial = self.b.forget_initial(place)
             if initial is not None:

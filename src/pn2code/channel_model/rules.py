@@ -1,6 +1,6 @@
 """What the two sides do: the protocol as it is implemented, and what a wrong one would do.
 
-Each rule is one clause of docs/protocol.md that a side could break; the check of the medium has to find that out.
+Each rule is one clause of docs/protocol.md that a side could break; the check of the channel model has to find it.
 """
 
 from __future__ import annotations

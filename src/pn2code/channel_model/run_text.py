@@ -1,6 +1,6 @@
-"""A run of a medium net in words of files and sides.
+"""A run of a channel model in words of files and sides.
 
-told(medium, storage, trace)      # lines; the run is played by the reference token game
+told(model, storage, trace)      # lines; the run is played by the reference token game
 
     supervisor renames .flag1.robcad.supervisor.tmp over flag1.robcad: the message is there
         flag1.robcad: 0 -> message 1 of session 1: 4
@@ -15,7 +15,7 @@ from typing import Any
 
 from pn2code.base.readable import readable
 from pn2code.channel_model.faults import SAYS, Fault
-from pn2code.channel_model.places import ABSENT, FINISHED, RUNNING, STOPPED, MediumNet
+from pn2code.channel_model.places import ABSENT, FINISHED, RUNNING, STOPPED, ChannelModel
 from pn2code.semantics.game.marking import Marking
 from pn2code.semantics.values.colours import TEXTS
 from pn2code.verify.answers.path import play
@@ -28,8 +28,8 @@ MOST_VALUE = 60
 class RunText:
     """Tells the runs of one net."""
 
-    def __init__(self, medium: MediumNet, storage: Mapping[str, str]) -> None:
-        self._medium = medium
+    def __init__(self, model: ChannelModel, storage: Mapping[str, str]) -> None:
+        self._model = model
         self._storage = storage
 
     def told(self, trace: Path) -> tuple[tuple[str, ...], Fault | None]:
@@ -38,19 +38,19 @@ class RunText:
         Raises:
             TraceRefusedError, GameError, OSError: as for `play`.
         """
-        medium = self._medium
-        owners = medium.partition.owners
-        game, played = play(medium.net, self._storage, trace)
+        model = self._model
+        owners = model.partition.owners
+        game, played = play(model.net, self._storage, trace)
         lines: list[str] = []
         before = self._directory(game.marking)
         fault: Fault | None = None
         for step, transition in played:
-            says = medium.says.get(step.transition)
+            says = model.says.get(step.transition)
             if says is None:
-                owner = owners[medium.partition.transition_owner[transition.index]].name
+                owner = owners[model.partition.transition_owner[transition.index]].name
                 binding = ", ".join(f"{k} = {v}" for k, v in step.binding.items())
                 says = f"{owner}: `{step.transition}` fires" + (f" ({binding})" if binding else "")
-            verdict = tuple(game.marking.places[medium.verdict])
+            verdict = tuple(game.marking.places[model.verdict])
             if verdict:
                 fault = Fault(_first(verdict))
                 lines.append(f"so {SAYS[fault]}")
@@ -69,9 +69,9 @@ class RunText:
     def _directory(self, marking: Marking) -> dict[str, str]:
         """What is in the shared directory."""
         found: dict[str, str] = {}
-        for f in self._medium.files:
+        for f in self._model.files:
             found[f.channel.file] = self._content(marking, f.file, f.half)
-        for side in self._medium.sides:
+        for side in self._model.sides:
             for token in marking.places[side.status]:
                 state, session = _parts(token)
                 text = _STATES[state] + (f", session {session}" if session else "")
@@ -80,7 +80,7 @@ class RunText:
         return found
 
     def _content(self, marking: Marking, file: int, half: int) -> str:
-        place = self._medium.net.places[file]
+        place = self._model.net.places[file]
         colset = place.colset.components[0]
         assert colset is not None
         for token in marking.places[file]:

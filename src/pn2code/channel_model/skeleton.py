@@ -53,7 +53,7 @@ class _End:
 
 
 class Skeleton:
-    """The net of an exchange, its partition, and what is wrong with it once the medium is there."""
+    """The net of an exchange, its partition, and what is wrong with it once the channel model is there."""
 
     def __init__(self, partition: Partition, owner: int, rounds: int = ROUNDS) -> None:
         self._b = b = Builder.empty("exchange", partition.net.file)

@@ -181,7 +181,7 @@ def _supervisor(report: Report) -> list[str]:
     if report.deviation is not None:
         return [
             f"supervisor    DIFFERS from the net: {report.deviation.what}",
-            *_way(report.deviation.way),
+            *_path_lines(report.deviation.way),
         ]
     some = "all" if report.complete else f"a part ({report.why}),"
     lines = [f"supervisor    agrees with the net in {some} {counts}"]
@@ -189,14 +189,14 @@ def _supervisor(report: Report) -> list[str]:
         lines.append(
             "              in the net a message can arrive before the previous one has been taken:"
         )
-        lines += _way(report.overruns[0])
+        lines += _path_lines(report.overruns[0])
     return lines
 
 
 def _robot(report: RobotReport, is_edited: bool) -> list[str]:
     name = f"{report.robot:<13}"
     if report.deviation is not None:
-        return [f"{name} DIFFERS from its page: {report.deviation}", *_way(report.way)]
+        return [f"{name} DIFFERS from its page: {report.deviation}", *_path_lines(report.way)]
     some = "all" if report.complete else f"a part ({report.why or 'a limit was reached'}),"
     return [
         f"{name} agrees with its page in {some} {report.states:,} states: {report.marks:,} firings of "
@@ -206,7 +206,7 @@ def _robot(report: RobotReport, is_edited: bool) -> list[str]:
     ]
 
 
-def _way(way: tuple[str, ...], most: int = 30) -> list[str]:
+def _path_lines(way: tuple[str, ...], most: int = 30) -> list[str]:
     shown = [f"    {n:>4}  {text}" for n, text in enumerate(way, 1)]
     cut = len(shown) - most
     return [f"    ... {cut} before", *shown[-most:]] if cut > 0 else shown

@@ -164,14 +164,14 @@ def _text(
         return pnml_symmetric.emit(flat, d, title=net.stem, positions=where)
     shown = time.monotonic()
 
-    def tell(places: int, transitions: int) -> None:
+    def report(places: int, transitions: int) -> None:
         nonlocal shown
         if time.monotonic() - shown > _PACE_S:
             shown = time.monotonic()
             line.say(f"unfolding: {places:,} places  {transitions:,} transitions")
 
     line.say("unfolding ...")
-    u = unfold(flat, d, progress=tell)
+    u = unfold(flat, d, progress=report)
     if u is None:
         return None
     if kind == ".pnml":

@@ -11,7 +11,7 @@ import typer
 
 from pn2code.base.os_reason import os_reason
 from pn2code.base.whole_file import whole_file
-from pn2code.base.writable import file_obstacle, folder_obstacle
+from pn2code.base.writable import why_file_unwritable, why_folder_unwritable
 from pn2code.cell.codes import INPUT_MISSING
 from pn2code.cell.locate import locate
 from pn2code.cli.options import (
@@ -121,7 +121,7 @@ def draw(
         stop(d, form)
     pages = _chosen(document, page, form)
     state: State | None = None
-    moments: list[TraceFrame] = []
+    frames: list[TraceFrame] = []
     chosen = last = 0
     storage = config.storage if config else {}
     if step is not None and trace is None:
@@ -141,15 +141,15 @@ def draw(
     if flat is not None and not d.has_errors:
         if trace is not None:
             around = _AROUND if kind == "html" else 0
-            moments, chosen, last = _moments(flat, storage, trace, step, around, form)
-            state = next(m.state for m in moments if m.number == chosen)
+            frames, chosen, last = _frames(flat, storage, trace, step, around, form)
+            state = next(m.state for m in frames if m.number == chosen)
         elif marking:
             state = _state(flat, storage, seed, form)
     if instance is not None:
         _check_instance(state, pages, instance, form)
     drawing = _Drawing(document, pages, _problems(d), state, instance)
-    if kind == "html" and moments:
-        _write({Path(output): drawing.steps(path, moments, chosen, last, trace)}, form)
+    if kind == "html" and frames:
+        _write({Path(output): drawing.steps(path, frames, chosen, last, trace)}, form)
     elif kind == "html":
         _write({Path(output): drawing.html(path)}, form)
     elif kind == "folder":
@@ -192,7 +192,11 @@ def _check_output(output: Path, kind: str, form: Format) -> None:
     if kind == "-":
         return
     is_folder = kind == "folder"
-    why = folder_obstacle(output) if is_folder else file_obstacle(output, makes_folders=True)
+    why = (
+        why_folder_unwritable(output)
+        if is_folder
+        else why_file_unwritable(output, makes_folders=True)
+    )
     if why:
         hint = "give another file or folder with -o"
         _refuse(DRAW_OUTPUT, f"cannot write `{output}`: {why}", hint, form)
@@ -250,7 +254,7 @@ def _state(flat: FlatNet, storage: Mapping[str, str], seed: int, form: Format) -
         return State(flat, marking, enabled_in(game, marking))
 
 
-def _moments(
+def _frames(
     flat: FlatNet,
     storage: Mapping[str, str],
     trace: Path,
@@ -354,14 +358,14 @@ class _Drawing:
         return draw_net(shown, Facts(path.name, remark, self.base.problems), figures)
 
     def steps(
-        self, path: Path, moments: list[TraceFrame], chosen: int, last: int, trace: Path | None
+        self, path: Path, frames: list[TraceFrame], chosen: int, last: int, trace: Path | None
     ) -> str:
         """One HTML file with the steps of a trace."""
         from pn2code.verify.answers.lasso import read_loop
         from pn2code.verify.report.steps_page import steps_page
 
         loop = None if trace is None else read_loop(trace)
-        return steps_page(self.document, self.pages, moments, chosen, last, path.name, loop)
+        return steps_page(self.document, self.pages, frames, chosen, last, path.name, loop)
 
     def note_arranged(self, d: Diagnostics) -> None:
         """A note for each page whose positions are ours."""

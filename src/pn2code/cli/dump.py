@@ -72,7 +72,7 @@ def stage_text(
     from pn2code.robot_scripts.translate import lower_robots
     from pn2code.semantics.evaluation.constants import compute
     from pn2code.verify.controller.proofs import prove
-    from pn2code.verify.exploring.place_capacity import with_rooms
+    from pn2code.verify.exploring.place_capacity import with_place_capacities
 
     found = locate(path, d)
     if found is None:
@@ -100,7 +100,9 @@ def stage_text(
         compiled = lower(partition, config.storage if config else {}, d)
         if compiled is not None and stage is Stage.DEPLOYED:
             proofs = prove(partition, config, d, checked=False)
-            compiled = None if proofs is None else with_rooms(compiled, proofs.rooms)
+            compiled = (
+                None if proofs is None else with_place_capacities(compiled, proofs.place_capacities)
+            )
         return None if compiled is None else dump_ir(compiled, only)
     robots = lower_robots(partition, config, d) if config else ()
     if robots is None:

@@ -55,9 +55,9 @@ def init(
         hint = did_you_mean(name, known, f"known are {', '.join(known)}")
         raise typer.BadParameter(f"there is no template `{name}`; {hint}", param_hint="--template")
     from pn2code.new_cell.contents import contents
-    from pn2code.new_cell.writing import obstacle, write
+    from pn2code.new_cell.writing import why_unwritable, write
 
-    why = obstacle(folder)
+    why = why_unwritable(folder)
     if why:
         _refuse(folder, why)
     d = Diagnostics()

@@ -14,7 +14,7 @@ from typing import Annotated, Any, NoReturn
 
 import typer
 
-from pn2code.base.writable import file_obstacle
+from pn2code.base.writable import why_file_unwritable
 from pn2code.diagnostics import Diagnostic, Diagnostics, Note, Origin, Severity, render
 
 
@@ -68,7 +68,7 @@ def check_writable(path: Path | None, option: str) -> None:
     """
     if path is None:
         return
-    why = file_obstacle(path)
+    why = why_file_unwritable(path)
     if why:
         raise typer.BadParameter(f"cannot write `{path}`: {why}", param_hint=option)
 

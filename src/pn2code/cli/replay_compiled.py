@@ -13,10 +13,10 @@ from pn2code.semantics.game.report import PlaceRow, places
 from pn2code.semantics.game.token_game import NotEnabled
 from pn2code.simulate.recorded import repeat, repeat_occurrences
 from pn2code.simulate.run import Outcome
+from pn2code.trace.followed import Followed
 from pn2code.trace.json_text import BadJson, parse_json
 from pn2code.trace.lines import digest_problem, form_problem
 from pn2code.trace.replay_end import Ending, end_problem
-from pn2code.trace.replay_recording import Followed
 from pn2code.trace.script import TraceRefusedError
 from pn2code.verdict.opened import OpenNet, as_traced
 

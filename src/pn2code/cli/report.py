@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import typer
 
 from pn2code.base.os_reason import os_reason
-from pn2code.base.writable import folder_obstacle
+from pn2code.base.writable import why_folder_unwritable
 from pn2code.cli.options import (
     OUTPUT_FLAGS,
     Exit,
@@ -164,7 +164,7 @@ def _layouts(config: CellConfig | None, wanted: list[str]) -> tuple[str, ...]:
 
 def _prepare(out: Path) -> None:
     """An empty folder; what an older report has left there is removed, and nothing else."""
-    why = folder_obstacle(out)
+    why = why_folder_unwritable(out)
     if why:
         _refuse(f"cannot write `{out}`: {why}")
     try:

@@ -11,7 +11,7 @@ import typer
 
 from pn2code.base.os_reason import os_reason
 from pn2code.base.progress_line import Line
-from pn2code.base.writable import file_obstacle
+from pn2code.base.writable import why_file_unwritable
 from pn2code.cli.options import (
     OUTPUT_FLAGS,
     Exit,
@@ -83,7 +83,7 @@ def show(
     from pn2code.replay.page import page
 
     for path in (output, *([description] if description else [])):
-        if why := file_obstacle(path, makes_folders=True):
+        if why := why_file_unwritable(path, makes_folders=True):
             _refuse(f"cannot write `{path}`: {why}", "give another file with -o", form)
     values = parse_values(settings)
     shown = _described(run, net, values, steps, files, form)
@@ -178,7 +178,7 @@ def _trace(
                 storage,
                 most=steps,
                 files=Files(files),
-                tell=progress.tell,
+                progress=progress.report,
             )
     except OSError as problem:
         _refuse(
@@ -193,7 +193,7 @@ class _Progress(Line):
         super().__init__(first="repeating the trace ...", plain=True)
         self._began = time.monotonic()
 
-    def tell(self, steps: int, share: float) -> None:
+    def report(self, steps: int, share: float) -> None:
         """So many steps have been repeated, which is about this share of them."""
         passed = max(time.monotonic() - self._began, 1e-9)
         left = passed * (1.0 - share) / max(share, 1e-9)

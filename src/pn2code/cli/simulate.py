@@ -11,7 +11,7 @@ import typer
 
 from pn2code.base.os_reason import os_reason
 from pn2code.base.readable import readable
-from pn2code.base.writable import file_obstacle
+from pn2code.base.writable import why_file_unwritable
 from pn2code.cli.interrupts import Interrupts
 from pn2code.cli.nets import open_net
 from pn2code.cli.options import (
@@ -203,7 +203,7 @@ def _time(until: str | None, opened: OpenNet) -> int | float | None:
 
 
 def _check_writable(trace: Path, form: Format) -> None:
-    why = file_obstacle(trace)
+    why = why_file_unwritable(trace)
     if why:
         d = Diagnostics()
         d.error(TRACE_UNWRITABLE, f"cannot write the trace `{trace}`: {why}", Origin(str(trace)))

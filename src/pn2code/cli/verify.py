@@ -222,7 +222,7 @@ def verify(
             help="Check the supervisor of a cell against its execution scheme (docs/execution.md).",
         ),
     ] = True,
-    check_medium: Annotated[
+    check_channel_model: Annotated[
         bool,
         typer.Option(
             "--medium/--no-medium",
@@ -289,7 +289,7 @@ def verify(
         traces=most_traces,
         reductions=() if no_reduction else tuple(dict.fromkeys(reduce)),
     )
-    checks = Checks(controller=check_controller, medium=check_medium)
+    checks = Checks(controller=check_controller, channel_model=check_channel_model)
     is_cell = opened.config is not None and check_controller
     with (
         _folder(traces, stem(opened), wanted=bool(most_traces or asked or is_cell)) as folder,
@@ -419,7 +419,7 @@ def _write_report(said: Said, subject: Subject | None, path: Path, d: Diagnostic
             now,
             said.answers,
             said.control,
-            medium=list(channel_model.rows(said.medium)),
+            channel_model=list(channel_model.rows(said.channel_model)),
             subject=subject.rows,
             remark=subject.remark,
             counts=said.counts,
@@ -427,8 +427,8 @@ def _write_report(said: Said, subject: Subject | None, path: Path, d: Diagnostic
         )
     else:
         body = report(said.net, said.found, now, said.answers, said.control, said.counts)
-        if said.medium:
-            body = f"{body.rstrip()}\n\n\n{channel_model.told(said.medium)}\n"
+        if said.channel_model:
+            body = f"{body.rstrip()}\n\n\n{channel_model.told(said.channel_model)}\n"
         body = f"{body.rstrip()}\n\n\n{closing(said)}\n"
     try:
         with whole_file(path) as beside:

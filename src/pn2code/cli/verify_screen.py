@@ -101,10 +101,10 @@ def full(said: Said) -> str:
             parts.append(_told(said, trace, f"the dead marking {trace.node}"))
         if found.error_trace is not None:
             goal = f"marking {found.error_trace.node}, in which an exception is raised"
-            way = _told(said, found.error_trace, goal)
-            parts.append(f"{way}\n  then {error_text(net, found)}")
-    if said.medium:
-        parts.append(channel_model.told(said.medium))
+            path = _told(said, found.error_trace, goal)
+            parts.append(f"{path}\n  then {error_text(net, found)}")
+    if said.channel_model:
+        parts.append(channel_model.told(said.channel_model))
     return "\n\n\n".join([*parts, closing(said)])
 
 
@@ -124,7 +124,7 @@ def _end(said: Said, file: Path, is_deadlock: bool) -> list[str]:
         game, played = play(said.net, said.storage, file)
         if sum(1 for _ in islice(played, MOST_STEPS)) == MOST_STEPS:
             return []
-        return _after(_obstacles(said, game, is_deadlock))
+        return _after(_why_disabled(said, game, is_deadlock))
     except (TraceRefusedError, GameError, OSError):
         return []  # the run is told above, with what is wrong with it
 
@@ -133,7 +133,7 @@ def _after(why: Sequence[str]) -> list[str]:
     return ["  After that nothing can occur:", *(f"    {x}" for x in why)] if why else []
 
 
-def _obstacles(said: Said, game: Game, is_deadlock: bool, most: int | None = None) -> list[str]:
+def _why_disabled(said: Said, game: Game, is_deadlock: bool, most: int | None = None) -> list[str]:
     """What each program waits for, then which transitions are nearest to occurring and what they lack.
 
     A transition that lacks messages alone is not named again where it is said what its program waits for.
@@ -208,9 +208,9 @@ def screen(said: Said) -> str:
         room = MOST_LINES - len(lines) - len(end) - 1 - kept
         lines += ["", *_wrong(wrong, room)]
     room = MOST_LINES - len(lines) - len(end) - 1
-    way = _way(said, wrong, room)
-    if way:
-        lines += ["", *way]
+    path = _path_lines(said, wrong, room)
+    if path:
+        lines += ["", *path]
     return "\n".join([*lines, *end])
 
 
@@ -338,7 +338,7 @@ def _items(said: Said) -> Iterator[_Item]:
         yield _Item(
             TITLES[check.name], check.kind, check.says, file, loop=loop, is_deadlock=is_deadlock
         )
-    for m in said.medium:
+    for m in said.channel_model:
         kind = {"yes": "good", "no": "bad"}.get(m.answer, "open")
         lines = next((tuple(e.lines) for e in m.evidence), ())
         says = {"open": f"not known: {m.why}", "bad": channel_model.shown(m)}.get(kind, m.says)
@@ -359,11 +359,11 @@ def _groups(said: Said) -> tuple[tuple[str, Sequence[str], Sequence[str | None]]
     """For each kind of question: its name, how the answers came out, what they rest on."""
     items = list(_items(said))
     checks = said.control.checks if said.control else ()
-    first, second = len(checks), len(checks) + len(said.medium)
+    first, second = len(checks), len(checks) + len(said.channel_model)
     kinds = [i.kind for i in items]
     return (
         (_TITLES[0], kinds[:first], [c.rests_on for c in checks]),
-        (_TITLES[1], kinds[first:second], [m.rests_on for m in said.medium]),
+        (_TITLES[1], kinds[first:second], [m.rests_on for m in said.channel_model]),
         (_TITLES[2], kinds[second:], [a.rests_on for a in said.answers]),
     )
 
@@ -445,7 +445,7 @@ def _names_of(wrong: Sequence[_Item]) -> list[str]:
     return lines
 
 
-def _way(said: Said, wrong: Sequence[_Item], room: int) -> list[str]:
+def _path_lines(said: Said, wrong: Sequence[_Item], room: int) -> list[str]:
     """The last steps of one run: of the exception, of the first failure, or to the first dead marking."""
     found = said.found
     # Where there is no room for the least of a run, the screen is longer.
@@ -491,7 +491,7 @@ def _last(
                 shown = _recorded(said, file)
             elif loop is None:
                 with suppress(GameError):  # an inscription raises an exception there
-                    why = _obstacles(
+                    why = _why_disabled(
                         said, game, is_deadlock, max(most - LEAST_STEPS - 1, LEAST_WHY)
                     )
     except TimeIsOverError:

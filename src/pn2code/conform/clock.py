@@ -17,14 +17,14 @@ from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.marking import Marking, PlaceMarking
 from pn2code.semantics.values.data import Timed
 from pn2code.semantics.values.multiset import TimedMultiSet
-from pn2code.verify.exploring.time_reduction import obstacle
+from pn2code.verify.exploring.time_reduction import why_not_reducible
 
 
 class Clock:
     """How much of the time counts in a net. `is_relative`: only how long it is until something."""
 
     def __init__(self, net: FlatNet) -> None:
-        self.is_relative = net.timed and obstacle(net) is None
+        self.is_relative = net.timed and why_not_reducible(net) is None
 
     def relative(self, marking: Marking) -> Marking:
         """The marking at time 0; as it is where the time counts."""

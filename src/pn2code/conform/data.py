@@ -217,9 +217,11 @@ def _net(made: Generated) -> dict[str, Any]:
                 "colset": p.colset.name,
                 "owner": -1 if owner is None else owner,
                 "timed": p.colset.timed,
-                "bound": -1 if room.bound is None else room.bound,
+                "bound": -1 if capacity.bound is None else capacity.bound,
             }
-            for p, owner, room in zip(net.places, partition.place_owner, made.rooms, strict=True)
+            for p, owner, capacity in zip(
+                net.places, partition.place_owner, made.place_capacities, strict=True
+            )
         ],
         "transitions": [
             {"name": t.name, "id": t.id, "owner": owner, "priority": t.priority}

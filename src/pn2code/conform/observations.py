@@ -92,29 +92,29 @@ class _Closed:
         channels = {c.place for c in partition.channels if SUPERVISOR in (c.writer, c.reader)}
         self._unseen = [p.index for p in partition.net.places if p.index not in seen | channels]
         self._incoming = [c for c in partition.channels if c.reader == SUPERVISOR]
-        self._way: dict[_State, tuple[_State, ObservedChange] | None] = {}
+        self._reached_by: dict[_State, tuple[_State, ObservedChange] | None] = {}
 
     def look(self) -> Observations:
         found = Observations()
         start = self._after_cycle(self._state(self._start, frozenset()))
         if start is None:
             return found
-        self._way = {start: None}
+        self._reached_by = {start: None}
         waiting = deque([start])
         while waiting:
             state = waiting.popleft()
             own = self._sight(state)
             others = found.others.setdefault(own, {})
             for turn, after in self._following(state, found):
-                if after not in self._way:
-                    if len(self._way) >= self._most:
+                if after not in self._reached_by:
+                    if len(self._reached_by) >= self._most:
                         found.complete = False
                         continue
-                    self._way[after] = (state, turn)
+                    self._reached_by[after] = (state, turn)
                     waiting.append(after)
                 if turn is not _CYCLE and (turned := self._sight(after)) != own:
                     others.setdefault(turned, turn)
-        found.states = len(self._way)
+        found.states = len(self._reached_by)
         # What was cut off is not gone into.
         for others in found.others.values():
             for sight in [s for s in others if s not in found.others]:
@@ -137,7 +137,7 @@ class _Closed:
                 quiet = False
             for step in possible.steps:
                 if self._is_overrun(state.marking, dict(step.changes.places)):
-                    found.overruns.append((*self._way_to(state), step.text))
+                    found.overruns.append((*self._path_to(state), step.text))
                 else:
                     marking = step.after(state.marking)
                     late = self._put_late(state, marking, owner.index)
@@ -207,12 +207,12 @@ class _Closed:
         marking = replace(state.marking, places=tuple(places))
         return observed(self._scheme, marking, state.read)
 
-    def _way_to(self, state: _State) -> tuple[str, ...]:
-        way = []
-        while (step := self._way[state]) is not None:
+    def _path_to(self, state: _State) -> tuple[str, ...]:
+        path = []
+        while (step := self._reached_by[state]) is not None:
             state, turn = step
-            way.append(turn.text)
-        return tuple(way[::-1])
+            path.append(turn.text)
+        return tuple(path[::-1])
 
 
 def observed(scheme: Scheme, marking: Marking, read: frozenset[int]) -> Observation:

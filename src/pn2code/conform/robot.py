@@ -198,16 +198,16 @@ class _Product:
             self._commands,
             not waiting and deviation is None and not given_up,
             deviation,
-            tuple(self._way(parent, at)) if deviation else (),
+            tuple(self._path(parent, at)) if deviation else (),
             given_up,
         )
 
-    def _way(self, parent: dict[_State, tuple[_State, str] | None], at: _State) -> list[str]:
-        way = []
+    def _path(self, parent: dict[_State, tuple[_State, str] | None], at: _State) -> list[str]:
+        path = []
         while (step := parent[at]) is not None:
             at, text = step
-            way.append(text)
-        return way[::-1]
+            path.append(text)
+        return path[::-1]
 
     # --- what can happen ---------------------------------------------------------------------------
 

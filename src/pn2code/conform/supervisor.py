@@ -137,7 +137,7 @@ class _Product:
         try:
             self._run()
         except _DeviationError as deviation:
-            self.report.deviation = Deviation(str(deviation), self._way())
+            self.report.deviation = Deviation(str(deviation), self._path_text())
             self.report.complete = False
             self.report.why = "deviation"
         except GivenUpError as limit:
@@ -235,7 +235,7 @@ class _Product:
             self.report.received += 1
         return files, tuple(sent)
 
-    def _way(self) -> tuple[str, ...]:
+    def _path_text(self) -> tuple[str, ...]:
         return tuple(move.turn.text for move in self._path)
 
     # --- comparison ------------------------------------------------------------------------------
@@ -248,7 +248,7 @@ class _Product:
         self.report.firings += len(expected.elements)
         self.report.transitions.update(e.transition for e in expected.elements)
         if expected.is_overrun:
-            self.report.overruns.append(self._way())
+            self.report.overruns.append(self._path_text())
         if expected.stopped:
             if answer.ended != "stopped":
                 raise _DeviationError(

@@ -12,6 +12,8 @@ from pn2code.dossier.steps import Done
 
 Json = Mapping[str, Any]
 YES, NO, OPEN = "yes", "no", "not known"
+NOTED = "noted"
+"""A figure or a warning, which is nothing that was asked."""
 _MOST = 2_000
 """Characters of a message that are shown."""
 
@@ -22,7 +24,7 @@ class Finding:
 
     Args:
         about: what was asked.
-        answer: `YES`, `NO` or `OPEN`.
+        answer: `YES`, `NO`, `OPEN` or `NOTED`.
         says: in words.
         assumes: what it rests on besides what was looked at.
     """
@@ -95,7 +97,7 @@ def _checked(said: Json) -> tuple[str, list[Finding]]:
     rows = [
         Finding(
             f"{d.get('page') or 'the net'}{': ' + d['element'] if d.get('element') else ''}",
-            {"error": NO}.get(d["severity"], YES),
+            {"error": NO}.get(d["severity"], NOTED),
             f"{d['severity']} {d['code']}: {d['message']}",
         )
         for d in said["diagnostics"]
@@ -171,30 +173,22 @@ def _ran(said: Json) -> tuple[str, list[Finding]]:
     cycle = said.get("cycle_seconds")
     says = f"It has {ended}" + (f" after {cycle:.2f} s of its time" if cycle else "") + "."
     found += [
-        Finding(f"clearance, {name}", YES, _at(row, "mm", 1000.0))
+        Finding(f"least clearance, {name}", NOTED, f"{row['m'] * 1000:.1f} mm at {row['t']:.2f} s")
         for name, row in _rows(said, "clearances")
     ]
     found += [
-        Finding(f"conditioning, {name}", YES, _at(row, "", 1.0))
+        Finding(f"worst conditioning, {name}", NOTED, f"{row['worst']:.1f} at {row['t']:.2f} s")
         for name, row in _rows(said, "conditioning")
     ]
-    found += [Finding("warning", YES, str(w)) for w in said.get("warnings") or ()]
+    found += [
+        Finding("warning", NOTED, f"{w['robot']} {w['text']}" if w.get("robot") else w["text"])
+        for w in said.get("warnings") or ()
+    ]
     return says, found
 
 
 def _rows(said: Json, key: str) -> Iterator[tuple[str, Any]]:
     yield from (said.get(key) or {}).items()
-
-
-def _at(row: Any, unit: str, scale: float) -> str:
-    """The worst of a curve, and when."""
-    if not isinstance(row, dict):
-        return str(row)
-    worst_of = next((row[k] for k in ("worst", "least", "metres", "d") if k in row), None)
-    value = (
-        f"{worst_of * scale:.4g} {unit}".strip() if isinstance(worst_of, int | float) else str(row)
-    )
-    return f"worst {value} at {row['t']:.2f} s" if "t" in row else f"worst {value}"
 
 
 _READERS = {"check": _checked, "verify": _verified, "conform": _compared, "run": _ran}

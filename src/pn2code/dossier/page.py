@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from pn2code.base.frozen import frozen
-from pn2code.dossier.findings import NO, OPEN, YES, Chapter, worst
+from pn2code.dossier.findings import NO, NOTED, OPEN, YES, Chapter, worst
 from pn2code.dossier.traceability import Element, by_line
 from pn2code.verify.report.html import page
 
-KINDS = {YES: "good", NO: "bad", OPEN: "open"}
+KINDS = {YES: "good", NO: "bad", OPEN: "open", NOTED: "noted"}
 
 
 @frozen

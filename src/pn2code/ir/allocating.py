@@ -16,7 +16,7 @@ ALLOCATING = frozenset((
     "pn_big_mul", "pn_big_neg", "pn_big_not", "pn_big_of_digits", "pn_big_of_real", "pn_big_or", "pn_big_quot",
     "pn_big_rem", "pn_big_shift_left", "pn_big_shift_right", "pn_big_string", "pn_big_sub", "pn_big_sum",
     "pn_big_xor", "pn_colset_all", "pn_colset_input", "pn_decode", "pn_decode_with", "pn_file_full_path",
-    "pn_file_here", "pn_file_names", "pn_file_problem", "pn_file_read", "pn_from_leaves", "pn_list_append",
+    "pn_file_here", "pn_file_names", "pn_file_problem", "pn_file_read", "pn_from_scalars", "pn_list_append",
     "pn_list_concat", "pn_list_cons", "pn_list_copies", "pn_list_new", "pn_list_remdupl", "pn_list_remove",
     "pn_list_remove_all", "pn_list_reverse", "pn_list_reverse_onto", "pn_list_take", "pn_marking_collect",
     "pn_marking_decode", "pn_marking_put", "pn_mkstr_string", "pn_moves_put_list", "pn_moves_put_timed",

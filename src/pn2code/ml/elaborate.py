@@ -300,7 +300,7 @@ class Elaborator:
         self._ctx.tainted = False
         build = self._declare.declare(changed)
         if self._ctx.errors == before:
-            self._ctx.settle()
+            self._ctx.resolve_pending()
         self._ctx.open_records.clear()
         if self._ctx.errors > before or self._ctx.tainted:
             self._break(declared_by(changed), types_declared_by(changed))

@@ -9,12 +9,12 @@ from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 
-from pn2code.base.writable import folder_obstacle
+from pn2code.base.writable import why_folder_unwritable
 
 
-def obstacle(folder: Path) -> str:
+def why_unwritable(folder: Path) -> str:
     """Why a folder cannot become that of a new cell, as a clause; "": it can, as far as can be seen."""
-    why = folder_obstacle(folder)
+    why = why_folder_unwritable(folder)
     if why or not folder.exists():
         return why
     try:

@@ -24,8 +24,8 @@ from pn2code.properties.meaning import Atom, Formula, Op, looks_at_steps
 
 MOST_STATES = 2_000
 """States of an automaton; formulas of people have a dozen."""
-MOST_WAYS = 5_000
-"""Ways out of a state before equal ones are one."""
+MOST_EDGES = 5_000
+"""Edges out of a state before equal ones are one."""
 
 Literal = tuple[bool, Formula]
 """Whether it must hold, and what: a condition on the node, or `fires`."""
@@ -211,14 +211,14 @@ State = frozenset[int]
 
 
 @frozen
-class _Way:
-    """A way to go on: what must be seen now, what must hold next, what is postponed."""
+class _Edge:
+    """An edge of the automaton: what must be seen now, what must hold next, what is postponed."""
 
     label: Label
     target: State
     postponed: frozenset[int]
 
-    def covers(self, other: _Way) -> bool:
+    def covers(self, other: _Edge) -> bool:
         """Whether it asks for no more than another."""
         return (
             self.label <= other.label
@@ -229,9 +229,9 @@ class _Way:
 
 @record
 class _Graph:
-    """States 0, 1, ..; of each the ways out with the number of their target."""
+    """States 0, 1, ..; of each its edges with the number of their target."""
 
-    ways: list[list[tuple[Label, int, frozenset[int]]]]
+    edges: list[list[tuple[Label, int, frozenset[int]]]]
     conditions: tuple[int, ...]
 
 
@@ -239,43 +239,43 @@ def _expanded(forms: _Forms, formula: int) -> _Graph:
     start: State = frozenset({formula} - {_TRUE})
     numbers = {start: 0}
     order = [start]
-    ways: list[list[tuple[Label, int, frozenset[int]]]] = []
+    edges: list[list[tuple[Label, int, frozenset[int]]]] = []
     for state in order:
         own = []
-        for way in _ways(forms, state):
-            if way.target not in numbers:
+        for edge in _edges(forms, state):
+            if edge.target not in numbers:
                 if len(order) >= MOST_STATES:
                     raise TooLargeError
-                numbers[way.target] = len(order)
-                order.append(way.target)
-            own.append((way.label, numbers[way.target], way.postponed))
-        ways.append(own)
-    conditions = sorted({u for own in ways for _, _, postponed in own for u in postponed})
-    return _merged(_Graph(ways, tuple(conditions)))
+                numbers[edge.target] = len(order)
+                order.append(edge.target)
+            own.append((edge.label, numbers[edge.target], edge.postponed))
+        edges.append(own)
+    conditions = sorted({u for own in edges for _, _, postponed in own for u in postponed})
+    return _merged(_Graph(edges, tuple(conditions)))
 
 
-def _ways(forms: _Forms, state: State) -> list[_Way]:
-    """All ways to go on from a set of obligations; none covers another."""
-    found: dict[_Way, None] = {}
+def _edges(forms: _Forms, state: State) -> list[_Edge]:
+    """All edges from a set of obligations; none covers another."""
+    found: dict[_Edge, None] = {}
     none: frozenset[int] = frozenset()
     start = (state, none, none, none)
     seen = {start}
     stack = [start]
 
-    def push(*ways: tuple[frozenset[int], frozenset[int], State, frozenset[int]]) -> None:
-        for way in ways:
-            if way not in seen:
-                seen.add(way)
-                stack.append(way)
+    def push(*edges: tuple[frozenset[int], frozenset[int], State, frozenset[int]]) -> None:
+        for edge in edges:
+            if edge not in seen:
+                seen.add(edge)
+                stack.append(edge)
 
     # What is left to look at, what holds by now, what must hold next, what is postponed.
     while stack:
         todo, done, later, postponed = stack.pop()
-        if len(seen) > MOST_WAYS:
+        if len(seen) > MOST_EDGES:
             raise TooLargeError
         if not todo:
             label = frozenset(x for x in done if forms.forms[x][0] == "lit")
-            found[_Way(label, later, postponed)] = None
+            found[_Edge(label, later, postponed)] = None
             continue
         number = min(todo, key=lambda x: (forms.forms[x][0] in ("or", "U", "R"), x))
         rest, now = todo - {number}, done | {number}
@@ -317,26 +317,26 @@ def _excludes(forms: _Forms, a: int, b: int) -> bool:
     return steps and x[1] is True and y[1] is True
 
 
-def _least(found: Sequence[_Way]) -> list[_Way]:
-    kept: list[_Way] = []
-    for way in dict.fromkeys(found):
-        if not any(other.covers(way) for other in kept):
-            kept = [x for x in kept if not way.covers(x)] + [way]
+def _least(found: Sequence[_Edge]) -> list[_Edge]:
+    kept: list[_Edge] = []
+    for edge in dict.fromkeys(found):
+        if not any(other.covers(edge) for other in kept):
+            kept = [x for x in kept if not edge.covers(x)] + [edge]
     return kept
 
 
 def _merged(graph: _Graph) -> _Graph:
-    """States with equal ways out as one, as long as there are any."""
+    """States with equal edges as one, as long as there are any."""
     while True:
         first: dict[frozenset[tuple[Label, int, frozenset[int]]], int] = {}
-        new = [first.setdefault(frozenset(own), len(first)) for own in graph.ways]
-        if len(first) == len(graph.ways):
+        new = [first.setdefault(frozenset(own), len(first)) for own in graph.edges]
+        if len(first) == len(graph.edges):
             return graph
-        ways: list[list[tuple[Label, int, frozenset[int]]]] = [[] for _ in first]
-        for state, own in enumerate(graph.ways):
-            if not ways[new[state]]:
-                ways[new[state]] = list(dict.fromkeys((x, new[to], p) for x, to, p in own))
-        graph = _Graph(ways, graph.conditions)
+        edges: list[list[tuple[Label, int, frozenset[int]]]] = [[] for _ in first]
+        for state, own in enumerate(graph.edges):
+            if not edges[new[state]]:
+                edges[new[state]] = list(dict.fromkeys((x, new[to], p) for x, to, p in own))
+        graph = _Graph(edges, graph.conditions)
 
 
 # --- counting ------------------------------------------------------------------------------------
@@ -344,12 +344,12 @@ def _merged(graph: _Graph) -> _Graph:
 
 def _counted(forms: _Forms, graph: _Graph) -> Automaton:
     """One acceptance condition instead of several."""
-    component = _components([[to for _, to, _ in own] for own in graph.ways])
+    component = _components([[to for _, to, _ in own] for own in graph.edges])
     last = len(graph.conditions)
     # Of a component in which nothing is ever postponed all cycles accept: nothing needs to be counted there.
     waits = {
         component[s]
-        for s, own in enumerate(graph.ways)
+        for s, own in enumerate(graph.edges)
         for _, to, postponed in own
         if postponed and component[to] == component[s]
     }
@@ -359,7 +359,7 @@ def _counted(forms: _Forms, graph: _Graph) -> Automaton:
     arcs: list[list[tuple[Label, int]]] = []
     for state, level in order:
         own: list[tuple[Label, int]] = []
-        for label, to, postponed in graph.ways[state]:
+        for label, to, postponed in graph.edges[state]:
             at = 0 if level == last else level
             if component[to] not in waits:
                 at = last

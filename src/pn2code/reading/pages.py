@@ -142,7 +142,7 @@ class PageReader:
 
     @staticmethod
     def _repeated(
-        tell: Callable[..., None],
+        report: Callable[..., None],
         what: str,
         identity: str,
         origin: Origin,
@@ -152,7 +152,7 @@ class PageReader:
         """Say, as an error or a warning, that an id has been used before."""
         text = f"{what} has the id `{identity}`, which is already used"
         notes = [Note(f"`{identity}` is first used here", first)]
-        tell(DUPLICATE_ID, text, origin, notes=notes, hint=hint)
+        report(DUPLICATE_ID, text, origin, notes=notes, hint=hint)
 
     def check_children(self, node: Node) -> None:
         """Warn of unknown elements."""

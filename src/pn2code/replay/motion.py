@@ -13,12 +13,13 @@ samples nothing moves; between two others a cubic goes through the samples, with
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pn2code.base.frozen import record
 from pn2code.replay.arrays import packed_reals
 from pn2code.robot.transforms import Array
 
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from pn2code.run.engine import Engine
 
 
-@dataclass(slots=True)
+@record
 class _Path:
     t: list[float] = field(default_factory=list)
     q: list[tuple[float, ...]] = field(default_factory=list)

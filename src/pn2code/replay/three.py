@@ -10,8 +10,9 @@ from __future__ import annotations
 
 import hashlib
 import importlib.util
-from dataclasses import dataclass
 from pathlib import Path
+
+from pn2code.base.frozen import frozen
 
 PACKAGE = "jupyter_threejs_sage"
 PROJECT = "jupyter-threejs-sage==130"
@@ -20,7 +21,7 @@ VERSION = "r130"
 SHA256 = "52ced813d01a0973760ad3e6f3568c6310534d6bef1225aedc2b569221c1f5c9"
 
 
-@dataclass(frozen=True, slots=True)
+@frozen
 class Three:
     """The library: its JavaScript."""
 

@@ -24,8 +24,8 @@ from pn2code.trace.replay import ReplayResult, replay_lines
 MOST_STEPS = 1_000_000
 _TOLD_STEPS = 500
 
-Tell = Callable[[int, float], None]
-"""Is told now and then how many steps have been read, and which share of the file."""
+Progress = Callable[[int, float], None]
+"""Is called now and then with how many steps have been read, and which share of the file."""
 
 
 def _nothing(steps: int, share: float) -> None:
@@ -40,7 +40,7 @@ def describe(
     *,
     most: int = MOST_STEPS,
     files: Files | None = None,
-    tell: Tell = _nothing,
+    progress: Progress = _nothing,
 ) -> Json:
     """The description of a trace file.
 
@@ -50,13 +50,13 @@ def describe(
         storage: as for `Game`.
         most: how many steps are shown; the rest is left out, and the page says so.
         files: what the net can do with files.
-        tell: how far it is.
+        progress: how far it is.
 
     Raises:
         OSError: it cannot be read.
     """
     with trace.open(encoding="utf-8", errors="replace") as lines:
-        reader = _Lines(lines, most, max(trace.stat().st_size, 1), tell)
+        reader = _Lines(lines, most, max(trace.stat().st_size, 1), progress)
         by = reader.by
         counts = by in SIMULATORS or by == VERIFY or by == ""
         course, refused = follow(reader, net, storage, by_steps=counts, files=files)
@@ -131,8 +131,8 @@ class _Lines:
         is_cut: whether steps were left out.
     """
 
-    def __init__(self, lines: Iterable[str], most: int, size: int, tell: Tell) -> None:
-        self._size, self._tell = size, tell
+    def __init__(self, lines: Iterable[str], most: int, size: int, progress: Progress) -> None:
+        self._size, self._progress = size, progress
         self._lines = iter(lines)
         self._first = next(self._lines, "")
         self._most = most
@@ -156,7 +156,7 @@ class _Lines:
             elif text.strip():
                 steps += 1
                 if steps % _TOLD_STEPS == 0:
-                    self._tell(steps, max(read / self._size, steps / self._most))
+                    self._progress(steps, max(read / self._size, steps / self._most))
                 if steps > self._most:
                     self.is_cut = True
                     return

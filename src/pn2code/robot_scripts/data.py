@@ -44,7 +44,7 @@ class Data:
         d: gets the errors.
         names: of the script.
         shapes: of places and messages, by place.
-        place_names: the variables of a place, in order of its leaves.
+        place_names: the variables of a place, in order of its scalars.
         place_values: the token of a place, made of its variables.
         file_names: of channel places.
         message_names: the variables that the state at hand reads messages into.
@@ -175,8 +175,8 @@ class Data:
             if self.place_names[place]:
                 value = self.pure.evaluate(token, {})
                 found = flatten(value, self.shapes[place], token.span)
-                for name, leaf in zip(self.place_names[place], found, strict=True):
-                    self.names.initialise(name, leaf.exp)
+                for name, scalar in zip(self.place_names[place], found, strict=True):
+                    self.names.initialise(name, scalar.exp)
         except UnsupportedError as problem:
             self.report(problem, f"initial marking of place `{flat.short}`", flat.origins[0])
             return False

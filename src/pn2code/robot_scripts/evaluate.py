@@ -19,10 +19,10 @@ from pn2code.robot_scripts.values import (
     TRUE,
     Closure,
     Env,
-    Leaf,
     Primitive,
     Rec,
     Scalar,
+    ScalarShape,
     UnsupportedError,
     Value,
     builtin,
@@ -99,7 +99,7 @@ class Evaluator:
         match e:
             case core.Lit(value, type_):
                 shape = shape_of_type(type_, self.program)
-                if not isinstance(shape, Leaf):
+                if not isinstance(shape, ScalarShape):
                     raise UnsupportedError(
                         f"values of type `{type_}` cannot be used in a robot script", e.span
                     )
@@ -191,7 +191,7 @@ class Evaluator:
             self.owe, self._path = before
 
     def _record(self, values: dict[str, Value], type_: Type, span: Span) -> Value:
-        if isinstance(shape_of_type(type_, self.program), Leaf):
+        if isinstance(shape_of_type(type_, self.program), ScalarShape):
             return pose(values, span)
         order = [label for label, _ in type_.fields] if isinstance(type_, TRecord) else list(values)
         return Rec(tuple((label, values[label]) for label in order))
@@ -307,7 +307,7 @@ class Evaluator:
                 return []
             case core.PLit(literal, type_):
                 shape = shape_of_type(type_, self.program)
-                if not isinstance(shape, Leaf):
+                if not isinstance(shape, ScalarShape):
                     raise UnsupportedError(
                         f"values of type `{type_}` cannot be used in a robot script", pattern.span
                     )

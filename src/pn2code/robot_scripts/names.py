@@ -15,7 +15,7 @@ from pn2code.cell.scalars import ScalarKind
 from pn2code.diagnostics import Span
 from pn2code.ml.core import terms as core
 from pn2code.robot_scripts.ir import Declared, Element
-from pn2code.robot_scripts.values import Fields, Leaf, Scalar, Shape, leaf_shapes
+from pn2code.robot_scripts.values import Fields, Scalar, ScalarShape, Shape, scalar_shapes
 from pn2code.tdl import tree as t
 from pn2code.tdl.expressions import RESERVED
 from pn2code.tdl.grammar import KEYWORDS
@@ -37,11 +37,11 @@ def small_identifier(text: str) -> str:
 
 
 def of_pattern(pattern: core.Pat | None, shape: Shape) -> list[str] | None:
-    """Names for the leaves of a shape as the variables of a pattern suggest them; None if it suggests none."""
+    """Names for the scalars of a shape as the variables of a pattern suggest them; None if it suggests none."""
     match pattern:
         case core.PVar(symbol) | core.PAs(symbol):
             stem = identifier(symbol.name)
-            return [f"{stem}_{label}" if label else stem for label, _ in leaf_shapes(shape)]
+            return [f"{stem}_{label}" if label else stem for label, _ in scalar_shapes(shape)]
         case core.PRecord(fields) if isinstance(shape, Fields):
             out: list[str] = []
             by_label = dict(fields)
@@ -56,8 +56,8 @@ def of_pattern(pattern: core.Pat | None, shape: Shape) -> list[str] | None:
 
 
 def of_stem(stem: str, shape: Shape) -> list[str]:
-    """Names for the leaves of a shape from one word."""
-    return [f"{stem}_{identifier(label)}" if label else stem for label, _ in leaf_shapes(shape)]
+    """Names for the scalars of a shape from one word."""
+    return [f"{stem}_{identifier(label)}" if label else stem for label, _ in scalar_shapes(shape)]
 
 
 @record
@@ -101,10 +101,10 @@ class Names:
         name = self.unique(identifier(stem))
         types: tuple[t.TypeName, ...] = ()
         rest = list(scalars)
-        for _, leaf in leaf_shapes(shape):
+        for _, scalar in scalar_shapes(shape):
             is_word = rest[0].kind is ScalarKind.ENUM
-            types += (t.TypeName(Type.WORD if is_word else leaf.type, leaf.single),)
-            del rest[: len(POSE_FIELDS) if leaf.type is Type.POSE else 1]
+            types += (t.TypeName(Type.WORD if is_word else scalar.type, scalar.single),)
+            del rest[: len(POSE_FIELDS) if scalar.type is Type.POSE else 1]
         if not types:
             types = (t.TypeName(Type.SIGNAL),)
         self.files[name] = Declared(t.File(direction, name, path, types), element)
@@ -113,9 +113,11 @@ class Names:
     def own(self, names: Iterable[str], shape: Shape, element: Element) -> list[str]:
         """Variables that nothing else uses."""
         out = []
-        for name, (_, leaf) in zip(names, leaf_shapes(shape), strict=True):
+        for name, (_, scalar) in zip(names, scalar_shapes(shape), strict=True):
             final = self.unique(name)
-            self.variables[final] = _Variable(t.TypeName(leaf.type, leaf.single), element, False)
+            self.variables[final] = _Variable(
+                t.TypeName(scalar.type, scalar.single), element, False
+            )
             out.append(final)
         return out
 
@@ -125,12 +127,12 @@ class Names:
         """Variables whose content matters for a short while only, so that several uses share one."""
         forbidden = set(avoid)
         out: list[str] = []
-        for name, (_, leaf) in zip(names, leaf_shapes(shape), strict=True):
-            out.append(self._shared(name, leaf, element, forbidden | set(out)))
+        for name, (_, scalar) in zip(names, scalar_shapes(shape), strict=True):
+            out.append(self._shared(name, scalar, element, forbidden | set(out)))
         return out
 
-    def _shared(self, name: str, leaf: Leaf, element: Element, forbidden: set[str]) -> str:
-        kind = t.TypeName(leaf.type, leaf.single)
+    def _shared(self, name: str, scalar: ScalarShape, element: Element, forbidden: set[str]) -> str:
+        kind = t.TypeName(scalar.type, scalar.single)
         candidate, n = name, 1
         while True:
             known = self.variables.get(candidate)

@@ -16,7 +16,8 @@ from pn2code.robot_scripts.data import Data
 from pn2code.robot_scripts.guards import covering, exclusive
 from pn2code.robot_scripts.ir import Comment, LeftOut, Line, Node, Region, transition_element
 from pn2code.robot_scripts.machine import Outcome, Step
-from pn2code.robot_scripts.steps import Situation, StepTranslator, header
+from pn2code.robot_scripts.situation import Situation
+from pn2code.robot_scripts.steps import StepTranslator, header
 from pn2code.robot_scripts.structure import Branches, Halt, Then, To, Tree
 from pn2code.robot_scripts.values import (
     FALSE,
@@ -25,7 +26,7 @@ from pn2code.robot_scripts.values import (
     Value,
     conjunction,
     disjunction,
-    leaves,
+    scalars_in,
 )
 from pn2code.tdl import tree as t
 from pn2code.tdl.paths import names_in
@@ -307,7 +308,7 @@ class States:
     def _stuck(self, place: int, conditions: list[t.Expression]) -> Tree:
         """`stop`, saying where the program is and the values for which no condition holds."""
         flat = self._places[place]
-        own = [x.exp for x in leaves(self._data.place_values[place])]
+        own = [x.exp for x in scalars_in(self._data.place_values[place])]
         asked = [e for c in conditions for e in names_in(c) if e.name in self._data.names.variables]
         parts: list[t.Expression] = []
         text = f"{flat.short}: nothing can happen"
@@ -351,11 +352,11 @@ class States:
     def _outcome_condition(self, o: Outcome, env: dict[int, Value]) -> t.Expression:
         out: list[t.Expression] = []
         for condition, holds in o.conditions:
-            (leaf,) = leaves(self._data.pure.evaluate(condition, env))
-            if isinstance(leaf.exp, t.Value):
-                out.append(t.Value(leaf.exp.value is holds))
+            (scalar,) = scalars_in(self._data.pure.evaluate(condition, env))
+            if isinstance(scalar.exp, t.Value):
+                out.append(t.Value(scalar.exp.value is holds))
             else:
-                out.append(leaf.exp if holds else t.Unary("not", leaf.exp))
+                out.append(scalar.exp if holds else t.Unary("not", scalar.exp))
         return conjunction(out)
 
     def _region(self, s: Situation, nodes: list[Node]) -> Region:

@@ -27,22 +27,24 @@ from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import ArcKind, BindAll, BindEquation, BindRandom
 from pn2code.robot_scripts import codes as codes
 from pn2code.robot_scripts import membership
-from pn2code.robot_scripts.conditions import Asked, Order, all_hold
+from pn2code.robot_scripts.assignments import one_after_the_other
+from pn2code.robot_scripts.conditions import Asked, Order
 from pn2code.robot_scripts.evaluate import Evaluator
 from pn2code.robot_scripts.failing import Known
 from pn2code.robot_scripts.ir import Chain, Comment, Element, Line, Node
 from pn2code.robot_scripts.machine import Machine, Outcome, Step, delayed_tokens
 from pn2code.robot_scripts.names import Names, identifier
 from pn2code.robot_scripts.not_a_number import may_be_nan
+from pn2code.robot_scripts.situation import Situation
 from pn2code.robot_scripts.strict import Owed, Path, open_of, statements, without_repetition
 from pn2code.robot_scripts.values import (
     FALSE,
     Closure,
     Env,
     Fields,
-    Leaf,
     Rec,
     Scalar,
+    ScalarShape,
     Shape,
     UnsupportedError,
     Value,
@@ -51,6 +53,7 @@ from pn2code.robot_scripts.values import (
     choose,
     equal,
     flatten,
+    scalars_in,
     select,
     shape_of_colset,
 )
@@ -58,38 +61,7 @@ from pn2code.robot_scripts.values import Primitive as PrimitiveValue
 from pn2code.tdl import tree as t
 from pn2code.tdl import types as tdl
 from pn2code.tdl.evaluate import ScriptError, ScriptValue, evaluate
-from pn2code.tdl.paths import all_names, children, expressions_of
-
-
-@frozen
-class Situation:
-    """A transition seen from its state: what its variables mean and when it is enabled.
-
-    Args:
-        channels: places of the channels it takes from, in order of its arcs.
-        local: conditions that the program's own data decide.
-        remote: conditions that need the messages, or that may fail unless such conditions before them hold.
-        ordered: all of them in the order of the net.
-        sensed: net variables that nothing in the net decides, the sensor that does, and the script's variable.
-    """
-
-    step: Step
-    env: Env
-    channels: tuple[int, ...]
-    local: tuple[t.Expression, ...]
-    remote: tuple[t.Expression, ...]
-    ordered: tuple[t.Expression, ...]
-    sensed: tuple[tuple[Symbol, str, str], ...] = ()
-
-    @property
-    def own_condition(self) -> t.Expression:
-        """All conditions on the program's own data."""
-        return all_hold(self.local)
-
-    @property
-    def condition(self) -> t.Expression:
-        """All conditions."""
-        return all_hold(self.ordered)
+from pn2code.tdl.paths import all_names, expressions_of
 
 
 @frozen
@@ -112,7 +84,7 @@ class StepTranslator:
     """Translates transitions.
 
     Args:
-        place_names: the variables of a local place, in order of its leaves.
+        place_names: the variables of a local place, in order of its scalars.
         shapes: shapes of places.
         file_names: names of the files of channel places.
         sensors: net variable -> the sensor that decides it.
@@ -155,7 +127,7 @@ class StepTranslator:
             )
         ordered = [*control, *variables, *messages]
         sensed: list[tuple[Symbol, str, str]] = []
-        avoid = {n for p, *_ in ordered for n in all_names(x.exp for x in _scalars(values[p]))}
+        avoid = {n for p, *_ in ordered for n in all_names(x.exp for x in scalars_in(values[p]))}
         order = Order(transition, self.pure.program)
         asked = Asked(self.known())
         for place, term, arc, index in ordered:
@@ -171,10 +143,10 @@ class StepTranslator:
                     order.of_equation(i), self._matched(bind.pattern, value, env, given), owed
                 )
             elif isinstance(bind, BindAll | BindRandom) and bind.symbol.uid not in env:
-                sensor, name, leaf = self._sensor(bind.symbol, step, avoid)
+                sensor, name, scalar = self._sensor(bind.symbol, step, avoid)
                 avoid.add(name)
                 sensed.append((bind.symbol, sensor, name))
-                env[bind.symbol.uid] = Scalar(t.Name(name), leaf.type)
+                env[bind.symbol.uid] = Scalar(t.Name(name), scalar.type)
         for place, term, arc, _ in ordered:
             if term.pattern is None:
                 value, owed = self.pure.owing(term.value, env)
@@ -185,7 +157,7 @@ class StepTranslator:
             assert isinstance(value, Scalar)
             asked.add(order.of_guard(i), [value.exp], owed)
         received = {
-            name for p, *_ in messages for name in all_names(x.exp for x in _scalars(values[p]))
+            name for p, *_ in messages for name in all_names(x.exp for x in scalars_in(values[p]))
         }
         conditions = asked.conditions()
         for symbol, sensor, name in sensed:
@@ -242,7 +214,7 @@ class StepTranslator:
             known = known.with_condition(c)
         return tuple(early), tuple(rest)
 
-    def _sensor(self, symbol: Symbol, step: Step, avoid: set[str]) -> tuple[str, str, Leaf]:
+    def _sensor(self, symbol: Symbol, step: Step, avoid: set[str]) -> tuple[str, str, ScalarShape]:
         """The sensor that decides a free variable, the script's variable for it, and its type."""
         sensor = self.sensors.get(symbol.name)
         if sensor is None:
@@ -254,7 +226,7 @@ class StepTranslator:
             )
         assert symbol.colset is not None
         shape = shape_of_colset(symbol.colset, self.pure.program, self.storage)
-        if not isinstance(shape, Leaf) or shape.type is tdl.Type.POSE:
+        if not isinstance(shape, ScalarShape) or shape.type is tdl.Type.POSE:
             raise UnsupportedError(
                 f"sensor `{sensor}` decides `{symbol.name}` of colour set `{symbol.colset.name}`, but a "
                 "sensor gives one number, truth value or text",
@@ -285,7 +257,7 @@ class StepTranslator:
         self._nodes = []
         self._there = self.known(situation.ordered)
         output = code.outputs[0].name if len(code.outputs) == 1 else "measured"
-        self._taken = all_names(x.exp for v in situation.env.values() for x in _scalars(v))
+        self._taken = all_names(x.exp for v in situation.env.values() for x in scalars_in(v))
         evaluator = Evaluator(
             self.pure.program,
             self.pure.primitives,
@@ -376,7 +348,9 @@ class StepTranslator:
                     transition.origin,
                     f"transition {transition.short} ({transition.id})",
                 )
-                (target,) = self.names.shared([output], Leaf(tdl.Type.POSE), element, self._taken)
+                (target,) = self.names.shared(
+                    [output], ScalarShape(tdl.Type.POSE), element, self._taken
+                )
                 self._taken = self._taken | {target}
                 self._nodes.append(Line(t.Measure(argument.exp, t.Target(target))))
                 return Scalar(t.Name(target), tdl.Type.POSE)
@@ -542,17 +516,21 @@ class StepTranslator:
                 continue
             shape = self.shapes[place]
             value = self.pure.evaluate(exp, env) if shape != Fields(()) else Rec(())
-            leaves = flatten(value, shape, exp.span)
+            scalars = flatten(value, shape, exp.span)
             if place in self.machine.channels:
                 target = t.Target(self.file_names[place])
-                line = Line(t.Write(target, tuple(x.exp for x in leaves)))
+                line = Line(t.Write(target, tuple(x.exp for x in scalars)))
                 writes.append((order[place], line))
             else:
                 names = self.place_names[place]
-                assignments += zip(names, (x.exp for x in leaves), strict=True)
+                assignments += zip(names, (x.exp for x in scalars), strict=True)
         writes.sort(key=lambda w: w[0])
         waits = self._wait(situation, outcome, env)
-        return [*(w for _, w in writes), *waits, *self._assign(assignments, situation)]
+        return [
+            *(w for _, w in writes),
+            *waits,
+            *one_after_the_other(assignments, self.names, situation.step),
+        ]
 
     def _wait(self, situation: Situation, outcome: Outcome, env: Env) -> list[Node]:
         """The delay of the control token. Model time is in seconds."""
@@ -585,75 +563,6 @@ class StepTranslator:
                 codes.UNSUPPORTED_TIME,
             )
         return out
-
-    def _assign(
-        self, assignments: list[tuple[str, t.Expression]], situation: Situation
-    ) -> list[Node]:
-        """Assignments at once, made one after the other: none may destroy what another needs."""
-        pending = [(n, e) for n, e in assignments if e != t.Name(n)]
-        out: list[Node] = []
-        while pending:
-            free = next(
-                (
-                    i
-                    for i, (name, _) in enumerate(pending)
-                    if not any(name in all_names([e]) for j, (_, e) in enumerate(pending) if j != i)
-                ),
-                None,
-            )
-            if free is None:  # a circle: keep one old value aside
-                name = pending[0][0]
-                kind = self.names.variables[name].type
-                transition = situation.step.transition
-                element = Element(
-                    transition.name,
-                    "transition",
-                    transition.origin,
-                    f"transition {transition.short} ({transition.id})",
-                )
-                (aside,) = self.names.shared(
-                    [f"{name}_before"], Leaf(kind.type, kind.single), element
-                )
-                out.append(Line(t.Assign(t.Target(aside), t.Name(name))))
-                pending = [
-                    (n, e if i == 0 else _replaced(e, name, aside))
-                    for i, (n, e) in enumerate(pending)
-                ]
-                free = 0
-            name, exp = pending.pop(free)
-            out.append(Line(t.Assign(t.Target(name), exp)))
-        return out
-
-
-def _replaced(e: t.Expression, old: str, new: str) -> t.Expression:
-    """The expression with one name for another."""
-    match e:
-        case t.Name(name):
-            return t.Name(new) if name == old else e
-        case t.Field(record, label):
-            return t.Field(_replaced(record, old, new), label)
-        case t.Unary(operator, operand):
-            return t.Unary(operator, _replaced(operand, old, new))
-        case t.Binary(operator, left, right):
-            return t.Binary(operator, _replaced(left, old, new), _replaced(right, old, new))
-        case t.CallExpression(function, arguments):
-            return t.CallExpression(function, tuple(_replaced(a, old, new) for a in arguments))
-        case t.Conditional():
-            a, b, c = (_replaced(x, old, new) for x in children(e))
-            return t.Conditional(a, b, c)
-        case _:
-            return e
-
-
-def _scalars(value: Value) -> Iterable[Scalar]:
-    match value:
-        case Scalar():
-            yield value
-        case Rec(fields):
-            for _, v in fields:
-                yield from _scalars(v)
-        case _:
-            return
 
 
 def _whole(step: Step) -> Span:

@@ -37,7 +37,7 @@ class UnsupportedError(Exception):
 
 
 @frozen
-class Leaf:
+class ScalarShape:
     """One script value."""
 
     type: tdl.Type
@@ -51,7 +51,7 @@ class Fields:
     fields: tuple[tuple[str, Shape], ...]
 
 
-Shape = Leaf | Fields
+Shape = ScalarShape | Fields
 
 
 def is_pose(labels: tuple[str, ...], types: tuple[Type, ...]) -> bool:
@@ -74,12 +74,12 @@ def shape_of_type(ml: Type, program: core.Program) -> Shape | None:
                 STRING: tdl.Type.STRING,
             }
             if ml in simple:
-                return Leaf(simple[ml])
-            return Leaf(tdl.Type.STRING) if is_enumeration(ml, program) else None
+                return ScalarShape(simple[ml])
+            return ScalarShape(tdl.Type.STRING) if is_enumeration(ml, program) else None
         case TRecord(fields):
             labels, types = tuple(x for x, _ in fields), tuple(x for _, x in fields)
             if is_pose(labels, types):
-                return Leaf(tdl.Type.POSE)
+                return ScalarShape(tdl.Type.POSE)
             inner = [(label, shape_of_type(x, program)) for label, x in fields]
             return _fields(inner)
         case _:
@@ -116,7 +116,7 @@ def shape_of_colset(
         assert base is not None
         c = base
     if c.kind is Kind.REAL:
-        return Leaf(tdl.Type.REAL, single)
+        return ScalarShape(tdl.Type.REAL, single)
     if c.kind in (Kind.RECORD, Kind.PRODUCT):
         labels = c.labels or tuple(str(i) for i in range(1, len(c.components) + 1))
         inner = [
@@ -128,8 +128,8 @@ def shape_of_colset(
         ordered = tuple(x.lower() for x in labels) == POSE_LABELS or not in_order
         if is_pose(labels, types) and len(shapes) == 1 and ordered:
             (only,) = shapes
-            assert isinstance(only, Leaf)
-            return Leaf(tdl.Type.POSE, only.single)
+            assert isinstance(only, ScalarShape)
+            return ScalarShape(tdl.Type.POSE, only.single)
         return _fields(inner)
     if c.kind in (Kind.UNIT, Kind.BOOL, Kind.INT, Kind.STRING, Kind.ENUM):
         return shape_of_type(c.type, program)
@@ -182,20 +182,20 @@ UNIT = Rec(())
 TRUE, FALSE = t.Value(True), t.Value(False)
 
 
-def leaves(value: Value) -> list[Scalar]:
+def scalars_in(value: Value) -> list[Scalar]:
     """The scalars of a value, in order; a function has none."""
     match value:
         case Scalar():
             return [value]
         case Rec(fields):
-            return [leaf for _, v in fields for leaf in leaves(v)]
+            return [scalar for _, v in fields for scalar in scalars_in(v)]
         case _:
             return []
 
 
 def make(shape: Shape, names: Iterator[str]) -> Value:
-    """A value held by script variables, one name for each leaf in order."""
-    if isinstance(shape, Leaf):
+    """A value held by script variables, one name for each scalar in order."""
+    if isinstance(shape, ScalarShape):
         return Scalar(t.Name(next(names)), shape.type)
     record = Rec(tuple((label, make(inner, names)) for label, inner in shape.fields))
     if {label.lower() for label, _ in record.fields} == set(POSE_LABELS) and all(
@@ -218,14 +218,14 @@ def flatten(value: Value, shape: Shape, span: Span) -> list[Scalar]:
     return [as_real(value) if shape.type is tdl.Type.REAL else value]
 
 
-def leaf_shapes(shape: Shape, label: str = "") -> list[tuple[str, Leaf]]:
-    """The leaves of a shape with their labels joined by `_`."""
-    if isinstance(shape, Leaf):
+def scalar_shapes(shape: Shape, label: str = "") -> list[tuple[str, ScalarShape]]:
+    """The scalars of a shape with their labels joined by `_`."""
+    if isinstance(shape, ScalarShape):
         return [(label, shape)]
     return [
         x
         for name, inner in shape.fields
-        for x in leaf_shapes(inner, f"{label}_{name}" if label else name)
+        for x in scalar_shapes(inner, f"{label}_{name}" if label else name)
     ]
 
 
@@ -259,7 +259,7 @@ def disjunction(conditions: list[t.Expression]) -> t.Expression:
 
 
 def choose(condition: t.Expression, a: Value, b: Value, span: Span) -> Value:
-    """`if condition then a else b`, leaf by leaf."""
+    """`if condition then a else b`, scalar by scalar."""
     if condition == TRUE or a == b:
         return a
     if condition == FALSE:

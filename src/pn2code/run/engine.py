@@ -214,7 +214,7 @@ class Engine:
             self._begin_run()
             without_time = 0
             while True:
-                self._settle()
+                self._exchange_messages()
                 if self._finished and self._at_rest():
                     self.record.verdict = "finished"
                     break
@@ -275,7 +275,7 @@ class Engine:
 
     # --- one instant -------------------------------------------------------------------------
 
-    def _settle(self) -> None:
+    def _exchange_messages(self) -> None:
         """Supervisor and robots exchange messages at this instant until nobody can go on."""
         for _ in range(MOST_AT_ONCE):
             moved = self._supervisor_cycle()

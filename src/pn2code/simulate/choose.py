@@ -58,17 +58,17 @@ def simulate(request: Request, wish: Wish, d: Diagnostics) -> Outcome | None:
     """
     if wish is Wish.REFERENCE:
         return reference.run(request, d)
-    obstacle = _obstacle(request)
-    if obstacle:
+    why = _why_not_compiled(request)
+    if why:
         if wish is Wish.COMPILED:
             d.error(
                 ENGINE_CHANGED,
-                f"the compiled engine cannot make this run: {obstacle}",
+                f"the compiled engine cannot make this run: {why}",
                 Origin(request.net.file),
                 hint="leave `--engine compiled` out",
             )
             return None
-        return _instead(request, obstacle, d)
+        return _instead(request, why, d)
     own = Diagnostics()
     outcome, is_built = _compiled(request, own)
     if is_built:
@@ -151,7 +151,7 @@ def _instead(request: Request, why: str, d: Diagnostics) -> Outcome:
     return reference.run(request, d)
 
 
-def _obstacle(request: Request) -> str:
+def _why_not_compiled(request: Request) -> str:
     """Why the compiled engine cannot make the run; "" if it can."""
     has_begun_so = request.initial is not None  # the net begins as the trace says
     if (

@@ -15,7 +15,7 @@ from pn2code.net.flat import FlatNet
 from pn2code.semantics.game.marking import binding_to_json
 from pn2code.simulate.choose import Wish, simulate
 from pn2code.simulate.run import Outcome, Request
-from pn2code.trace.replay_recording import Occurrence
+from pn2code.trace.followed import Occurrence
 from pn2code.trace.writing import json_text
 
 

@@ -184,7 +184,7 @@ class ReferenceRun:
         game = self.game
         assert game is not None
         try:
-            enabled, why = self._settle()
+            enabled, why = self._advance_time()
             if why:
                 return why
         except GameError as error:
@@ -197,7 +197,7 @@ class ReferenceRun:
             return self._fail(error, t)
         return self.fire(BindingElement.make(t, bindings[choice.below(len(bindings))]))
 
-    def _settle(self) -> tuple[list[FlatTransition], str]:
+    def _advance_time(self) -> tuple[list[FlatTransition], str]:
         """Moves the clock to where something is enabled; gives what is, and why the run ends here, or ""."""
         game = self.game
         assert game is not None
@@ -281,7 +281,7 @@ class ReferenceRun:
         game = self.game
         assert game is not None
         try:
-            _, why = self._settle()
+            _, why = self._advance_time()
             if why:
                 if why == "breakpoint":
                     return why
@@ -293,11 +293,11 @@ class ReferenceRun:
                     f"it says time {step.time}, but the clock shows {game.marking.time}", step.line
                 )
             element = BindingElement.make(step.transition, step.bound)
-            obstacle = game.why_disabled(game.marking, element)
+            reason = game.why_disabled(game.marking, element)
         except GameError as error:
             return self._fail(error, step.transition)
-        if obstacle is not None:
-            return self._refuse(f"`{step.transition.name}` is not enabled: {obstacle}", step.line)
+        if reason is not None:
+            return self._refuse(f"`{step.transition.name}` is not enabled: {reason}", step.line)
         why = self.fire(element)
         return why or self._compare_outputs(step)
 

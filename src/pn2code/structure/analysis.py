@@ -457,7 +457,7 @@ def _dead(
     reasons: dict[int, str] = {}
     able: set[int] = set()
     for k, mode in enumerate(skel.modes):
-        reason = _obstacle(skel, k, live, marked, known)
+        reason = _why_dead(skel, k, live, marked, known)
         if reason is None:
             able.add(mode.transition)
         else:
@@ -465,7 +465,7 @@ def _dead(
     return {t: r for t, r in sorted(reasons.items()) if t not in able}
 
 
-def _obstacle(
+def _why_dead(
     skel: Skeleton,
     k: int,
     live: Collection[int],

@@ -97,7 +97,7 @@ class Interpreter:
         self._program = program
         self._files = files
         self._channel = {f.name: PurePath(f.path).stem for f in program.files.values()}
-        self._tell = on_event
+        self._on_event = on_event
         self._limit = step_limit
         self._occurrences = occurrences
         self._statements = self._marks = 0
@@ -242,7 +242,7 @@ class Interpreter:
                     raise ScriptError(f"file `{file.name}` is empty, there is nothing to consume")
                 self._files.clear(channel)
                 self._statements = self._marks = 0  # what comes next depends on others, too
-                self._tell(MessageConsumed(channel, message, self._line))
+                self._on_event(MessageConsumed(channel, message, self._line))
             case t.Write(file, values):
                 kinds = self._program.files[file.name].types
                 scalars = tuple(
@@ -252,7 +252,7 @@ class Interpreter:
                 ) or (1,)  # a signal
                 channel = self._channel[file.name]
                 self._files.write(channel, scalars)
-                self._tell(MessageWritten(channel, scalars, self._line))
+                self._on_event(MessageWritten(channel, scalars, self._line))
             case t.Compute(parts):
                 for part in parts:
                     evaluate(part, self)
@@ -260,7 +260,7 @@ class Interpreter:
                 return self._wait_until(condition)
             case t.Mark(transition, binding):
                 data = {name: self._datum(x) for name, x in binding}
-                self._tell(Marked(transition, data, self._line))
+                self._on_event(Marked(transition, data, self._line))
                 self._statements = 0
                 self._marks += 1
             case t.Stop(message_parts):
@@ -301,7 +301,7 @@ class Interpreter:
         values = typed_values(name, message, kinds)
         for target, kind, value in zip(s.targets, kinds, values, strict=True):
             self._assign(target.name, stored_value(value, kind))
-        self._tell(MessageRead(channel, message, self._line))
+        self._on_event(MessageRead(channel, message, self._line))
 
     def _assign(self, name: str, value: ScriptValue) -> None:
         self._values[name] = stored_value(value, self._program.variables[name].type)

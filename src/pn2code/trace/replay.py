@@ -355,9 +355,9 @@ def _step(
     given = _binding(t, line.get("binding", {}))
     element = BindingElement.make(t, {s: x for s, x in given.items() if s not in _outputs(t)})
     _set_clock(game, line, rules)
-    obstacle = game.why_disabled(game.marking, element, priorities=rules.priorities)
-    if obstacle is not None:
-        raise _Wrong(f"not enabled: {obstacle}")
+    why = game.why_disabled(game.marking, element, priorities=rules.priorities)
+    if why is not None:
+        raise _Wrong(f"not enabled: {why}")
     if not rules.priorities:
         _own_priorities(
             game, element, parties.rivals(game.net, t.index), _moment(game, line, rules)

@@ -15,16 +15,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import field, replace
+from dataclasses import replace
 from typing import Any
 
-from pn2code.base.frozen import frozen
 from pn2code.ml.core.reals import may_hold_reals
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
 from pn2code.semantics.evaluation.effects import OUTSIDE, Effect, Effects, outside, texts
 from pn2code.semantics.evaluation.evaluate import variables
-from pn2code.semantics.evaluation.references import Held, References
+from pn2code.semantics.evaluation.references import References
 from pn2code.semantics.game.enabling import Demand, GameError, GivenUpError
 from pn2code.semantics.game.marking import (
     Binding,
@@ -47,81 +46,13 @@ from pn2code.semantics.game.token_game import Game, reset
 from pn2code.semantics.values.colour_text import read_value
 from pn2code.semantics.values.data import Value
 from pn2code.semantics.values.multiset import TimedMultiSet
+from pn2code.trace.followed import EnabledBinding, Followed, State
 from pn2code.trace.recording import RecordedStep, Recording, TransitionNames
 
 MOST_STATES = 50
 """States that are carried along; of more, the first are."""
-MOST_WAYS = 4
+MOST_MARKINGS = 4
 """Ways to take the tokens of one binding that are followed."""
-
-
-Occurrence = tuple[int | float, BindingElement]
-"""When, and what."""
-
-
-@frozen
-class Followed:
-    """What became of a recording.
-
-    Args:
-        ok: whether every step could be repeated, as far as it is determined.
-        steps: how many were.
-        why: if not ok, what is wrong with the next one; else "" or what was drawn at random.
-        random: whether some values had to be taken as recorded, since the net draws them.
-        time: of the last marking.
-        rows: the last marking; what is not known of it is as recorded, and so is said in `drawn`.
-        drawn: names of the places with tokens that depend on drawn numbers.
-        given_up: whether the next step is not known to be wrong: the token game gave up an evaluation.
-        occurrences: (time, binding element) of each step that was repeated.
-    """
-
-    ok: bool
-    steps: int
-    why: str
-    random: bool
-    time: int | float
-    rows: list[PlaceRow]
-    drawn: tuple[str, ...] = ()
-    occurrences: tuple[Occurrence, ...] = ()
-    given_up: bool = False
-
-
-@frozen
-class State:
-    """A marking that fits what has been seen, what is not known of it, the contents of the references, and how one
-    comes there (one way, if there are several)."""
-
-    marking: Marking
-    unknown: PartialMarking
-    references: Held
-    path: Any = field(default=None, compare=False)
-    """(what came before, the last occurrence), or None at the start"""
-
-    def occurrences(self) -> tuple[Occurrence, ...]:
-        """All since the start."""
-        found: list[Occurrence] = []
-        path = self.path
-        while path is not None:
-            path, last = path
-            found.append(last)
-        return tuple(reversed(found))
-
-
-@frozen
-class _Way:
-    """A way in which a recorded binding is enabled.
-
-    Args:
-        left: the marking without the tokens that are taken.
-        unknown: what is not known of it.
-        binding: without the outputs of the code segment.
-        read: whether the values were read from the recording, which tells reals with 12 digits.
-    """
-
-    left: Marking
-    unknown: PartialMarking
-    binding: Binding
-    read: bool = False
 
 
 class _Refused(Exception):  # noqa: N818
@@ -342,9 +273,9 @@ class _Follower:
         self.check_priority(state, t)
         reason = ""
         count = 0
-        for way in self.enabled(state, t, step):
+        for enabled in self.enabled(state, t, step):
             try:
-                after = self.occur(state, t, way, step)
+                after = self.occur(state, t, enabled, step)
             except GivenUpError:
                 raise
             except (_Refused, GameError) as refused:
@@ -353,7 +284,7 @@ class _Follower:
             count += 1
             yield after
         if not count:
-            raise _Refused(reason or self.obstacle(state, t, step))
+            raise _Refused(reason or self.why_disabled(state, t, step))
 
     def check_names(self, t: FlatTransition, step: RecordedStep) -> None:
         ours = {s.name for s in t.variables}
@@ -409,7 +340,9 @@ class _Follower:
             if next(self.game.enabling.enabled(other, state.marking), None) is not None:
                 raise _Refused(f"`{other.name}` has a higher priority and is enabled")
 
-    def enabled(self, state: State, t: FlatTransition, step: RecordedStep) -> Iterator[_Way]:
+    def enabled(
+        self, state: State, t: FlatTransition, step: RecordedStep
+    ) -> Iterator[EnabledBinding]:
         """The ways in which the recorded binding is enabled."""
         enabling = self.game.enabling
         found = False
@@ -424,20 +357,22 @@ class _Follower:
                 demands = enabling.demands(t, binding)
                 for left in self.plausible(list(alternatives(enabling, state.marking, demands))):
                     found = True
-                    yield _Way(left, state.unknown, binding)
+                    yield EnabledBinding(left, state.unknown, binding)
         depends = not self.certain(state.unknown, t)
         if depends or (not found and self.lenient and state.unknown.anything):
             yield self.enabled_by_unknown(state, t, step)
 
-    def plausible(self, ways: list[Marking]) -> list[Marking]:
-        """Of the ways to take tokens some with which the recorded final marking can still be reached.
+    def plausible(self, markings: list[Marking]) -> list[Marking]:
+        """Some of the markings that may be left, with which the recorded final marking can still be reached.
 
         Nothing that is put later has a stamp before the present time: what the final marking has of such tokens must
         be there now. Which of the others are taken first makes no difference.
         """
-        if len(ways) == 1:
-            return ways
-        return [m for m in ways if self.holds_final(m)][:MOST_WAYS] or ways[:MOST_WAYS]
+        if len(markings) == 1:
+            return markings
+        return [m for m in markings if self.holds_final(m)][:MOST_MARKINGS] or markings[
+            :MOST_MARKINGS
+        ]
 
     def holds_final(self, marking: Marking) -> bool:
         for place, wanted in self.final_tokens.items():
@@ -452,14 +387,16 @@ class _Follower:
                         return False
         return True
 
-    def enabled_by_unknown(self, state: State, t: FlatTransition, step: RecordedStep) -> _Way:
+    def enabled_by_unknown(
+        self, state: State, t: FlatTransition, step: RecordedStep
+    ) -> EnabledBinding:
         """As `enabled`, with tokens that are not known: the binding is read from its text."""
         enabling = self.game.enabling
         unknown = state.unknown
         binding = self.read(t, step)
         self.game.evaluator.now = state.marking.time
         if not self.vague(unknown, t.guards):
-            reason = enabling.guard_obstacle(t, binding)
+            reason = enabling.why_guard_fails(t, binding)
             if reason:
                 raise _Refused(reason)
         marking = state.marking
@@ -477,7 +414,7 @@ class _Follower:
         left = taken(enabling, self.game.colours, marking, unknown, demands)
         if isinstance(left, Demand):
             raise _Refused(enabling.shortage(marking, left, demands))
-        return _Way(*left, binding, read=True)
+        return EnabledBinding(*left, binding, read=True)
 
     def read(self, t: FlatTransition, step: RecordedStep) -> dict[Symbol, Value]:
         """The recorded values of the variables that are not outputs of the code segment."""
@@ -492,7 +429,7 @@ class _Follower:
             raise _Refused(f"`{symbol.name}` = {_line(text)} is no value of `{symbol.colset.name}`")
         return value
 
-    def obstacle(self, state: State, t: FlatTransition, step: RecordedStep) -> str:
+    def why_disabled(self, state: State, t: FlatTransition, step: RecordedStep) -> str:
         """Why a binding is not enabled, in words."""
         element = BindingElement.make(t, self.read(t, step))
         found = self.game.why_disabled(state.marking, element)
@@ -500,21 +437,23 @@ class _Follower:
 
     # --- an occurrence -----------------------------------------------------------------------------------
 
-    def occur(self, state: State, t: FlatTransition, way: _Way, step: RecordedStep) -> State:
+    def occur(
+        self, state: State, t: FlatTransition, enabled: EnabledBinding, step: RecordedStep
+    ) -> State:
         """The state after the occurrence."""
         game = self.game
-        unknown, now = way.unknown, way.left.time
+        unknown, now = enabled.unknown, enabled.left.time
         self.references.restore(state.references)
         game.evaluator.now = now
         action = t.code.action if t.code else None
-        full = {**way.binding, **self.outputs(unknown, t, way.binding, step)}
+        full = {**enabled.binding, **self.outputs(unknown, t, enabled.binding, step)}
         drawn = self.vague(unknown, action)
         # Reals are printed with fewer digits than they have.
-        printed = {s for s in t.variables if self.is_rounded(s)} if way.read or drawn else set()
+        printed = {s for s in t.variables if self.is_rounded(s)} if enabled.read or drawn else set()
         unknown = self.remember(unknown, drawn, action)
         late = unknown.clock or self.vague(unknown, t.delay)
         delay = 0 if late else game.delay(t, full)
-        held = list(way.left.places)
+        held = list(enabled.left.places)
         for arc in t.arcs:
             if arc.inscription is None or arc.kind not in (ArcKind.OUTPUT, ArcKind.BOTH):
                 continue
@@ -541,7 +480,7 @@ class _Follower:
                 held[arc.place] = reset(held[arc.place], now)
                 if unknown.covers(arc.place):
                     unknown = unknown.opened(arc.place)
-        after = replace(way.left, places=tuple(held))
+        after = replace(enabled.left, places=tuple(held))
         path = (state.path, (now, BindingElement.make(t, full)))
         return State(self.game.with_references(after), unknown, self.references.contents(), path)
 

@@ -117,7 +117,7 @@ def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> No
 
 def _reach(arms: Arms, ir: RobotIR, d: Diagnostics) -> None:
     for origin, command in _constant_poses(ir):
-        problem = arms.obstacle(ir.name, command)
+        problem = arms.why_unreachable(ir.name, command)
         if problem:
             d.error(
                 codes.ROBOT_REACH,

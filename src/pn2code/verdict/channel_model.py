@@ -1,4 +1,4 @@
-"""The checks of a cell's medium: docs/protocol.md, "The medium in the model"."""
+"""The checks of a cell's channel model: docs/protocol.md, "The medium in the model"."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from pn2code.cell.divide import divide
-from pn2code.channel_model.check import WHOLE, Answer, Evidence, medium
+from pn2code.channel_model.check import WHOLE, Answer, Evidence, check_channel_model
 from pn2code.channel_model.faults import SAYS
 from pn2code.diagnostics import Diagnostics
 from pn2code.verdict.controller import LEAST_STATES
@@ -51,7 +51,7 @@ def look(
     is_open = not is_small and limits.deadline.is_over()
     own = Diagnostics()
     answers = tuple(
-        medium(
+        check_channel_model(
             partition,
             opened.storage,
             limits,

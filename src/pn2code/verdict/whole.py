@@ -16,8 +16,7 @@ from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.division import divided
 from pn2code.net.flat import FlatNet
 from pn2code.robot_scripts.translate import lower_robots
-from pn2code.verdict import channel_model as medium
-from pn2code.verdict import controller, properties
+from pn2code.verdict import channel_model, controller, properties
 from pn2code.verdict.asked import Asked, gather
 from pn2code.verdict.opened import OpenNet
 from pn2code.verify.answers import outcome
@@ -53,11 +52,11 @@ class Checks:
 
     Args:
         controller: the supervisor against its execution scheme (docs/execution.md).
-        medium: the cell together with its shared files (docs/protocol.md).
+        channel_model: the cell together with its shared files (docs/protocol.md).
     """
 
     controller: bool = True
-    medium: bool = True
+    channel_model: bool = True
 
 
 @frozen
@@ -68,13 +67,13 @@ class Looked:
         found: the state space.
         control: the cell as it runs; None: the net is no cell.
         more: answers to properties about bindings.
-        medium: the checks of the shared files.
+        channel_model: the checks of the shared files.
     """
 
     found: Exploration
     control: Control | None
     more: Sequence[Answer]
-    medium: medium.Answers
+    channel_model: channel_model.Answers
 
 
 @frozen
@@ -86,7 +85,7 @@ class Said:
         found: the state space.
         answers: to properties.
         control: the checks of a supervisor.
-        medium: those of the shared files.
+        channel_model: those of the shared files.
         errors: how many errors of the net are said besides.
         deadline: when it is over no run is played any more.
         config: of the cell; None: the net is none.
@@ -97,7 +96,7 @@ class Said:
     found: Exploration
     answers: Sequence[Answer]
     control: Control | None
-    medium: medium.Answers
+    channel_model: channel_model.Answers
     errors: int = 0
     deadline: Deadline = NEVER
     config: CellConfig | None = None
@@ -107,7 +106,7 @@ class Said:
         """How each answer came out, "good", "bad" or "open": checks of the supervisor, of the files, properties."""
         return [
             *(check.kind for check in (self.control.checks if self.control else ())),
-            *(_KINDS.get(a.answer, "open") for a in self.medium),
+            *(_KINDS.get(a.answer, "open") for a in self.channel_model),
             *map(kind, self.answers),
         ]
 
@@ -129,8 +128,8 @@ class Said:
         if self.control is not None:
             row["controller"] = [c.row() for c in self.control.checks]
             row["cell"] = self.control.row()
-        if self.medium:
-            row["medium"] = [a.row() for a in self.medium]
+        if self.channel_model:
+            row["medium"] = [a.row() for a in self.channel_model]
         return row
 
 
@@ -189,7 +188,7 @@ def look(
         sizes = Sizes.start(opened.flat, opened.storage)
         options = replace(options, sizes=sizes)
         own_options = replace(own_options, sizes=sizes) if own_options is not None else None
-    is_cell = opened.config is not None and bool(checks.controller or checks.medium or asked)
+    is_cell = opened.config is not None and bool(checks.controller or checks.channel_model or asked)
     part = replace(limits, deadline=limits.deadline.share(NET_PART)) if is_cell else limits
     of_net = own_options or options
     if is_cell and of_net.covering and of_net.sizes is not None:
@@ -201,16 +200,16 @@ def look(
     if checks.controller or asked:
         if opened.config is not None:
             options.stage("exploring the cell as its programs run ...")
-        has_more = checks.medium and is_cell
+        has_more = checks.channel_model and is_cell
         part = replace(limits, deadline=limits.deadline.share(CELL_PART)) if has_more else limits
         control = controller.look(opened, found, part, options, folder, d, asked.plain)
     more = properties.of_bindings(asked, opened, found, limits, options, d, control)
-    seen: medium.Answers = ()
-    if checks.medium:
+    seen: channel_model.Answers = ()
+    if checks.channel_model:
         if opened.config is not None:
             options.stage("exploring the cell together with its shared files ...")
         looked = control if checks.controller else None
-        seen = medium.look(opened, found, limits, options, d, looked)
+        seen = channel_model.look(opened, found, limits, options, d, looked)
     return Looked(found, control, more, seen)
 
 
@@ -247,7 +246,7 @@ def conclude(
         found,
         answers,
         control if checks.controller else None,  # else it was looked at for properties only
-        looked.medium,
+        looked.channel_model,
         sum(e.code != REPORT_UNWRITABLE for e in d.errors),
         limits.deadline,
         opened.config,

@@ -113,8 +113,8 @@ PN_UNTIMED_ARRAY(BOX_array_64, BOX_t, is_before_BOX)
 PN_UNTIMED_ARRAY(INT_array_64, int64_t, PN_LESS)
 
 /* place Top.Buffer, colour set BOX: page `Top`, place `Buffer` (ID16) */
-static const pn_bag_t s_at_Buffer = { .origin = "page `Top`, place `Buffer` (ID16)", .type = &s_BOX,
-    .capacity = 64U, PN_BAG_TOKENS(net_marking_t, Buffer) };
+static const pn_multiset_t s_at_Buffer = { .origin = "page `Top`, place `Buffer` (ID16)",
+    .type = &s_BOX, .capacity = 64U, PN_MULTISET_TOKENS(net_marking_t, Buffer) };
 
 /* initial marking:
  *     1`{part = screw, weight = 3.0} ++ 2`{part = nut, weight = 0.1}
@@ -131,8 +131,8 @@ static bool Buffer_init(pn_ctx_t *cx, void *marking)
 }
 
 /* place Top.Count, colour set INT: page `Top`, place `Count` (ID19) */
-static const pn_bag_t s_at_Count = { .origin = "page `Top`, place `Count` (ID19)", .type = &s_INT,
-    .capacity = 64U, PN_BAG_TOKENS(net_marking_t, Count) };
+static const pn_multiset_t s_at_Count = { .origin = "page `Top`, place `Count` (ID19)",
+    .type = &s_INT, .capacity = 64U, PN_MULTISET_TOKENS(net_marking_t, Count) };
 
 /* initial marking:
  *     0
@@ -147,8 +147,8 @@ static bool Count_init(pn_ctx_t *cx, void *marking)
 }
 
 /* place Top.Out, colour set BOX: page `Top`, place `Out` (ID22) */
-static const pn_bag_t s_at_Out = { .origin = "page `Top`, place `Out` (ID22)", .type = &s_BOX,
-    .capacity = 64U, PN_BAG_TOKENS(net_marking_t, Out) };
+static const pn_multiset_t s_at_Out = { .origin = "page `Top`, place `Out` (ID22)", .type = &s_BOX,
+    .capacity = 64U, PN_MULTISET_TOKENS(net_marking_t, Out) };
 
 /* --- transitions ------------------------------------------------------------------------------- */
 
@@ -228,13 +228,14 @@ PN_NET_SEARCH static bool Pick_fire(pn_ctx_t *cx, void *marking, uint32_t self, 
 /* --- the net as hosts see it ------------------------------------------------------------------- */
 
 static const pn_place_t s_places[] = {
-    { .name = "Top.Buffer", .colset = "BOX", .owner = 0, .bag = &s_at_Buffer,
+    { .name = "Top.Buffer", .colset = "BOX", .owner = 0, .multiset = &s_at_Buffer,
         .initial = Buffer_init },
-    { .name = "Top.Count", .colset = "INT", .owner = 0, .bag = &s_at_Count, .initial = Count_init },
-    { .name = "Top.Out", .colset = "BOX", .owner = 0, .bag = &s_at_Out },
+    { .name = "Top.Count", .colset = "INT", .owner = 0, .multiset = &s_at_Count,
+        .initial = Count_init },
+    { .name = "Top.Out", .colset = "BOX", .owner = 0, .multiset = &s_at_Out },
 };
 
-static const uint32_t s_bag_places[] = { 0U, 1U, 2U };
+static const uint32_t s_multiset_places[] = { 0U, 1U, 2U };
 
 /* For each transition: those that may be enabled in another way when it has occurred, the places that it may change, and the
  * places that decide about it. */
@@ -281,6 +282,6 @@ const pn_net_t pn_net = {
     .order = s_order,
     .now_at = offsetof(net_marking_t, now),
     .packed_size = 0U,
-    .bag_count = sizeof s_bag_places / sizeof s_bag_places[0],
-    .bags = s_bag_places,
+    .multiset_count = sizeof s_multiset_places / sizeof s_multiset_places[0],
+    .multisets = s_multiset_places,
 };

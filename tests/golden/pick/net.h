@@ -5,7 +5,7 @@
 #ifndef NET_H
 #define NET_H
 
-#include "pn/pn_bag.h"
+#include "pn/pn_multiset.h"
 #include "pn/pn_net.h"
 
 /* --- colour sets and other types -------------------------------------------------------------- */

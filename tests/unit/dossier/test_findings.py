@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from pn2code.dossier.findings import NO, OPEN, YES, read, worst
+from pn2code.dossier.findings import NO, NOTED, OPEN, YES, read, worst
 from pn2code.dossier.steps import Done, Step
 
 PROPERTY = {"name": "p", "says": "", "holds": "deadlock free", "expect": True, "why": None}
@@ -56,6 +56,29 @@ def test_a_comparison_that_was_not_made_to_the_end_is_no_yes(tmp_path: Path) -> 
     assert [f.answer for f in c.findings] == [YES, YES, OPEN] and c.answer == OPEN
     said["files"] = {"files": 3, "foreign": ["evil.c"]}
     assert chapter(tmp_path, "conform", said).findings[0].answer == NO
+
+
+def test_a_run_with_figures_and_warnings(tmp_path: Path) -> None:
+    (tmp_path / "x").mkdir()
+    said = {
+        "verdict": "finished",
+        "reason": "",
+        "cycle_seconds": 7.0,
+        "clearances": {"robots": {"m": 0.0123, "t": 1.5}},
+        "conditioning": {"r": {"worst": 102.1, "t": 2.0}},
+        "warnings": [{"t": 2.0, "robot": "r", "text": "comes close to a singularity"}],
+    }
+    (tmp_path / "x/summary.json").write_text(json.dumps(said))
+    c = chapter(tmp_path, "run", None)
+    assert c.answer == YES
+    assert [(f.answer, f.says) for f in c.findings] == [
+        (YES, "finished"),
+        (NOTED, "12.3 mm at 1.50 s"),
+        (NOTED, "102.1 at 2.00 s"),
+        (NOTED, "r comes close to a singularity"),
+    ]
+    (tmp_path / "x/summary.json").write_text(json.dumps({**said, "verdict": "stopped"}))
+    assert chapter(tmp_path, "run", None, 1).answer == NO
 
 
 def test_worst() -> None:

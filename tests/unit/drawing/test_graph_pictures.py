@@ -86,7 +86,7 @@ def test_what_the_graph_says(graph: StateGraph) -> None:
     assert graph.components == 2 and graph.cyclic == {0}
     assert graph.dead == {3} and graph.home == {3}
     assert len(graph.arcs) == 4  # equal ones count once
-    assert [graph.arcs[i].label for i in graph.way] == ['Move s="<b>&"', 'Burn s="<b>&"']
+    assert [graph.arcs[i].label for i in graph.path] == ['Move s="<b>&"', 'Burn s="<b>&"']
 
 
 def test_the_picture_has_every_node_and_line_once(graph: StateGraph) -> None:
@@ -105,11 +105,8 @@ def test_the_picture_has_every_node_and_line_once(graph: StateGraph) -> None:
 
 def test_the_page_needs_nothing_else_and_links_both_ways(net: FlatNet, graph: StateGraph) -> None:
     html = page(net, graph)
-    assert (
-        "<script" not in html
-        and "<b>&" not in html
-        and "http" not in html.replace("http://www.w3.org/2000/svg", "")
-    )
+    assert html.count("<script") == 1  # ours
+    assert "<b>&" not in html and "http" not in html.replace("http://www.w3.org/2000/svg", "")
     targets = set(re.findall(r'id="([^"]+)"', html))
     links = set(re.findall(r'href="#([^"]+)"', html))
     assert links <= targets
@@ -162,8 +159,8 @@ def explored(**other: Any) -> Exploration:
     ("name", "found", "said"),
     [
         ("g.svg", {"nodes": 301}, "301 nodes and 4 arcs, at most 300 nodes"),
-        ("g.html", {"nodes": 2001}, "at most 2,000 nodes"),
-        ("g.html", {"arcs": 30000}, "3 nodes and 30,000 arcs"),
+        ("g.html", {"nodes": 5001}, "at most 5,000 nodes"),
+        ("g.html", {"arcs": 70000}, "3 nodes and 70,000 arcs"),
         ("g.html", {"complete": False, "why": "states"}, "the exploration is not complete"),
         ("g.html", {}, "`--no-graph`"),
     ],
@@ -174,7 +171,7 @@ def test_what_is_not_drawn(
     d = Diagnostics()
     with Pictures(tmp_path / name, None) as pictures:
         options = pictures.options(ExploreOptions())
-        assert options.graph is not None and options.graph_limit == (300 if "svg" in name else 2000)
+        assert options.graph is not None and options.graph_limit == (300 if "svg" in name else 5000)
         pictures.write(net, explored(**found), d)
     (warning,) = d.sorted()
     assert warning.code == "graph-not-drawn" and said in warning.message

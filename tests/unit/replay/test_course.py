@@ -53,13 +53,13 @@ def played(text: str, folder: Path, steps: int) -> tuple[FlatNet, dict[str, Any]
     d = Diagnostics()
     net = load(netbuilder.write(text, folder / "net.cpn"), d)
     assert net is not None, [e.message for e in d.errors]
-    game, course, chance = Game(net), Course(net), random.Random(1)
+    game, course, draws = Game(net), Course(net), random.Random(1)
     course.begin(game)
     seen = [_printed(net, game)]
     for _ in range(steps):
         if not game.advance():
             break
-        occurred = game.fire(chance.choice(game.enabled()))
+        occurred = game.fire(draws.choice(game.enabled()))
         course.step(game, occurred, float(game.steps))
         seen.append(_printed(net, game))
     return net, course.described(), seen

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from helpers.explorations import LARGE, Remembered
+from helpers.explorations import LARGE, Cached
 from helpers.netbuilder import flat
 from pn2code.diagnostics import Diagnostics
 from pn2code.verify.exploring.explore import ExploreOptions
@@ -58,7 +58,7 @@ def ask(tmp_path: Path) -> Ask:
             return found
 
         given = [*options, "--queries", str(table), "--progress"]
-        said = Remembered(run, tmp_path)(
+        said = Cached(run, tmp_path)(
             NET, Path(program), given, ExploreOptions(), limits or Limits(), Diagnostics(), search
         )
         assert said == found

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from helpers.generated import Generate, Remembered
+from helpers.generated import Cached, Generate
 from pn2code.cell.config import CellConfig
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.net.flat import FlatNet
@@ -35,41 +35,41 @@ def counted(calls: list[dict[str, Any]]) -> Generate:
 
 
 @pytest.fixture
-def remembered(counted: Generate, tmp_path: Path) -> Remembered:
-    return Remembered(counted, tmp_path)
+def cached(counted: Generate, tmp_path: Path) -> Cached:
+    return Cached(counted, tmp_path)
 
 
 def test_the_same_cell_is_generated_once(
-    cell: Path, remembered: Remembered, calls: list[dict[str, Any]]
+    cell: Path, cached: Cached, calls: list[dict[str, Any]]
 ) -> None:
     first, second = Diagnostics(), Diagnostics()
-    assert remembered(cell, first, layout=None) is remembered(cell, second, layout=None)
+    assert cached(cell, first, layout=None) is cached(cell, second, layout=None)
     assert second.items == first.items
     assert len(calls) == 1
 
 
 def test_other_files_and_options_are_generated_anew(
-    cell: Path, remembered: Remembered, calls: list[dict[str, Any]]
+    cell: Path, cached: Cached, calls: list[dict[str, Any]]
 ) -> None:
-    remembered(cell, Diagnostics(), layout=None)
-    remembered(cell, Diagnostics(), layout="other")
+    cached(cell, Diagnostics(), layout=None)
+    cached(cell, Diagnostics(), layout="other")
     toml = cell / "cell.toml"
     toml.write_text(toml.read_text() + "\n# changed\n")
-    remembered(cell, Diagnostics(), layout=None)
+    cached(cell, Diagnostics(), layout=None)
     assert len(calls) == 3
 
 
 def test_what_fails_or_comes_with_errors_is_not_remembered(
-    cell: Path, remembered: Remembered, calls: list[dict[str, Any]]
+    cell: Path, cached: Cached, calls: list[dict[str, Any]]
 ) -> None:
     for _ in range(2):
         d = Diagnostics()
         d.error("cell-value", "something else", Origin("elsewhere"))
-        remembered(cell, d, layout=None)
+        cached(cell, d, layout=None)
     (cell / "cell.toml").write_text("[nothing]\n")
     for _ in range(2):
         d = Diagnostics()
-        assert remembered(cell, d, layout=None) is None
+        assert cached(cell, d, layout=None) is None
         assert d.has_errors
     assert len(calls) == 4
 
@@ -78,14 +78,14 @@ def test_other_workers_get_the_same(
     cell: Path, counted: Generate, calls: list[dict[str, Any]], tmp_path: Path
 ) -> None:
     first, second = Diagnostics(), Diagnostics()
-    one = Remembered(counted, tmp_path)(cell, first)
-    assert Remembered(counted, tmp_path)(cell, second) == one
+    one = Cached(counted, tmp_path)(cell, first)
+    assert Cached(counted, tmp_path)(cell, second) == one
     assert second.items == first.items
     assert len(calls) == 1
 
 
 def test_whoever_examines_is_asked_each_time(
-    cell: Path, remembered: Remembered, calls: list[dict[str, Any]]
+    cell: Path, cached: Cached, calls: list[dict[str, Any]]
 ) -> None:
     asked: list[str] = []
 
@@ -96,11 +96,11 @@ def test_whoever_examines_is_asked_each_time(
         d.error("cell-value", "no", Origin("input"))
 
     d = Diagnostics()
-    assert remembered(cell, d, examine=refuses) is None
+    assert cached(cell, d, examine=refuses) is None
     assert [i.message for i in d.items] == ["no"]
     for _ in range(2):
-        assert remembered(cell, Diagnostics(), examine=content) is not None
+        assert cached(cell, Diagnostics(), examine=content) is not None
     assert (len(asked), len(calls)) == (2, 2)
     d = Diagnostics()
-    assert remembered(cell, d, examine=refuses) is None
+    assert cached(cell, d, examine=refuses) is None
     assert [i.message for i in d.items] == ["no"]

@@ -13,8 +13,9 @@ from pn2code.net.engine_names import engine_name
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.colour_text import read_value
 from pn2code.semantics.values.data import Data
+from pn2code.trace.followed import Followed
 from pn2code.trace.recording import NotARecording, recording
-from pn2code.trace.replay_recording import Followed, follow
+from pn2code.trace.replay_recording import follow
 
 Steps = list[tuple[str, str, dict[str, str]]]
 

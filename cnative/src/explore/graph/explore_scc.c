@@ -79,7 +79,7 @@ static inline bool is_followed(const walk_t *w, uint64_t arc)
 /* What a walk does with each component: `member` holds its nodes. False: enough has been seen. */
 typedef bool (*component_sink_t)(void *user, const uint32_t *member, uint64_t count, bool is_cyclic);
 
-static inline uint32_t *way(const walk_t *w, uint64_t depth)
+static inline uint32_t *path_at(const walk_t *w, uint64_t depth)
 {
     return &w->stack[(uint64_t)w->graph->nodes - 1U - depth];
 }
@@ -94,7 +94,7 @@ static void enter(walk_t *w, uint32_t node)
     }
     w->rank[node] = w->next++;
     EX_SET_BIT(w->is_root, node);
-    *way(w, w->depth) = node;
+    *path_at(w, w->depth) = node;
     w->at[w->depth] = first;
     w->depth += 1U;
     for (uint64_t arc = first; (arc < end) && (arc < (first + MOST_FETCHED)); arc++) {
@@ -111,14 +111,14 @@ static inline void no_root(walk_t *w, uint32_t node)
 static bool leave(walk_t *w, component_sink_t sink, void *user)
 {
     w->depth -= 1U;
-    const uint32_t node = *way(w, w->depth);
+    const uint32_t node = *path_at(w, w->depth);
     if ((w->through != NULL) && (EX_BIT(w->through, node) != 0U)) {
         w->passes -= 1U;
     }
     if (EX_BIT(w->is_root, node) == 0U) {
         w->stack[w->waiting++] = node;
         if (w->depth > 0U) {
-            const uint32_t before = *way(w, w->depth - 1U);
+            const uint32_t before = *path_at(w, w->depth - 1U);
             if (w->rank[node] < w->rank[before]) {
                 w->rank[before] = w->rank[node];
                 no_root(w, before);
@@ -151,7 +151,7 @@ static bool leave(walk_t *w, component_sink_t sink, void *user)
 static void follow(walk_t *w)
 {
     const ex_graph_t *const g = w->graph;
-    const uint32_t node = *way(w, w->depth - 1U);
+    const uint32_t node = *path_at(w, w->depth - 1U);
     const uint64_t end = g->row[node + 1U];
     uint64_t arc = w->at[w->depth - 1U];
     while (arc < end) {
@@ -188,7 +188,7 @@ static bool walk_all(walk_t *w, component_sink_t sink, void *user)
             if (((w->steps & 0xfffU) == 0U) && ex_is_stopping(w->run)) {
                 return false;
             }
-            const uint32_t node = *way(w, w->depth - 1U);
+            const uint32_t node = *path_at(w, w->depth - 1U);
             if (w->is_found) {
                 return false;
             }

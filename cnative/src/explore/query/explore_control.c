@@ -227,7 +227,7 @@ static void search_add(search_t *s, uint32_t node, uint32_t from, uint64_t by)
 }
 
 /* Adds what leads from where the search began to `node`, which it has reached. */
-static void search_way(const control_t *c, const search_t *s, uint32_t node, ex_path_t *way)
+static void search_path(const control_t *c, const search_t *s, uint32_t node, ex_path_t *path)
 {
     const uint32_t begin = s->queue[0];
     uint64_t count = 0U;
@@ -236,7 +236,7 @@ static void search_way(const control_t *c, const search_t *s, uint32_t node, ex_
     }
     uint32_t *const list = malloc((count + 1U) * sizeof *list);
     if (list == NULL) {
-        way->is_failed = true;
+        path->is_failed = true;
         return;
     }
     uint64_t i = count;
@@ -245,7 +245,7 @@ static void search_way(const control_t *c, const search_t *s, uint32_t node, ex_
         list[i] = at;
     }
     for (i = 0U; i < count; i++) {
-        ex_path_step(way, c->graph->label[s->by[list[i]]], list[i]);
+        ex_path_step(path, c->graph->label[s->by[list[i]]], list[i]);
     }
     free(list);
 }
@@ -259,11 +259,11 @@ static void say_number(ex_question_t *question, uint64_t number)
 }
 
 /* A way to a node, from the initial one. */
-static void begin_way(const control_t *c, ex_question_t *question, uint32_t node)
+static void begin_path(const control_t *c, ex_question_t *question, uint32_t node)
 {
     question->node = node;
-    if (ex_path_begin(&question->way, 0U)) {
-        ex_path_from_start(c->graph, node, &question->way);
+    if (ex_path_begin(&question->path, 0U)) {
+        ex_path_from_start(c->graph, node, &question->path);
     }
 }
 
@@ -299,14 +299,14 @@ static uint32_t on_cycle(const control_t *c, uint32_t begin)
 }
 
 /* Adds a shortest run of steps from the end of the way to `goal`, of one step at least. */
-static void steps_to(const control_t *c, uint32_t goal, ex_path_t *way)
+static void steps_to(const control_t *c, uint32_t goal, ex_path_t *path)
 {
     search_t s;
-    const uint32_t begin = ex_path_end(way);
+    const uint32_t begin = ex_path_end(path);
     uint64_t closing = EX_NO_SLOT; /* the step to the goal, and where it comes from */
     uint32_t last = begin;
     if (!search_open(c, &s)) {
-        way->is_failed = true;
+        path->is_failed = true;
         return;
     }
     search_add(&s, begin, begin, 0U);
@@ -322,10 +322,10 @@ static void steps_to(const control_t *c, uint32_t goal, ex_path_t *way)
         }
     }
     if (closing != EX_NO_SLOT) {
-        search_way(c, &s, last, way);
-        ex_path_step(way, c->graph->label[closing], goal);
+        search_path(c, &s, last, path);
+        ex_path_step(path, c->graph->label[closing], goal);
     } else {
-        way->is_failed = true;
+        path->is_failed = true;
     }
     search_close(c, &s);
 }
@@ -337,18 +337,18 @@ static void answer_finite(const control_t *c, ex_question_t *question)
     if (node == EX_NO_NODE) {
         return;
     }
-    begin_way(c, question, node);
-    const uint32_t again = question->way.is_failed ? EX_NO_NODE : on_cycle(c, node);
+    begin_path(c, question, node);
+    const uint32_t again = question->path.is_failed ? EX_NO_NODE : on_cycle(c, node);
     if (again == EX_NO_NODE) {
-        question->way.is_failed = true;
+        question->path.is_failed = true;
         return;
     }
     if (again != node) {
-        steps_to(c, again, &question->way);
+        steps_to(c, again, &question->path);
     }
-    if (!question->way.is_failed) {
-        question->way.loop = (int64_t)question->way.steps;
-        steps_to(c, again, &question->way);
+    if (!question->path.is_failed) {
+        question->path.loop = (int64_t)question->path.steps;
+        steps_to(c, again, &question->path);
     }
 }
 
@@ -361,14 +361,14 @@ static void answer_bounded(const control_t *c, ex_question_t *question)
     const uint64_t most = c->length[node];
     question->answer = ((double)most <= question->most) ? EX_YES : EX_NO;
     say_number(question, most);
-    begin_way(c, question, node);
-    while ((c->length[node] > 0U) && !question->way.is_failed) {
+    begin_path(c, question, node);
+    while ((c->length[node] > 0U) && !question->path.is_failed) {
         uint64_t arc = first_step(c, node);
         while ((c->length[c->graph->target[arc]] + weight(c, arc)) != c->length[node]) {
             arc = next_step(c, node, arc + 1U);
         }
         node = c->graph->target[arc];
-        ex_path_step(&question->way, c->graph->label[arc], node);
+        ex_path_step(&question->path, c->graph->label[arc], node);
     }
 }
 
@@ -395,16 +395,16 @@ static void answer_confluent(const control_t *c, ex_question_t *question)
     if (branch == EX_NO_NODE) {
         return;
     }
-    begin_way(c, question, branch);
-    say_number(question, question->way.steps);
+    begin_path(c, question, branch);
+    say_number(question, question->path.steps);
     uint64_t arc = first_step(c, branch);
     const uint32_t usual = c->rest[c->graph->target[arc]];
     while ((question->a > 0U) && (c->rest[c->graph->target[arc]] == usual)) {
         arc = next_step(c, branch, arc + 1U);
     }
-    while ((arc != EX_NO_SLOT) && !question->way.is_failed) {
+    while ((arc != EX_NO_SLOT) && !question->path.is_failed) {
         const uint32_t node = c->graph->target[arc];
-        ex_path_step(&question->way, c->graph->label[arc], node);
+        ex_path_step(&question->path, c->graph->label[arc], node);
         arc = first_step(c, node);
     }
 }
@@ -554,8 +554,8 @@ static void judge(const control_t *c, ex_question_t *question, const search_t *s
     if (bad != EX_NO_NODE) {
         question->node = bad;
         question->why = is_dead ? "deadlock" : "endless";
-        if (ex_path_begin(&question->way, 0U)) {
-            search_way(c, s, bad, &question->way);
+        if (ex_path_begin(&question->path, 0U)) {
+            search_path(c, s, bad, &question->path);
         }
     }
 }

@@ -236,36 +236,36 @@ static uint64_t *without(const ex_queries_t *queries, uint32_t item)
 }
 
 /* A way to the nearest node that is (not) in an item. */
-static bool show_way(ex_queries_t *queries, const uint64_t *through, claim_t *claim, uint32_t item, bool holds,
-                     ex_path_t *way)
+static bool show_path(ex_queries_t *queries, const uint64_t *through, claim_t *claim, uint32_t item, bool holds,
+                      ex_path_t *path)
 {
     uint64_t *const other = holds ? NULL : without(queries, item);
     const uint64_t *const goal = holds ? queries->item[item].set : other;
-    const bool is_found = (goal != NULL) && ex_path_search(queries, through, goal, way);
+    const bool is_found = (goal != NULL) && ex_path_search(queries, through, goal, path);
     ex_free(&queries->run->memory, other, (other != NULL) ? (ex_set_words(queries->run->graph) * sizeof *other) : 0U);
     *claim = (claim_t){ .item = item, .holds = holds };
     return is_found;
 }
 
 /* One step to a node that is (not) in an item. */
-static bool show_step(ex_queries_t *queries, claim_t *claim, const ex_item_t *item, bool holds, ex_path_t *way)
+static bool show_step(ex_queries_t *queries, claim_t *claim, const ex_item_t *item, bool holds, ex_path_t *path)
 {
     const ex_graph_t *const graph = queries->run->graph;
-    const uint32_t node = ex_path_end(way);
+    const uint32_t node = ex_path_end(path);
     const uint32_t a = item->a;
     for (uint64_t arc = graph->row[node]; arc < graph->row[node + 1U]; arc++) {
         const bool is_of_it = (item->kind != EX_ITEM_EXA) || (graph->label[arc] == item->number);
         if (is_of_it && (ex_is_in(queries, a, graph->target[arc]) == holds)) {
-            ex_path_step(way, graph->label[arc], graph->target[arc]);
+            ex_path_step(path, graph->label[arc], graph->target[arc]);
             *claim = (claim_t){ .item = a, .holds = holds };
-            return !way->is_failed;
+            return !path->is_failed;
         }
     }
     return false;
 }
 
 /* A run that stays in the item (or out of it) for ever, or until it ends. */
-static bool show_for_ever(ex_queries_t *queries, claim_t *claim, uint32_t item, bool holds, ex_path_t *way)
+static bool show_for_ever(ex_queries_t *queries, claim_t *claim, uint32_t item, bool holds, ex_path_t *path)
 {
     bool is_accepting = true;
     uint32_t first[] = { 0U, 1U };
@@ -275,11 +275,11 @@ static bool show_for_ever(ex_queries_t *queries, claim_t *claim, uint32_t item, 
         .states = 1U, .is_accepting = &is_accepting, .edges = 1U, .edge = &edge, .first = first
     };
     claim->is_shown = true;
-    return ex_lasso(queries, &automaton, ex_path_end(way), way) == EX_YES;
+    return ex_lasso(queries, &automaton, ex_path_end(path), path) == EX_YES;
 }
 
 /* A[a U b] does not hold: b never comes, or something comes before it that is in neither. */
-static bool show_no_until(ex_queries_t *queries, claim_t *claim, const ex_item_t *item, ex_path_t *way)
+static bool show_no_until(ex_queries_t *queries, claim_t *claim, const ex_item_t *item, ex_path_t *path)
 {
     uint64_t *const before = without(queries, item->b);
     uint64_t *const neither = ex_set(queries);
@@ -288,20 +288,20 @@ static bool show_no_until(ex_queries_t *queries, claim_t *claim, const ex_item_t
         copy(queries, neither, queries->item[item->a].set);
         complement(queries, neither);
         combine(queries, neither, neither, before, true);
-        is_found = ex_path_search(queries, before, neither, way);
+        is_found = ex_path_search(queries, before, neither, path);
         claim->is_shown = true;
     }
     ex_free(&queries->run->memory, before, ex_set_words(queries->run->graph) * sizeof *before);
     ex_free(&queries->run->memory, neither, ex_set_words(queries->run->graph) * sizeof *neither);
-    return is_found || show_for_ever(queries, claim, item->b, false, way);
+    return is_found || show_for_ever(queries, claim, item->b, false, path);
 }
 
 /* One operator; false: no run shows it. */
-static bool show(ex_queries_t *queries, claim_t *claim, ex_path_t *way)
+static bool show(ex_queries_t *queries, claim_t *claim, ex_path_t *path)
 {
     const ex_item_t *const item = &queries->item[claim->item];
     const bool holds = claim->holds;
-    const uint32_t node = ex_path_end(way);
+    const uint32_t node = ex_path_end(path);
     switch (item->kind) {
     case EX_ITEM_NOT: *claim = (claim_t){ .item = item->a, .holds = !holds }; return true;
     case EX_ITEM_AND:
@@ -315,14 +315,14 @@ static bool show(ex_queries_t *queries, claim_t *claim, ex_path_t *way)
         }
         return true;
     case EX_ITEM_EX:
-    case EX_ITEM_EXA: return holds && show_step(queries, claim, item, true, way);
-    case EX_ITEM_AX: return !holds && show_step(queries, claim, item, false, way);
-    case EX_ITEM_EF: return holds && show_way(queries, NULL, claim, item->a, true, way);
-    case EX_ITEM_AG: return !holds && show_way(queries, NULL, claim, item->a, false, way);
-    case EX_ITEM_EU: return holds && show_way(queries, queries->item[item->a].set, claim, item->b, true, way);
-    case EX_ITEM_EG: return holds && show_for_ever(queries, claim, item->a, true, way);
-    case EX_ITEM_AF: return !holds && show_for_ever(queries, claim, item->a, false, way);
-    case EX_ITEM_AU: return !holds && show_no_until(queries, claim, item, way);
+    case EX_ITEM_EXA: return holds && show_step(queries, claim, item, true, path);
+    case EX_ITEM_AX: return !holds && show_step(queries, claim, item, false, path);
+    case EX_ITEM_EF: return holds && show_path(queries, NULL, claim, item->a, true, path);
+    case EX_ITEM_AG: return !holds && show_path(queries, NULL, claim, item->a, false, path);
+    case EX_ITEM_EU: return holds && show_path(queries, queries->item[item->a].set, claim, item->b, true, path);
+    case EX_ITEM_EG: return holds && show_for_ever(queries, claim, item->a, true, path);
+    case EX_ITEM_AF: return !holds && show_for_ever(queries, claim, item->a, false, path);
+    case EX_ITEM_AU: return !holds && show_no_until(queries, claim, item, path);
     case EX_ITEM_TRUE:
     case EX_ITEM_DEAD:
     case EX_ITEM_INITIAL:
@@ -333,17 +333,17 @@ static bool show(ex_queries_t *queries, claim_t *claim, ex_path_t *way)
     }
 }
 
-bool ex_ctl_explain(ex_queries_t *queries, uint32_t item, bool holds, ex_path_t *way)
+bool ex_ctl_explain(ex_queries_t *queries, uint32_t item, bool holds, ex_path_t *path)
 {
     claim_t claim = { .item = item, .holds = holds };
     bool is_shown = false;
     /* Operands have smaller numbers, so that this ends. */
-    while (!claim.is_shown && !way->is_failed) {
+    while (!claim.is_shown && !path->is_failed) {
         const ex_item_kind_t kind = queries->item[claim.item].kind;
-        if (!show(queries, &claim, way)) {
+        if (!show(queries, &claim, path)) {
             break;
         }
         is_shown = is_shown || ((kind != EX_ITEM_NOT) && (kind != EX_ITEM_AND) && (kind != EX_ITEM_OR));
     }
-    return is_shown && !way->is_failed;
+    return is_shown && !path->is_failed;
 }

@@ -224,17 +224,17 @@ static bool add_cycle(hunt_t *h, steps_t *s)
 }
 
 /* The steps as a way through the graph; where they stay at a dead node it ends. */
-static void write_down(const ex_product_t *p, const steps_t *s, uint64_t cycle, ex_path_t *way)
+static void write_down(const ex_product_t *p, const steps_t *s, uint64_t cycle, ex_path_t *path)
 {
     for (uint64_t i = 1U; (i <= s->count) && (s->label[i] != EX_NO_TRANSITION); i++) {
         if (i == (cycle + 1U)) {
-            way->loop = (int64_t)way->steps;
+            path->loop = (int64_t)path->steps;
         }
-        ex_path_step(way, (uint16_t)s->label[i], s->state[i] / p->states);
+        ex_path_step(path, (uint16_t)s->label[i], s->state[i] / p->states);
     }
 }
 
-static bool find_lasso(hunt_t *h, ex_path_t *way)
+static bool find_lasso(hunt_t *h, ex_path_t *path)
 {
     const ex_product_t *const p = h->p;
     const uint64_t most_work = 4U * (p->size + p->graph->arcs);
@@ -255,7 +255,7 @@ static bool find_lasso(hunt_t *h, ex_path_t *way)
         }
     }
     if (best < MOST_TRIALS) {
-        write_down(p, &trial[best], cycle[best], way);
+        write_down(p, &trial[best], cycle[best], path);
     }
     for (uint32_t k = 0U; k < MOST_TRIALS; k++) {
         forget(&trial[k]);
@@ -263,7 +263,7 @@ static bool find_lasso(hunt_t *h, ex_path_t *way)
     return best < MOST_TRIALS;
 }
 
-bool ex_show_lasso(ex_product_t *p, ex_path_t *way)
+bool ex_show_lasso(ex_product_t *p, ex_path_t *path)
 {
     ex_run_t *const run = p->queries->run;
     hunt_t h = { .p = p };
@@ -272,10 +272,10 @@ bool ex_show_lasso(ex_product_t *p, ex_path_t *way)
     h.queue = ex_table(&run->memory, p->size, sizeof *h.queue);
     h.seen = ex_table(&run->memory, p->size, sizeof *h.seen);
     const bool has_memory = (h.parent != NULL) && (h.label != NULL) && (h.queue != NULL) && (h.seen != NULL);
-    const bool is_found = has_memory && find_lasso(&h, way);
+    const bool is_found = has_memory && find_lasso(&h, path);
     ex_free_table(&run->memory, h.parent, p->size, sizeof *h.parent);
     ex_free_table(&run->memory, h.label, p->size, sizeof *h.label);
     ex_free_table(&run->memory, h.queue, p->size, sizeof *h.queue);
     ex_free_table(&run->memory, h.seen, p->size, sizeof *h.seen);
-    return is_found && !way->is_failed;
+    return is_found && !path->is_failed;
 }

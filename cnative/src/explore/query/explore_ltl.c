@@ -327,7 +327,7 @@ static ex_answer_t find_components(ex_product_t *p)
 
 /* --- the whole ---------------------------------------------------------------------------------------------------- */
 
-ex_answer_t ex_lasso(ex_queries_t *queries, const ex_automaton_t *automaton, uint32_t start, ex_path_t *way)
+ex_answer_t ex_lasso(ex_queries_t *queries, const ex_automaton_t *automaton, uint32_t start, ex_path_t *path)
 {
     ex_run_t *const run = queries->run;
     ex_product_t p = { .queries = queries, .graph = run->graph, .automaton = automaton, .states = automaton->states };
@@ -352,7 +352,7 @@ ex_answer_t ex_lasso(ex_queries_t *queries, const ex_automaton_t *automaton, uin
     ex_free_table(&run->memory, p.stack, p.size, sizeof *p.stack);
     ex_free_table(&run->memory, p.is_root, p.size, sizeof *p.is_root);
     if (answer == EX_YES) {
-        way->is_failed = !ex_show_lasso(&p, way) || way->is_failed;
+        path->is_failed = !ex_show_lasso(&p, path) || path->is_failed;
     }
     ex_free(&run->memory, p.active, words * sizeof *p.active);
     ex_free_table(&run->memory, p.rank, p.size, sizeof *p.rank);

@@ -104,6 +104,6 @@ static inline void ex_take_out(ex_product_t *p, uint64_t state)
 
 /* When the active states are those of the good components: adds a run from the start to the way, as short as is found
  * without long search. */
-bool ex_show_lasso(ex_product_t *p, ex_path_t *way);
+bool ex_show_lasso(ex_product_t *p, ex_path_t *path);
 
 #endif /* EXPLORE_PRODUCT_H */

@@ -399,18 +399,18 @@ static void answer_initially(ex_queries_t *queries, ex_question_t *question)
 {
     const bool holds = ex_is_in(queries, question->a, 0U);
     question->answer = holds ? EX_YES : EX_NO;
-    if (ex_path_begin(&question->way, 0U)) {
-        question->way.is_failed = !ex_ctl_explain(queries, question->a, holds, &question->way);
+    if (ex_path_begin(&question->path, 0U)) {
+        question->path.is_failed = !ex_ctl_explain(queries, question->a, holds, &question->path);
     }
 }
 
 static void answer_lasso(ex_queries_t *queries, ex_question_t *question)
 {
-    if (ex_path_begin(&question->way, 0U)) {
-        question->answer = ex_lasso(queries, question->automaton, 0U, &question->way);
+    if (ex_path_begin(&question->path, 0U)) {
+        question->answer = ex_lasso(queries, question->automaton, 0U, &question->path);
     }
     if (question->answer != EX_YES) {
-        question->way.is_failed = true;
+        question->path.is_failed = true;
     }
     if (question->answer == EX_UNKNOWN) {
         ex_doubt(queries->run, question);
@@ -504,21 +504,21 @@ static void answer(ex_queries_t *queries, ex_question_t *question)
 
 static void write_trace(ex_run_t *run, ex_question_t *question, uint32_t number)
 {
-    char path[EX_PATH_SIZE];
-    ex_path_t *const way = &question->way;
+    char file[EX_PATH_SIZE];
+    ex_path_t *const path = &question->path;
     const bool is_shown =
         (question->answer != EX_UNKNOWN) || ((question->kind == EX_ASK_ENDS) && (question->node != EX_NO_NODE));
-    if ((way->node != NULL) && !way->is_failed && (question->answer != EX_UNKNOWN)) {
-        question->node = ex_path_end(way);
+    if ((path->node != NULL) && !path->is_failed && (question->answer != EX_UNKNOWN)) {
+        question->node = ex_path_end(path);
     }
     if ((run->options.query_trace_to == NULL) || !is_shown) {
         return;
     }
-    (void)snprintf(path, sizeof path, "%s%" PRIu32 ".trace.jsonl", run->options.query_trace_to, number);
-    if (way->node == NULL) {
-        question->steps = (question->node != EX_NO_NODE) ? ex_write_trace(run, run->graph, question->node, path) : -1;
-    } else if (!way->is_failed) {
-        question->steps = ex_write_path(run, run->graph, way->node, way->label, way->steps, path, NULL);
+    (void)snprintf(file, sizeof file, "%s%" PRIu32 ".trace.jsonl", run->options.query_trace_to, number);
+    if (path->node == NULL) {
+        question->steps = (question->node != EX_NO_NODE) ? ex_write_trace(run, run->graph, question->node, file) : -1;
+    } else if (!path->is_failed) {
+        question->steps = ex_write_path(run, run->graph, path->node, path->label, path->steps, file, NULL);
     }
 }
 
@@ -539,7 +539,7 @@ static void answer_in_part(ex_queries_t *queries, ex_question_t *question)
     const ex_answer_t violated = (question->kind == EX_ASK_LASSO) ? EX_YES : EX_NO;
     answer(queries, question);
     if (question->answer != violated) {
-        question->way.is_failed = true;
+        question->path.is_failed = true;
         question->node = EX_NO_NODE;
         question->value_kind = EX_NO_VALUE;
         ex_doubt(queries->run, question);
@@ -594,7 +594,7 @@ void ex_queries_answer(ex_run_t *run)
     find_sets(queries);
     for (uint32_t i = 0U; i < queries->questions; i++) {
         answer(queries, &queries->question[i]);
-        ex_early_settle(run, &queries->question[i]);
+        ex_early_conclude(run, &queries->question[i]);
         write_trace(run, &queries->question[i], i);
     }
 }

@@ -138,7 +138,7 @@ typedef struct ex_question {
     ex_answer_t answer;
     const char *why; /* NULL: no reason is needed */
     uint32_t node;   /* EX_NO_NODE: none */
-    ex_path_t way;   /* node NULL: none */
+    ex_path_t path;  /* node NULL: none */
     int64_t steps;   /* of the trace; -1: there is none */
     ex_value_kind_t value_kind;
     double value;
@@ -188,7 +188,7 @@ bool ex_early_make(ex_worker_t *worker);
 void ex_early_answer(ex_run_t *run);
 /* After the graph has left a question open (there was no time, or no memory): what was seen of the states while they
  * were explored. */
-void ex_early_settle(const ex_run_t *run, ex_question_t *question);
+void ex_early_conclude(const ex_run_t *run, ex_question_t *question);
 
 /* --- explore_query.c --- */
 
@@ -215,12 +215,12 @@ void ex_queries_json(const ex_run_t *run, FILE *out);
 /* The set of an item whose operands' sets are there. False: no memory, or told to stop. */
 bool ex_ctl(ex_queries_t *queries, ex_item_t *item);
 /* As far as one way shows it, why `item` holds at a node (or does not): added to a way that ends in this node. */
-bool ex_ctl_explain(ex_queries_t *queries, uint32_t item, bool holds, ex_path_t *way);
+bool ex_ctl_explain(ex_queries_t *queries, uint32_t item, bool holds, ex_path_t *path);
 
 /* --- explore_ltl.c --- */
 
 /* Whether a run from `start` is accepted; if so, it is added to the way, which ends in `start`. */
-ex_answer_t ex_lasso(ex_queries_t *queries, const ex_automaton_t *automaton, uint32_t start, ex_path_t *way);
+ex_answer_t ex_lasso(ex_queries_t *queries, const ex_automaton_t *automaton, uint32_t start, ex_path_t *path);
 
 /* --- explore_response.c --- */
 
@@ -238,18 +238,18 @@ bool ex_running(ex_queries_t *queries, ex_question_t *question);
 
 /* --- explore_path.c --- */
 
-bool ex_path_begin(ex_path_t *way, uint32_t node);
-void ex_path_step(ex_path_t *way, uint16_t label, uint32_t node);
-static inline uint32_t ex_path_end(const ex_path_t *way)
+bool ex_path_begin(ex_path_t *path, uint32_t node);
+void ex_path_step(ex_path_t *path, uint16_t label, uint32_t node);
+static inline uint32_t ex_path_end(const ex_path_t *path)
 {
-    return way->node[way->steps];
+    return path->node[path->steps];
 }
 /* Adds a shortest way from the initial node. `way` ends there. */
-void ex_path_from_start(const ex_graph_t *graph, uint32_t node, ex_path_t *way);
+void ex_path_from_start(const ex_graph_t *graph, uint32_t node, ex_path_t *path);
 /* Adds a shortest way from its end to a node of `goal` (the end itself may be one) on which all nodes before that are
  * in `through` (NULL: any). False: there is none, or no memory. */
-bool ex_path_search(ex_queries_t *queries, const uint64_t *through, const uint64_t *goal, ex_path_t *way);
+bool ex_path_search(ex_queries_t *queries, const uint64_t *through, const uint64_t *goal, ex_path_t *path);
 /* Adds an arc from its end to `node`, of a transition (UINT32_MAX: any). */
-bool ex_path_arc(const ex_graph_t *graph, uint32_t label, uint32_t node, ex_path_t *way);
+bool ex_path_arc(const ex_graph_t *graph, uint32_t label, uint32_t node, ex_path_t *path);
 
 #endif /* EXPLORE_QUERY_H */

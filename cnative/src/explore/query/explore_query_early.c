@@ -255,7 +255,7 @@ static bool answer_by_states(const ex_run_t *run, ex_question_t *question)
     return true;
 }
 
-void ex_early_settle(const ex_run_t *run, ex_question_t *question)
+void ex_early_conclude(const ex_run_t *run, ex_question_t *question)
 {
     if ((question->answer == EX_UNKNOWN) && (question->node == EX_NO_NODE) && answer_by_states(run, question)) {
         question->why = (question->answer == EX_UNKNOWN) ? question->why : NULL;

@@ -55,8 +55,8 @@ static void print_answer(const ex_run_t *run, uint32_t number, FILE *out)
     } else {
         (void)fprintf(out, "null, \"steps\": null");
     }
-    if ((question->way.node != NULL) && !question->way.is_failed && (question->way.loop >= 0)) {
-        (void)fprintf(out, ", \"loop\": %" PRId64, question->way.loop);
+    if ((question->path.node != NULL) && !question->path.is_failed && (question->path.loop >= 0)) {
+        (void)fprintf(out, ", \"loop\": %" PRId64, question->path.loop);
     } else {
         (void)fprintf(out, ", \"loop\": null");
     }

@@ -261,46 +261,46 @@ static void show_endless(const wait_t *w, ex_question_t *question)
     const ex_automaton_t automaton = {
         .states = 2U, .is_accepting = is_accepting, .edges = 3U, .edge = edge, .first = row
     };
-    if (ex_path_begin(&question->way, 0U)) {
-        (void)ex_lasso(w->queries, &automaton, 0U, &question->way);
+    if (ex_path_begin(&question->path, 0U)) {
+        (void)ex_lasso(w->queries, &automaton, 0U, &question->path);
     }
     ex_free(&w->queries->run->memory, other, words * sizeof *other);
     ex_free(&w->queries->run->memory, begin, words * sizeof *begin);
 }
 
 /* Adds an arc to a node on which the wait goes on. */
-static bool add_arc(const wait_t *w, uint32_t node, ex_path_t *way)
+static bool add_arc(const wait_t *w, uint32_t node, ex_path_t *path)
 {
-    const uint32_t from = ex_path_end(way);
+    const uint32_t from = ex_path_end(path);
     for (uint64_t arc = w->graph->row[from]; arc < w->graph->row[from + 1U]; arc++) {
         if ((w->graph->target[arc] == node) && goes_on(w, arc)) {
-            ex_path_step(way, w->graph->label[arc], node);
-            return !way->is_failed;
+            ex_path_step(path, w->graph->label[arc], node);
+            return !path->is_failed;
         }
     }
     return false;
 }
 
 /* Adds the arc with which the wait begins. */
-static void add_maker(const wait_t *w, uint32_t node, ex_path_t *way)
+static void add_maker(const wait_t *w, uint32_t node, ex_path_t *path)
 {
-    const uint32_t from = ex_path_end(way);
+    const uint32_t from = ex_path_end(path);
     for (uint64_t arc = w->graph->row[from]; arc < w->graph->row[from + 1U]; arc++) {
         if ((w->graph->target[arc] == node) && is_event_arc(w, &w->question->first, arc)) {
-            ex_path_step(way, w->graph->label[arc], node);
+            ex_path_step(path, w->graph->label[arc], node);
             return;
         }
     }
 }
 
 /* The way ends when the wait, which begins with step `first`, is too long. */
-static void cut(const wait_t *w, uint64_t first, ex_path_t *way)
+static void cut(const wait_t *w, uint64_t first, ex_path_t *path)
 {
     double shifted = 0.0;
-    for (uint64_t i = first; i < way->steps; i++) {
-        shifted += shift_of(w, way->node[i], way->label[i + 1U]);
-        if ((now_of(w, way->node[i + 1U]) - now_of(w, way->node[first]) + shifted) > w->question->most) {
-            way->steps = i + 1U;
+    for (uint64_t i = first; i < path->steps; i++) {
+        shifted += shift_of(w, path->node[i], path->label[i + 1U]);
+        if ((now_of(w, path->node[i + 1U]) - now_of(w, path->node[first]) + shifted) > w->question->most) {
+            path->steps = i + 1U;
         }
     }
 }
@@ -308,7 +308,7 @@ static void cut(const wait_t *w, uint64_t first, ex_path_t *way)
 /* A run with the longest wait. */
 static void show_longest(const wait_t *w, ex_question_t *question)
 {
-    ex_path_t *const way = &question->way;
+    ex_path_t *const path = &question->path;
     uint64_t count = 0U;
     uint32_t node = w->last;
     /* The nodes of the wait, the last one first; the stack is free now. */
@@ -318,25 +318,25 @@ static void show_longest(const wait_t *w, ex_question_t *question)
         count += 1U;
         w->stack[count] = node;
     }
-    if (!ex_path_begin(way, 0U)) {
+    if (!ex_path_begin(path, 0U)) {
         return;
     }
     if (w->maker[node] == EX_NO_NODE) {
-        ex_path_from_start(w->graph, node, way);
+        ex_path_from_start(w->graph, node, path);
     } else {
-        ex_path_from_start(w->graph, w->maker[node], way);
-        add_maker(w, node, way);
+        ex_path_from_start(w->graph, w->maker[node], path);
+        add_maker(w, node, path);
     }
-    const uint64_t first = way->steps;
-    bool is_fine = !way->is_failed;
+    const uint64_t first = path->steps;
+    bool is_fine = !path->is_failed;
     for (; is_fine && (count > 0U); count--) {
-        is_fine = add_arc(w, w->stack[count - 1U], way);
+        is_fine = add_arc(w, w->stack[count - 1U], path);
     }
-    ex_path_step(way, w->graph->label[w->last_arc], w->graph->target[w->last_arc]);
-    if (is_fine && !way->is_failed) {
-        cut(w, first, way);
+    ex_path_step(path, w->graph->label[w->last_arc], w->graph->target[w->last_arc]);
+    if (is_fine && !path->is_failed) {
+        cut(w, first, path);
     }
-    way->is_failed = way->is_failed || !is_fine;
+    path->is_failed = path->is_failed || !is_fine;
 }
 
 /* --- the answer --------------------------------------------------------------------------------------------------- */

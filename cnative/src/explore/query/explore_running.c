@@ -38,7 +38,7 @@ typedef struct running {
     uint32_t *number; /* of the walk; 0: not seen */
     uint32_t *low;
     uint32_t *stack;
-    uint32_t *way;
+    uint32_t *path;
     uint64_t *at;
 } running_t;
 
@@ -73,7 +73,7 @@ static bool find_components(running_t *r)
         if ((EX_BIT(r->is_left, root) == 0U) || (r->number[root] != 0U)) {
             continue;
         }
-        r->way[0] = root;
+        r->path[0] = root;
         r->at[0] = g->row[root];
         r->number[root] = next;
         r->low[root] = next;
@@ -81,15 +81,15 @@ static bool find_components(running_t *r)
         r->stack[used++] = root;
         depth = 1U;
         while (depth > 0U) {
-            const uint32_t node = r->way[depth - 1U];
+            const uint32_t node = r->path[depth - 1U];
             const uint64_t arc = r->at[depth - 1U];
             if (arc == g->row[node + 1U]) {
                 depth -= 1U;
                 const uint32_t low = r->low[node];
                 if (low == r->number[node]) {
                     close_component(r, node, &used);
-                } else if (low < r->low[r->way[depth - 1U]]) {
-                    r->low[r->way[depth - 1U]] = low;
+                } else if (low < r->low[r->path[depth - 1U]]) {
+                    r->low[r->path[depth - 1U]] = low;
                 } else {
                     /* it is known already */
                 }
@@ -101,7 +101,7 @@ static bool find_components(running_t *r)
                 continue;
             }
             if (r->number[target] == 0U) {
-                r->way[depth] = target;
+                r->path[depth] = target;
                 r->at[depth] = g->row[target];
                 r->number[target] = next;
                 r->low[target] = next;
@@ -230,10 +230,10 @@ static bool open_tables(running_t *r)
     r->number = ex_table(&run->memory, nodes, sizeof *r->number);
     r->low = ex_table(&run->memory, nodes, sizeof *r->low);
     r->stack = ex_table(&run->memory, nodes, sizeof *r->stack);
-    r->way = ex_table(&run->memory, nodes, sizeof *r->way);
+    r->path = ex_table(&run->memory, nodes, sizeof *r->path);
     r->at = ex_table(&run->memory, nodes, sizeof *r->at);
     return (r->is_left != NULL) && (r->is_out != NULL) && (r->component != NULL) && (r->number != NULL)
-           && (r->low != NULL) && (r->stack != NULL) && (r->way != NULL) && (r->at != NULL);
+           && (r->low != NULL) && (r->stack != NULL) && (r->path != NULL) && (r->at != NULL);
 }
 
 static void close_tables(const running_t *r)
@@ -246,7 +246,7 @@ static void close_tables(const running_t *r)
     ex_free_table(&run->memory, r->number, nodes, sizeof *r->number);
     ex_free_table(&run->memory, r->low, nodes, sizeof *r->low);
     ex_free_table(&run->memory, r->stack, nodes, sizeof *r->stack);
-    ex_free_table(&run->memory, r->way, nodes, sizeof *r->way);
+    ex_free_table(&run->memory, r->path, nodes, sizeof *r->path);
     ex_free_table(&run->memory, r->at, nodes, sizeof *r->at);
 }
 

@@ -10,8 +10,8 @@
 
 enum {
     KEPT = 16,
-    REMEMBERED_BITS = 12,
-    REMEMBERED = 1 << REMEMBERED_BITS, /* tuples of a part */
+    CACHE_BITS = 12,
+    CACHE_SIZE = 1 << CACHE_BITS, /* tuples of a part */
     UNIT_BITS = 64
 };
 
@@ -25,8 +25,7 @@ typedef struct part {
     uint32_t unit;         /* of the word: where it is */
     uint32_t shift;
     uint64_t mask;
-    uint64_t
-        *remembered; /* tuples that were looked up a short while ago, each as its number + 1 (0: none) and its lanes */
+    uint64_t *cache; /* tuples that were looked up a short while ago, each as its number + 1 (0: none) and its lanes */
 } part_t;
 
 /* A successor that has not been given to the search yet. */
@@ -47,7 +46,7 @@ struct ex_flat {
     uint32_t kept;
     bool has_missing; /* one of them has no key */
     kept_t successor[KEPT];
-    uint64_t remembered[EX_KEY_WORDS][(EX_TUPLE_LANES + 1U) * REMEMBERED];
+    uint64_t cache[EX_KEY_WORDS][(EX_TUPLE_LANES + 1U) * CACHE_SIZE];
 };
 
 bool ex_flat_make(ex_worker_t *worker)
@@ -70,7 +69,7 @@ void ex_flat_lay(ex_worker_t *worker)
         return;
     }
     own->is_ready = codec->is_flat;
-    (void)memset(own->remembered, 0, sizeof own->remembered);
+    (void)memset(own->cache, 0, sizeof own->cache);
     own->parts = own->is_ready ? codec->roots : 0U;
     for (uint32_t i = 0U; i < own->parts; i++) {
         part_t *const part = &own->part[i];
@@ -80,7 +79,7 @@ void ex_flat_lay(ex_worker_t *worker)
             part->node = &codec->node[cell - codec->words];
             part->tuples = &codec->tuples[part->node->table];
             part->is_short = part->tuples->lanes <= SHORT;
-            part->remembered = own->remembered[i];
+            part->cache = own->cache[i];
         } else {
             part->unit = codec->slice_bit[cell] / (uint32_t)UNIT_BITS;
             part->shift = codec->slice_bit[cell] % (uint32_t)UNIT_BITS;
@@ -124,7 +123,7 @@ static inline uint64_t *memory_of(const part_t *part, const uint64_t *lane, uint
         mixed += (lane[2] * 0xa0761d6478bd642fU) + (lane[3] * 0xe7037ed1a0b428dbU);
     }
     const uint64_t at = (mixed ^ (mixed >> 32U)) * 0x8ebc6af09c88c6e3U;
-    return &part->remembered[(at >> (64U - (uint32_t)REMEMBERED_BITS)) * (lanes + 1U)];
+    return &part->cache[(at >> (64U - (uint32_t)CACHE_BITS)) * (lanes + 1U)];
 }
 
 /* Its number; EX_NO_NUMBER: it is not. */

@@ -47,7 +47,7 @@ static void age(void *marking, pn_time_t by)
 }
 
 /* What an occurrence has put with a stamp before the time (its delay is negative) is available like all that is. */
-static void settle(void *next, uint32_t transition)
+static void make_available(void *next, uint32_t transition)
 {
     for (uint32_t k = 0U; k < pn_net.transition[transition].touched_count; k++) {
         const pn_place_t *place = &pn_net.place[pn_net.transition[transition].touched[k]];
@@ -127,7 +127,7 @@ static bool on_successor(void *user, uint32_t transition, const void *binding, c
         return !hunt->worker->failed;
     }
     if (hunt->worker->run->options.is_time_reduced) {
-        settle(hunt->worker->scratch->next, transition); /* that is *next */
+        make_available(hunt->worker->scratch->next, transition); /* that is *next */
         if (hunt->has_aged && !ex_encode_time(hunt->worker)) {
             return false;
         }

@@ -49,8 +49,8 @@ typedef struct ex_derived {
 /* The shape of the vectors: found once, from the tables of the net.
  *
  * A vector consists of cells: slices of the packed part (of one long place, or of several short ones), a word for each
- * multiset (the number of its bytes), one for the time if the net is timed, one for what its references hold if it changes
- * them. Where places cannot be encoded one by one, there is one word for the whole marking. */
+ * multiset (the number of its bytes), one for the time if the net is timed, one for what its references hold if it
+ * changes them. Where places cannot be encoded one by one, there is one word for the whole marking. */
 typedef struct ex_codec {
     bool is_whole;
     bool is_plain;      /* the key is the beginning of the packed part; all else follows from it */

@@ -151,16 +151,16 @@ class Block(TypeSource):
             return self.atomic(value, hint)
         return value
 
-    def settle(self, value: Val, hint: str) -> Val:
+    def store_in_locals(self, value: Val, hint: str) -> Val:
         """The same for a value of any kind; records stay apart."""
         if isinstance(value, RecordVal):
             fields = {
-                k: self.settle(v, f"{hint}_{k}" if k.isdigit() else k)
+                k: self.store_in_locals(v, f"{hint}_{k}" if k.isdigit() else k)
                 for k, v in value.fields.items()
             }
             return RecordVal(fields, value.type)
         if isinstance(value, Partial):
-            arguments = tuple(self.settle(a, hint) for a in value.arguments)
+            arguments = tuple(self.store_in_locals(a, hint) for a in value.arguments)
             return Partial(value.function, arguments)
         if is_static(value):
             return value
@@ -199,7 +199,7 @@ class Block(TypeSource):
                 if clashes or has_effect(block[mark:]):
                     with self.block() as before:
                         for i in pending:
-                            values[i] = self.settle(values[i], "operand")
+                            values[i] = self.store_in_locals(values[i], "operand")
                     block[mark:mark] = before
                     pending = []
             if may_raise(value):
@@ -230,4 +230,4 @@ class Block(TypeSource):
         if isinstance(value, ir.Member | ir.Head | ir.Tail | ir.Argument):
             # A part of something gets the name it has in the pattern.
             return self.spill(value, symbol.name)
-        return self.settle(value, symbol.name)
+        return self.store_in_locals(value, symbol.name)

@@ -221,7 +221,7 @@ class Body(Branching):
     def _rules(self, function: core.Lambda, argument: Val, env: Env) -> Val:
         rule = function.rules[0]
         if len(function.rules) == 1 and is_irrefutable(rule.pattern):
-            inner = self.bind_all(self.match_settled(rule.pattern, argument), env)
+            inner = self.bind_all(self.match_stored(rule.pattern, argument), env)
             return self.exp(rule.body, inner)
         result = self.type_of(rule.body.type)
         return self.choose(function.rules, argument, env, result, "Match")
@@ -279,7 +279,7 @@ class Body(Branching):
                     env = {**env, symbol.uid: LocalReference(local)}
                 case core.ValBind():
                     value = self.exp(dec.value, env)
-                    env = self.bind_all(self.match_settled(dec.pattern, value), env, "Bind")
+                    env = self.bind_all(self.match_stored(dec.pattern, value), env, "Bind")
                 case core.RecBind():
                     env = {
                         **env,

@@ -57,19 +57,19 @@ class Branching(Block):
 
     # --- patterns ------------------------------------------------------------------------------
 
-    def match_settled(self, pattern: core.Pat, value: Val) -> Match:
+    def match_stored(self, pattern: core.Pat, value: Val) -> Match:
         """Match a value of any kind: what a pattern looks into is computed first."""
         if isinstance(pattern, core.PWild):
             self.discard(value)
         elif not isinstance(pattern, core.PVar):
-            value = self.settle(value, "value")
+            value = self.store_in_locals(value, "value")
         return self._matcher.match(pattern, value)
 
     def bind_pattern(
         self, pattern: core.Pat, value: Val, env: Env | None = None, exception: str = "Bind"
     ) -> Env:
         """The environment with the variables of a pattern; the exception is raised where it does not fit."""
-        return self.bind_all(self.match_settled(pattern, value), env or {}, exception)
+        return self.bind_all(self.match_stored(pattern, value), env or {}, exception)
 
     def match(self, pattern: core.Pat, value: Val) -> Match:
         """Match a value whose C parts are atomic."""
@@ -109,7 +109,7 @@ class Branching(Block):
         rule = e.rules[0] if isinstance(e, core.Case) else None
         if isinstance(e, core.Case) and rule and len(e.rules) == 1 and is_irrefutable(rule.pattern):
             value = self.exp(e.scrutinee, env)
-            return self.exp(rule.body, self.bind_all(self.match_settled(rule.pattern, value), env))
+            return self.exp(rule.body, self.bind_all(self.match_stored(rule.pattern, value), env))
         return self._into_temporary(e, env)
 
     def _into_temporary(self, e: core.Exp, env: Env) -> Ir:
@@ -130,7 +130,7 @@ class Branching(Block):
             value = self.exp(e.scrutinee, env)
             rule = e.rules[0]
             return self.exp(
-                rule.body, self.bind_all(self.match_settled(rule.pattern, value), env, "Match")
+                rule.body, self.bind_all(self.match_stored(rule.pattern, value), env, "Match")
             )
         return None
 
@@ -225,7 +225,7 @@ class Branching(Block):
         self, rules: tuple[core.Rule, ...], value: Val, env: Env, exception: str, ways: Ways
     ) -> None:
         """Rules tried one after the other."""
-        value = self.settle(value, "value")
+        value = self.store_in_locals(value, "value")
         self._rule(0, rules, value, env, exception, ways)
 
     def _rule(

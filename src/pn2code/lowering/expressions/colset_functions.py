@@ -155,7 +155,9 @@ class ColsetFunctions:
     def listed(self, name: str, arguments: tuple[Val, ...]) -> Val:
         """One of `LISTED`, for a colour set that the runtime cannot number."""
         cs = self._colset.type
-        arguments = tuple(self._body.settle(a, "given") for a in arguments)  # which may raise first
+        arguments = tuple(
+            self._body.store_in_locals(a, "given") for a in arguments
+        )  # which may raise first
         match name:
             case "base":
                 return base_value(self._body, self._colset, self._at)

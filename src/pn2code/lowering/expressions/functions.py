@@ -365,7 +365,7 @@ class Program:
                     continue
             elif is_split(rules, t) and not is_static(argument):
                 assert isinstance(t, TRecord)
-                whole = body.settle(argument, function.symbol.name)
+                whole = body.store_in_locals(argument, function.symbol.name)
                 t = substitute(t, function.types)
                 assert isinstance(t, TRecord)
                 slots.extend(body.select(whole, label, part) for label, part in t.fields)

@@ -11,7 +11,7 @@ from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
 from pn2code.ir.effects import Effects
 from pn2code.ir.types import holds_reference
-from pn2code.lowering.passes.reach import Reach, is_assignment, telling
+from pn2code.lowering.passes.reach import Reach, deciding, is_assignment
 
 _EXAMINED = (
     ir.ForTokens, ir.TokenValue, ir.UnlessAvailable, ir.UnlessHeld, ir.UnlessEmpty, ir.Take, ir.TakeAll,
@@ -24,7 +24,7 @@ def with_effects(net: ir.NetIR, reach: Reach) -> ir.NetIR:
     """The net, with what this pass finds; `staying` is known."""
     searches = [list(ir_nodes(t.enumerate)) for t in net.transitions]
     examined = [_places(nodes, _EXAMINED) for nodes in searches]
-    volatile = [not reach.is_pure(telling(nodes)) for nodes in searches]
+    volatile = [not reach.is_pure(deciding(nodes)) for nodes in searches]
     roots = _roots(net, reach)
     impure = reach.impure()
 
@@ -32,7 +32,7 @@ def with_effects(net: ir.NetIR, reach: Reach) -> ir.NetIR:
         nodes = list(ir_nodes(t.fire))
         changed = _changed(net, t, nodes, reach)
         read = tuple(sorted(_places(search, _READ) | _places(nodes, _READ)))
-        search, fire, thresholds = (telling(x) for x in (search, nodes, ir_nodes(t.thresholds)))
+        search, fire, thresholds = (deciding(x) for x in (search, nodes, ir_nodes(t.thresholds)))
         search_writes = reach.assigns(search)
         return Effects(
             affected=tuple(

@@ -92,7 +92,7 @@ class Reach:
         return False
 
 
-_TELLING = (
+_DECIDING = (
     ir.FunCall,
     ir.Fill,
     ir.Contents,
@@ -103,15 +103,15 @@ _TELLING = (
 )
 
 
-def telling(nodes: Iterable[object]) -> list[object]:
+def deciding(nodes: Iterable[object]) -> list[object]:
     """Those of the pieces that decide what `Reach` answers, for those who ask several questions: they are few."""
     return [
-        n for n in nodes if isinstance(n, _TELLING) or (isinstance(n, ir.Op) and _tells(n.name))
+        n for n in nodes if isinstance(n, _DECIDING) or (isinstance(n, ir.Op) and _decides(n.name))
     ]
 
 
 @cache
-def _tells(operation: str) -> bool:
+def _decides(operation: str) -> bool:
     return is_impure_builtin(operation) or _is_draw_of(operation) or operation == "Time.step"
 
 

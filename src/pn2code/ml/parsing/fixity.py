@@ -15,16 +15,11 @@ from pn2code.diagnostics import Diagnostics, Span
 from pn2code.ml import codes
 from pn2code.ml.parsing import advice
 from pn2code.ml.parsing import syntax as s
+from pn2code.ml.parsing.long_chains import LONG_CHAIN, shortened
 from pn2code.ml.parsing.tree import is_long
 
 MAX_DEPTH = 200
 """Nesting of expressions and patterns that is followed; the later stages recurse over the same trees."""
-
-LONG_CHAIN = 50
-"""Operators side by side from which on a chain of them is taken apart, so that it is not nested so deeply."""
-
-_FLAT_ANYWAY = {"++", "+++", "^", "^^"}
-"""Operators whose chains the type checker makes balanced trees of."""
 
 Fixities = Mapping[str, tuple[int, str]]
 """Infix names: precedence (9 binds tightest) and "left" or "right"."""
@@ -517,51 +512,7 @@ class _Sequence:
                 f"`{word}` must be in parentheses here", atoms[-1].span, f"write `({word} ..)`"
             )
         exp = self._r.infix(atoms, self._operator, self._operand, self._join)
-        return self._shortened(exp) if len(atoms) > LONG_CHAIN else exp
-
-    def _shortened(self, e: s.Exp) -> s.Exp:
-        """A long chain of operators as something that is not nested as deeply.
-
-        `a :: b :: ... :: tail` is a list in front of the tail, `a + b - c ...` is cut into pieces that have names.
-        """
-        if not isinstance(e, s.InfixExp):
-            return e
-        if e.operator.name == "::":
-            return self._shortened_list(e)
-        precedence = self._r.fixities.get(e.operator.name)
-        spine: list[s.InfixExp] = []
-        node: s.Exp = e
-        while (
-            isinstance(node, s.InfixExp) and self._r.fixities.get(node.operator.name) == precedence
-        ):
-            spine.append(node)
-            node = node.left
-        if precedence is None or precedence[1] == "right" or len(spine) <= LONG_CHAIN:
-            left, right = self._shortened(e.left), self._shortened(e.right)
-            return replace(e, left=left, right=right)
-        if {x.operator.name for x in spine} <= _FLAT_ANYWAY:
-            return e
-        value = self._shortened(node)
-        pieces: list[s.Dec] = []
-        for i, x in enumerate(reversed(spine), 1):
-            value = replace(x, left=value, right=self._shortened(x.right))
-            if i % LONG_CHAIN == 0:
-                name = f"{i} terms"  # no name that a user can write
-                binding = s.ValBinding(s.NamePat(name, False, x.span), value, False, x.span)
-                pieces.append(s.ValDec((binding,), x.span))
-                value = s.NameExp(name, False, x.span)
-        return s.LetExp(tuple(pieces), value, e.span)
-
-    def _shortened_list(self, e: s.InfixExp) -> s.Exp:
-        items: list[s.Exp] = []
-        node: s.Exp = e
-        while isinstance(node, s.InfixExp) and node.operator.name == "::":
-            items.append(self._shortened(node.left))
-            node = node.right
-        front = s.ListExp(tuple(items), e.span)
-        if isinstance(node, s.ListExp):
-            return replace(front, items=(*items, *node.items))
-        return s.InfixExp(s.NameExp("List.@", False, e.operator.span), front, node, e.span)
+        return shortened(exp, self._r.fixities) if len(atoms) > LONG_CHAIN else exp
 
     def _operator(self, item: s.Exp) -> tuple[str, tuple[int, str]] | None:
         if isinstance(item, s.NameExp) and not item.op and item.name in self._r.fixities:

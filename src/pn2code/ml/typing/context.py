@@ -238,7 +238,7 @@ class Context:
                 except UnifyError:
                     self.equality[declaration.name] = False
 
-    def settle(self) -> None:
+    def resolve_pending(self) -> None:
         """At the end of a declaration or inscription: overloaded types take the default, records must be known."""
         before = self.errors
         for row, span in self.open_records:

@@ -355,8 +355,8 @@ class Expressions:
                 if what not in ("field", "expression"):
                     part += f" of the {what}" if not what.startswith("component") else ""
                 # Components in the wrong order are one mistake.
-                tell = self._ctx.errors == before or not label.isdigit()
-                drafts[label] = self.check(exp, wanted[label] if tell else ERROR, part)
+                is_reported = self._ctx.errors == before or not label.isdigit()
+                drafts[label] = self.check(exp, wanted[label] if is_reported else ERROR, part)
             else:
                 drafts[label] = self.infer(exp)
         t = i_record({label: draft.type for label, draft in drafts.items()})
@@ -537,10 +537,10 @@ class Expressions:
             made, result = rules(), to_type(body.type)
             matches.warn(self._ctx, made, "`handle`", e.span, raises="")
 
-            def again(exception: core.Symbol) -> core.Exp:
+            def reraise(exception: core.Symbol) -> core.Exp:
                 return core.Raise(core.Var(exception, EXN, e.span), result, e.span)
 
-            assembled = matches.assemble(self._ctx, made, EXN, result, e.span, otherwise=again)
+            assembled = matches.assemble(self._ctx, made, EXN, result, e.span, otherwise=reraise)
             return core.Handle(body.build(), assembled, result, e.span)
 
         return Draft(body.type, build)

@@ -8,10 +8,9 @@ from dataclasses import replace
 from typing import TypeVar
 
 from pn2code.base.frozen import frozen
-from pn2code.diagnostics import Diagnostics, Note, SourceText
+from pn2code.diagnostics import Diagnostics, SourceText
 from pn2code.ml import codes
 from pn2code.ml.core import terms as core
-from pn2code.ml.core.colsets import definition
 from pn2code.ml.core.computing import Computed
 from pn2code.ml.core.terms import Symbol
 from pn2code.ml.core.types import BOOL, INTINF, REAL, TCon, TFun, Type, list_of, timed_of, tuple_of
@@ -29,7 +28,7 @@ from pn2code.ml.parsing.parser import (
 )
 from pn2code.ml.parsing.pasted import is_whole_delay
 from pn2code.ml.typing import type_advice
-from pn2code.ml.typing.context import Context, Draft, conversion, label_notes
+from pn2code.ml.typing.context import Context, Draft
 from pn2code.ml.typing.environment import Binding, BrokenEntry, BuiltinEntry, Scope
 from pn2code.ml.typing.expressions import Expressions
 from pn2code.ml.typing.inference import (
@@ -37,13 +36,11 @@ from pn2code.ml.typing.inference import (
     I_INT,
     I_UNIT,
     ICon,
-    IRec,
-    Ty,
     from_type,
     i_list,
     prune,
-    to_type,
 )
+from pn2code.ml.typing.mismatches import explain
 from pn2code.ml.typing.patterns import Bindings, Patterns
 
 T = TypeVar("T")
@@ -97,7 +94,7 @@ class Inscriptions:
     def _finish(self, before: int, build: Callable[[], T]) -> T | None:
         """What `build` gives, unless something was reported since `before` or uses something broken."""
         if self._ctx.errors == before:
-            self._ctx.settle()
+            self._ctx.resolve_pending()
         self._ctx.open_records.clear()
         if self._ctx.errors > before or self._ctx.tainted:
             return None
@@ -127,7 +124,16 @@ class Inscriptions:
             if isinstance(found, tuple):
                 return self._finish(before, lambda: (found[0], found[1].build()))
             if self._ctx.errors == before and not self._ctx.tainted:
-                self._explain(exp, found, types, what, expected_name)
+                explain(
+                    self._ctx,
+                    self._expressions,
+                    exp,
+                    found,
+                    types,
+                    what,
+                    expected_name,
+                    self._delayed(exp),
+                )
             return None
 
     def layered(
@@ -267,97 +273,6 @@ class Inscriptions:
         if isinstance(element, ICon) and element.name == "list":
             return Draft(i_list(ICon("timed", element.args)), left.build)
         return Draft(ICon("timed", (left.type,)), left.build)
-
-    def _explain(
-        self,
-        exp: s.Exp,
-        draft: Draft,
-        types: Sequence[Type],
-        what: str,
-        expected_name: str,
-    ) -> None:
-        """One diagnostic: where and how the expression differs from what the place holds."""
-        found = prune(draft.type)
-        base = types[0]
-        wanted = next(
-            (
-                t
-                for t in types
-                if isinstance(found, ICon)
-                and isinstance(t, TCon)
-                and t.name == found.name == "list"
-                and _is_timed_list(to_type(found)) == _is_timed_list(t)
-            ),
-            base,
-        )
-        holds = f"the colour set is `{expected_name}`"
-        colset = self._ctx.colsets.get(expected_name)
-        structure = definition(colset) if colset is not None else ""
-        if structure:
-            holds += f", which is `{structure}`"
-        timed = any(_is_timed_list(t) for t in types)
-        delayed = self._delayed(exp)
-        if not timed and (delayed is not None or _is_timed(found)):
-            self._ctx.error(
-                codes.NOT_TIMED,
-                f"{what} has a time stamp, but the colour set `{expected_name}` is not timed",
-                delayed[0].operator.span if delayed else exp.span,
-                label="delay" if delayed else f"this is `{self._ctx.show(found)}`",
-                hint=f"declare it so, `colset {expected_name} = .. timed;`, or leave the time out",
-            )
-            return
-        quiet, self._ctx.d = self._ctx.d, Diagnostics()
-        try:
-            self._expressions.check(exp, from_type(wanted, []), what)
-            details = self._ctx.d.errors
-        finally:
-            self._ctx.d = quiet
-            self._ctx.open_records.clear()
-        if details and details[0].span is not None and details[0].span != exp.span:
-            first = details[0]
-            notes = (*first.notes, Note(holds))
-            self._ctx.d.items.append(replace(first, notes=notes))
-            self._ctx.errors += 1
-            return
-        forms = f"a token or multi-set of `{expected_name}`"
-        wanted_type = from_type(base, [])
-        wanted_name = base.name if isinstance(base, TCon) else ""
-        hint = (
-            conversion(found, (wanted_name,))
-            or self._ctx.constructor_hint(found, wanted_type, exp.span.text)
-            or type_advice.wrong_value(found, wanted_type, exp.span.text)
-        )
-        if not hint and not type_advice.is_list(found):
-            hint = f"write one token of `{expected_name}`, or a multi-set such as 1`v"
-        variable = self._ctx.scope.value(exp.name) if isinstance(exp, s.NameExp) else None
-        if isinstance(variable, Binding) and variable.colset is not None:
-            own = variable.colset.name
-            other = f", or {hint}" if hint.startswith(("convert", "put")) else ""
-            hint = f"`{variable.name}` is a variable of colour set `{own}`: use one of `{expected_name}`{other}"
-        shown = self._ctx.show(found)
-        if "`" in exp.span.text and type_advice.is_list(found):
-            shown = shown.removesuffix(" list") + " ms"
-        self._ctx.error(
-            codes.TYPE_MISMATCH,
-            f"{what} is `{shown}`, but {forms} is expected",
-            exp.span,
-            label=f"this is `{shown}`",
-            notes=(holds, *self._differences(found, from_type(base, []))),
-            hint=hint,
-        )
-
-    def _differences(self, found: Ty, expected: Ty) -> list[str]:
-        """Components of two records of the same form that differ."""
-        if not isinstance(found, IRec) or not isinstance(expected, IRec):
-            return []
-        if [n for n, _ in found.fields] != [n for n, _ in expected.fields]:
-            return label_notes(found, expected)
-        out = []
-        for (n, f), (_, g) in zip(found.fields, expected.fields, strict=True):
-            if not self._ctx.unifier.attempt(f, g):
-                word = "component" if n.isdigit() else "field"
-                out.append(f"{word} {n} is `{self._ctx.show(f)}`, not `{self._ctx.show(g)}`")
-        return out
 
     # --- guards
 
@@ -682,22 +597,6 @@ def _symbols(pattern: core.Pat) -> list[Symbol]:
             return _symbols(inner)
         case _:
             return []
-
-
-def _is_timed_list(t: Type) -> bool:
-    return (
-        isinstance(t, TCon)
-        and t.name == "list"
-        and isinstance(t.args[0], TCon)
-        and t.args[0].name == "timed"
-    )
-
-
-def _is_timed(t: Ty) -> bool:
-    t = prune(t)
-    if isinstance(t, ICon) and t.name == "list":
-        t = prune(t.args[0])
-    return isinstance(t, ICon) and t.name == "timed"
 
 
 __all__ = ["Inscriptions", "TypedCode", "timed_of"]

@@ -472,7 +472,7 @@ class Enabling:
         """Why a binding is not enabled at the marking's time (priorities apart); None if it is."""
         self.evaluator.now = marking.time
         self.evaluator.random.start(self.evaluator.steps, bindings_of(t.index))
-        reason = self.guard_obstacle(t, binding)
+        reason = self.why_guard_fails(t, binding)
         if reason is not None:
             return reason
         outputs = t.code.outputs if t.code else ()
@@ -494,7 +494,7 @@ class Enabling:
             return f"place `{place.name}` inhibits it: it holds {_one_line(tokens)}"
         return None
 
-    def guard_obstacle(self, t: FlatTransition, binding: Binding) -> str | None:
+    def why_guard_fails(self, t: FlatTransition, binding: Binding) -> str | None:
         """Why a binding is not possible whatever tokens there are: a value is missing or illegal, a guard is false."""
         outputs = t.code.outputs if t.code else ()
         found: Found = {}

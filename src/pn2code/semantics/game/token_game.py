@@ -131,9 +131,9 @@ class Game:
             NotEnabled: it is not enabled.
             GameError: an inscription raises an exception, or gives a token that is not legal.
         """
-        obstacle = self.why_disabled(self.marking, element) if checked else None
-        if obstacle is not None:
-            raise NotEnabled(f"{element_text(self.colours, self.net, element)}: {obstacle}")
+        why = self.why_disabled(self.marking, element) if checked else None
+        if why is not None:
+            raise NotEnabled(f"{element_text(self.colours, self.net, element)}: {why}")
         self.evaluator.steps = self.steps + 1
         self.marking, occurred = self.occur(self.marking, element)
         self.steps += 1

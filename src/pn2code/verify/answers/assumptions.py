@@ -23,7 +23,7 @@ CONTROL: Final = (
     "takes the first one in the documented order.",
     "Programs may be slow or fast, and sensors may give any value. Crashes are considered only with the medium.",
 )
-MEDIUM: Final = (
+FILE_SYSTEM: Final = (
     "A rename is atomic: a name leads to the old or to the new file, never to none or to half of one",
     "A process that has opened a file reads all of it, even if another file is renamed over it in the "
     "meantime",
@@ -37,13 +37,15 @@ MEDIUM: Final = (
 """Of the file system, as in the table of docs/protocol.md."""
 
 
-def assumed(*, timed: bool, control: bool, medium: bool, fair: Sequence[str] = ()) -> Iterator[str]:
+def assumed(
+    *, timed: bool, control: bool, channel_model: bool, fair: Sequence[str] = ()
+) -> Iterator[str]:
     """The sentences that belong to what was asked.
 
     Args:
         timed: the net has time.
         control: the supervisor of a cell was checked.
-        medium: its medium was.
+        channel_model: its channel model was.
         fair: names of properties that assume fairness, with what they assume.
     """
     yield from NET
@@ -52,5 +54,5 @@ def assumed(*, timed: bool, control: bool, medium: bool, fair: Sequence[str] = (
     yield from (f"Fairness is assumed of the property {one}." for one in fair)
     if control:
         yield from CONTROL
-    if medium:
-        yield from (f"File system: {one.replace('*', '')}." for one in MEDIUM)
+    if channel_model:
+        yield from (f"File system: {one.replace('*', '')}." for one in FILE_SYSTEM)

@@ -96,11 +96,11 @@ def _play(net: FlatNet, game: Game, trace: Trace) -> Iterator[tuple[Step, FlatTr
             game.set_time(step.time)
         played = BindingElement.make(step.transition, step.bound)
         # Of a cell: each of its programs knows its own priorities only.
-        obstacle = game.why_disabled(game.marking, played, priorities=trace.header.by != VERIFY)
-        if obstacle is not None:
+        why = game.why_disabled(game.marking, played, priorities=trace.header.by != VERIFY)
+        if why is not None:
             drawn = "; the net draws random numbers or reads files, which are others here"
             raise TraceRefusedError(
-                f"{element_text(game.colours, net, played)} is not enabled: {obstacle}"
+                f"{element_text(game.colours, net, played)} is not enabled: {why}"
                 + (drawn if nondeterminism.draws(net) else ""),
                 number + 1,
             )

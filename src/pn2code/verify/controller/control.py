@@ -60,7 +60,7 @@ from pn2code.verify.controller.control_types import (
 )
 from pn2code.verify.controller.equals import NoPatternError
 from pn2code.verify.controller.poses import Bad, Poses
-from pn2code.verify.controller.reach_check import reach, suspects, tell
+from pn2code.verify.controller.reach_check import reach, suspects, told_poses
 from pn2code.verify.controller.running import NotModelledError, Running, Silence
 from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.explore import explore
@@ -211,7 +211,7 @@ def examine(
         count = len(plan.properties.properties)
         options = replace(options, evidence=Path(name))
 
-        def again(moves: Sequence[Bad], *, first: bool = True) -> Exploration | None:
+        def explore_with_moves(moves: Sequence[Bad], *, first: bool = True) -> Exploration | None:
             other = Running.of(partition, (), moves)
             lines = other.lines(first=True)
             own = replace(
@@ -227,7 +227,7 @@ def examine(
             )
             return explore(other.net, plan.storage, limits, d, own)
 
-        told = tell(poses, found, limits.deadline)
+        told = told_poses(poses, found, limits.deadline)
         orders: Exploration | None = found
         said, asked = _parted(found.answers[count:], ORDERS if is_asked_at_once else 0)
         # Of a whole graph in which the supervisor never chooses the first question has an answer, and only of that.
@@ -238,7 +238,7 @@ def examine(
             if moves:
                 # All orders are more than the cell does: what is not met there is met nowhere.
                 with suppress(NoPatternError):
-                    orders = again(moves, first=False)
+                    orders = explore_with_moves(moves, first=False)
                     ruled_out = orders is not None and orders.seen.markings
             if is_choiceless:
                 orders = found
@@ -259,7 +259,7 @@ def examine(
             *cell_answers(partition, found, said, plan, keep, closed),
             *formats(partition, found, plan, d),
             memory(found),
-            *reach(told, partition, found, again, keep, ruled_out=ruled_out),
+            *reach(told, partition, found, explore_with_moves, keep, ruled_out=ruled_out),
             ownership(partition),
         )
         checks = tuple(hesitating(c, said, keep) for c in checks)
@@ -340,5 +340,5 @@ def not_looked(
     seen = closed if closed is not None and can_more(partition) else None
     checks += formats(partition, seen, Plan(), Diagnostics(), why)
     checks.append(memory(seen, why, of_cell=False))
-    checks += reach(tell(poses, seen, NEVER), partition, seen, None, keep, why)
+    checks += reach(told_poses(poses, seen, NEVER), partition, seen, None, keep, why)
     return Control((*checks, ownership(partition)), None, why=why)

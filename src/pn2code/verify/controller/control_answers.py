@@ -37,7 +37,7 @@ OTHERS = 6
 """The row after these."""
 STRUCTURE = "structure"
 """Why a bound is known: invariants of the net prove it, without any state."""
-_WAYS = 60
+_MOST_NAMED = 60
 """Transitions of a run that are named."""
 
 
@@ -446,5 +446,5 @@ def _steps(count: int) -> str:
 
 
 def _named(transitions: Sequence[str]) -> str:
-    some = [f"`{t}`" for t in transitions[:_WAYS]]
-    return ", ".join(some) + (", ..." if len(transitions) > _WAYS else "")
+    some = [f"`{t}`" for t in transitions[:_MOST_NAMED]]
+    return ", ".join(some) + (", ..." if len(transitions) > _MOST_NAMED else "")

@@ -139,8 +139,8 @@ def _wrong(
         if text is None:
             yield partition.channels[index], value, _reason(spec.scalars, values)
             continue
-        again = parse(spec, text, session=SESSION, consumed=MOST_SEQ - 1)
-        if not isinstance(again, Message) or again.scalars != values:
+        parsed = parse(spec, text, session=SESSION, consumed=MOST_SEQ - 1)
+        if not isinstance(parsed, Message) or parsed.scalars != values:
             yield partition.channels[index], value, "it is not read as it was written"
             continue
         fine.append((index, value, values, text))

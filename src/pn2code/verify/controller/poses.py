@@ -48,7 +48,7 @@ class Arms(Protocol):
     def robots(self) -> Collection[str]:
         """The names of those with an arm."""
 
-    def obstacle(self, robot: str, command: MoveJoint | MoveLinear) -> str:
+    def why_unreachable(self, robot: str, command: MoveJoint | MoveLinear) -> str:
         """Why the arm cannot come to the pose of a command, with its name; "": it can."""
 
 
@@ -224,7 +224,7 @@ class Poses:
                 continue
             seen.add(values)
             for command in self._commands(game, t, binding, listener):
-                why = self._arms.obstacle(robot, command)
+                why = self._arms.why_unreachable(robot, command)
                 poses[bool(why)].add((robot, command.target))
                 if why:
                     told.bad.append(Bad(t.index, values, why))

@@ -1,7 +1,7 @@
 """What `generate` wants to know of a net before it becomes a program: is its supervisor fine, how large are its places.
 
     found = prove(partition, config, d)      # None: the supervisor fails a check, or a place has no bound; reported
-    found.rooms                              # for `rooms.with_rooms`
+    found.place_capacities                   # for `place_capacity.with_place_capacities`
     found.verdicts                           # lines for the head of cell_config.c
 
 Of a net without a cell.toml only the structure is looked at: it takes no compiler and little time.
@@ -31,7 +31,7 @@ from pn2code.verify.controller import arena, control, control_types
 from pn2code.verify.controller.control_types import MOST_STATES, Check, Control, Plan
 from pn2code.verify.controller.poses import Arms, Poses
 from pn2code.verify.controller.premises import NOTHING_GIVEN, Premises
-from pn2code.verify.exploring import place_capacity as rooms
+from pn2code.verify.exploring import place_capacity
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits, cores
 
@@ -53,13 +53,13 @@ class Proofs:
     """What was found.
 
     Args:
-        rooms: for each place.
+        place_capacities: for each place.
         verdicts: lines for people, the same whenever the same is generated.
         control: the checks; None: they were not asked for.
         arena: bytes for the lists and strings of the program; None: not known.
     """
 
-    rooms: tuple[rooms.PlaceCapacity, ...]
+    place_capacities: tuple[place_capacity.PlaceCapacity, ...]
     verdicts: tuple[str, ...]
     control: Control | None
     arena: int | None = None
@@ -93,11 +93,11 @@ def prove(
     if capacities is None:
         return None
     if config is None or not checked:
-        found = rooms.rooms(partition, capacities, structural, None)
+        found = place_capacity.place_capacities(partition, capacities, structural, None)
         if config is None:
-            run = rooms.growing(net, storage, found, walks=rooms.FEW_WALKS)
-            rooms.warn_assumed(net, found, d, run)
-        rooms.refuse_large(net, found, d)
+            run = place_capacity.growing(net, storage, found, walks=place_capacity.FEW_WALKS)
+            place_capacity.warn_assumed(net, found, d, run)
+        place_capacity.refuse_large(net, found, d)
         if d.has_errors:
             return None
         poses = None
@@ -122,10 +122,12 @@ def prove(
         _warn_open(looked, config, d)
     space = looked.found
     # From a marking that has other tokens than the net's own, more may be reached.
-    found = rooms.rooms(partition, capacities, structural, None if given else space)
+    found = place_capacity.place_capacities(
+        partition, capacities, structural, None if given else space
+    )
     why = looked.open[0].why if looked.open else None
     if why == "compiler":  # nobody can build it here, either: it will be checked where that is done
-        rooms.warn_assumed(net, found, d)
+        place_capacity.warn_assumed(net, found, d)
     else:
         other = (
             f"`{given[0]}` has another number of tokens in the net than the one that its file brings, and the "
@@ -136,9 +138,9 @@ def prove(
         if not any(
             c.why == "stopped" for c in looked.failed
         ):  # an exception is why nothing is known
-            run = rooms.growing(net, storage, found)
-            rooms.refuse(net, found, other or clause(why or ""), d, run)
-    rooms.refuse_large(net, found, d)
+            run = place_capacity.growing(net, storage, found)
+            place_capacity.refuse(net, found, other or clause(why or ""), d, run)
+    place_capacity.refuse_large(net, found, d)
     if d.has_errors:
         return None
     return Proofs(found, tuple(_verdicts(looked)), looked, arena.size(space))

@@ -1,8 +1,8 @@
 """The check `reach`: no arm is told a pose that it cannot reach.
 
-told = tell(poses, found, deadline)                # what arms may be told
-suspects(told, found)                              # impossible moves that one exploration can rule out
-reach(told, partition, found, again, keep)         # the check
+told = told_poses(poses, found, deadline)                          # what arms may be told
+suspects(told, found)                                              # impossible moves that one exploration can rule out
+reach(told, partition, found, explore_with_moves, keep)            # the check
 """
 
 from __future__ import annotations
@@ -25,11 +25,11 @@ MOST_AT_ONCE = 100
 MOST_TIMES = 5
 """Explorations of one check."""
 
-Again = Callable[[Sequence[Bad]], Exploration | None]
+ExploreWithMoves = Callable[[Sequence[Bad]], Exploration | None]
 """Explores the cell once more, with exceptions where it comes to one of the moves."""
 
 
-def tell(poses: Poses | None, found: Exploration | None, deadline: Deadline) -> Told | None:
+def told_poses(poses: Poses | None, found: Exploration | None, deadline: Deadline) -> Told | None:
     """What arms may be told; None: no arm is told a pose, or nothing is known of arms.
 
     Args:
@@ -56,7 +56,7 @@ def reach(
     told: Told | None,
     partition: Partition,
     found: Exploration | None,
-    again: Again | None,
+    explore_with_moves: ExploreWithMoves | None,
     keep: Keeper,
     why: str = "",
     *,
@@ -68,7 +68,7 @@ def reach(
         told: what arms may be told.
         partition: the cell.
         found: where that was seen, as for `tell`.
-        again: looks whether the cell comes to a move; None: nobody can look.
+        explore_with_moves: looks whether the cell comes to a move; None: nobody can look.
         keep: keeps runs.
         why: there is no space.
         ruled_out: the cell comes to none of the moves that are not possible.
@@ -77,7 +77,7 @@ def reach(
         return []
     shown = None
     if found is not None and told.bad and not ruled_out:
-        shown = _shown(told, partition, found, again, keep)
+        shown = _shown(told, partition, found, explore_with_moves, keep)
     if shown is not None:
         return [shown]
     if found is None or not found.seen.markings:
@@ -101,7 +101,11 @@ def _fine(told: Told) -> str:
 
 
 def _shown(
-    told: Told, partition: Partition, found: Exploration, again: Again | None, keep: Keeper
+    told: Told,
+    partition: Partition,
+    found: Exploration,
+    explore_with_moves: ExploreWithMoves | None,
+    keep: Keeper,
 ) -> Check | None:
     """Whether the cell comes to a move that an arm cannot make; None: it never does."""
     first = told.bad[0]
@@ -112,14 +116,14 @@ def _shown(
         f"not known: whether {where} commands a move of which this is so: {first.why}",
         why="poses",
     )
-    if again is None or found.error is not None:
+    if explore_with_moves is None or found.error is not None:
         return open_
     for begin in range(0, len(told.bad), MOST_AT_ONCE):
         if begin == MOST_TIMES * MOST_AT_ONCE:
             return open_
         moves = told.bad[begin : begin + MOST_AT_ONCE]
         try:
-            looked = again(moves)
+            looked = explore_with_moves(moves)
         except NoPatternError:
             return open_
         if looked is None:

@@ -231,10 +231,10 @@ def _check(partition: Partition, predicates: Sequence[Predicate]) -> None:
     if len(partition.owners) > MOST_OWNERS:
         raise NotModelledError(f"the cell has more than {MOST_OWNERS} programs")
     if net.timed:
-        obstacle = time_reduction.obstacle(net, predicates)
-        if obstacle is not None:
+        why = time_reduction.why_not_reducible(net, predicates)
+        if why is not None:
             raise NotModelledError(
-                f"steps may come later than in the net, and {obstacle.message}, so that there would be infinitely many "
+                f"steps may come later than in the net, and {why.message}, so that there would be infinitely many "
                 "states"
             )
     for place in partition.final_places:

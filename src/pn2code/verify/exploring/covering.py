@@ -54,6 +54,8 @@ MOST_WORK = 200_000
 enabled. It is counted in these, not in seconds, so that a busy machine finds the same."""
 _CALLS = 100
 """Steps of CPN ML that take about as long as a transition does without any."""
+_TOKENS = 50
+"""Of a marking, that take about as long to be compared."""
 _SHORTEST = 20
 _BINDINGS = 20
 """Of a transition, of which one is chosen."""
@@ -133,7 +135,10 @@ class Search:
 
     @property
     def work(self) -> int:
-        """How often it has asked a transition whether it is enabled; what is evaluated for long counts in addition."""
+        """How often it has asked a transition whether it is enabled.
+
+        Comparing markings, and what is evaluated for long, counts in addition.
+        """
         return self._asked + self.game.evaluator.spent // _CALLS
 
     def look(
@@ -197,6 +202,7 @@ class Search:
             size = _sizes(marking)
             for i in range(len(markings) - 1, -1, -1):
                 if size != sizes[i] and all(a <= b for a, b in zip(sizes[i], size, strict=True)):
+                    self._asked += 1 + sum(size) // _TOKENS
                     found = self._covering(markings[i], marking, elements, i)
                     if found is not None:
                         return found
@@ -311,14 +317,17 @@ def _added(before: Marking, after: Marking) -> dict[int, MultiSet]:
     found: dict[int, MultiSet] = {}
     if before.references != after.references:
         return {}
-    pairs = zip(before.places, after.places, strict=True)
-    for place, (old, new) in enumerate(pairs):
-        if isinstance(old, MultiSet) and old == new:
+    larger = []
+    for place, (old, new) in enumerate(zip(before.places, after.places, strict=True)):
+        if old is new:
             continue
-        if _relative(old, before.time) == _relative(new, after.time):
-            continue
-        less, more = _colours(old), _colours(new)
-        if not less <= more or less == more:
+        if len(old) != len(new):
+            larger.append(place)  # looked at only where all others are equal: these are large
+        elif not _is_same(old, new, before.time, after.time):
+            return {}
+    for place in larger:
+        less, more = _colours(before.places[place]), _colours(after.places[place])
+        if not less <= more:
             return {}
         found[place] = more - less
     return found
@@ -326,6 +335,13 @@ def _added(before: Marking, after: Marking) -> dict[int, MultiSet]:
 
 def _colours(tokens: PlaceMarking) -> MultiSet:
     return tokens if isinstance(tokens, MultiSet) else tokens.untimed()
+
+
+def _is_same(old: PlaceMarking, new: PlaceMarking, before: float, after: float) -> bool:
+    """Whether as many tokens are the same ones at two times."""
+    return (isinstance(old, MultiSet) and old == new) or (
+        _relative(old, before) == _relative(new, after)
+    )
 
 
 def _relative(tokens: PlaceMarking, now: float) -> PlaceMarking:

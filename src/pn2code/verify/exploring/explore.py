@@ -225,8 +225,8 @@ def _explored(
                 own = replace(limits, max_states=min(most, programs.FIRST_STATES))
             arguments = _arguments(own, chosen, sizes, options)
             arguments += ["--still"] if nondeterminism.draws(net) else []
-            telling = replace(options, progress=_nothing) if is_limited else options
-            found = _run_with_tables(net, program, arguments, chosen, telling, limits, d, search)
+            deciding = replace(options, progress=_nothing) if is_limited else options
+            found = _run_with_tables(net, program, arguments, chosen, deciding, limits, d, search)
         if found is None:
             return None
         if is_limited and _is_too_much(found, own, limits):

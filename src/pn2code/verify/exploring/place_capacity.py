@@ -1,10 +1,10 @@
 """How many tokens the places of a generated program hold, and what proves that it is enough.
 
-    found = rooms(partition, {"dadosrobo1": 1}, structural, space.found)
-    found[0]            # Room(bound=1, kind="invariant", proof="Waiting + Moving = 1")
+    found = place_capacities(partition, {"dadosrobo1": 1}, structural, space.found)
+    found[0]            # PlaceCapacity(bound=1, kind="invariant", proof="Waiting + Moving = 1")
 
 The structure of the net comes first (it needs no state space, and holds whatever the input files say), then the
-complete state space of the cell, unless cell.toml declares the bound. A room without a bound is *assumed*.
+complete state space of the cell, unless cell.toml declares the bound. A capacity without a bound is *assumed*.
 
 What the state space says of a cell with input files is said of the tokens that these hold now, and the program is for
 any: its places get room for twice as many tokens, and no less than a place of which nothing is known. The same is true
@@ -48,9 +48,9 @@ _ONE_MESSAGE = (
 )
 _ROOM = "so there is room for more (the supervisor stops where it is used up)"
 _INPUTS = f"with the input files as they are, all {{}} states: other files may lead to more tokens, {_ROOM}"
-_CHANCE = f"with the random numbers and files that there were, all {{}} states: others may lead to more tokens, {_ROOM}"
+_DRAWN = f"with the random numbers and files that there were, all {{}} states: others may lead to more tokens, {_ROOM}"
 _STEPS = f"without a number of steps, all {{}} states: a run, which has one, may lead to more tokens, {_ROOM}"
-_ONE_OF_MANY = {"chance": _CHANCE, "steps": _STEPS}
+_ONE_OF_MANY = {"chance": _DRAWN, "steps": _STEPS}
 
 
 @frozen
@@ -71,7 +71,7 @@ class PlaceCapacity:
     seen: int = 0
 
 
-def rooms(
+def place_capacities(
     partition: Partition,
     declared: Mapping[int, int],
     structural: Mapping[int, PlaceBound],
@@ -120,7 +120,7 @@ def rooms(
     return tuple(result)
 
 
-def with_rooms(net: ir.NetIR, found: Sequence[PlaceCapacity]) -> ir.NetIR:
+def with_place_capacities(net: ir.NetIR, found: Sequence[PlaceCapacity]) -> ir.NetIR:
     """The compiled net with arrays of these sizes.
 
     An array has an entry for each *different* token, so that a place over few colours needs no more than there are;
@@ -128,14 +128,14 @@ def with_rooms(net: ir.NetIR, found: Sequence[PlaceCapacity]) -> ir.NetIR:
     """
     descriptors = {d.name: d for d in net.descriptors}
     places = []
-    for place, room in zip(net.places, found, strict=True):
+    for place, limit in zip(net.places, found, strict=True):
         few = 0 if place.timed else colours(descriptors, place.table)
-        if room.bound is None:
-            most = max(room.seen, min(2 * room.seen, MOST_DOUBLED))
+        if limit.bound is None:
+            most = max(limit.seen, min(2 * limit.seen, MOST_DOUBLED))
             capacity = max(place.capacity, min(most, few) if few else most)
         else:
-            capacity = max(min(room.bound, few) if few else room.bound, 1)
-        places.append(replace(place, capacity=capacity, bound=room.bound, proof=room.proof))
+            capacity = max(min(limit.bound, few) if few else limit.bound, 1)
+        places.append(replace(place, capacity=capacity, bound=limit.bound, proof=limit.proof))
     return bounded(replace(net, places=tuple(places)))
 
 
@@ -147,7 +147,7 @@ def growing(
 ) -> Covering | None:
     """A run that shows that places without a bound grow for ever in the closed net; None: none was come upon."""
     among = {
-        place.index for place, room in zip(net.places, found, strict=True) if room.kind == ASSUMED
+        place.index for place, limit in zip(net.places, found, strict=True) if limit.kind == ASSUMED
     }
     if not among:
         return None
@@ -182,8 +182,8 @@ def refuse(
         d: gets the errors.
         run: what `growing` has found.
     """
-    for place, room in zip(net.places, found, strict=True):
-        if room.kind == ASSUMED:
+    for place, limit in zip(net.places, found, strict=True):
+        if limit.kind == ASSUMED:
             grows = _grows(net, run, place.index) if run is not None else ""
             if grows:
                 d.error(
@@ -207,14 +207,14 @@ def refuse(
 
 def refuse_large(net: FlatNet, found: Sequence[PlaceCapacity], d: Diagnostics) -> None:
     """Reports each place that can hold more tokens than a program has arrays for."""
-    for place, room in zip(net.places, found, strict=True):
-        most = room.seen if room.bound is None else room.bound
+    for place, limit in zip(net.places, found, strict=True):
+        most = limit.seen if limit.bound is None else limit.bound
         if most > MOST_TOKENS:
             d.error(
                 CAPACITY_LARGE,
                 f"place `{place.name}` can hold {most:,} tokens, and a program has room for {MOST_TOKENS:,}",
                 place.origins[0],
-                notes=[f"what proves it: {room.proof}"],
+                notes=[f"what proves it: {limit.proof}"],
                 hint="limit the place in the net, or declare in cell.toml what it really holds: "
                 f'[capacity] "{place.short}" = N',
             )
@@ -232,7 +232,7 @@ def warn_assumed(
             place.origins[0],
             hint="look at the arcs of this place: is one drawn the wrong way round, or missing?",
         )
-    assumed = [p.name for p, room in zip(net.places, found, strict=True) if room.kind == ASSUMED]
+    assumed = [p.name for p, limit in zip(net.places, found, strict=True) if limit.kind == ASSUMED]
     if assumed:
         some = ", ".join(f"`{name}`" for name in assumed[:_LISTED])
         more = ", ..." if len(assumed) > _LISTED else ""

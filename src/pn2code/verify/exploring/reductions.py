@@ -13,10 +13,10 @@ from pn2code.verify.exploring import time_reduction
 from pn2code.verify.exploring.dependency import Dependency, dependency
 from pn2code.verify.exploring.elements import Elements, NotPossibleError, elements
 from pn2code.verify.exploring.limits import Reduction
-from pn2code.verify.exploring.time_reduction import Obstacle
+from pn2code.verify.exploring.time_reduction import NotReducible
 
-OBSTACLES: dict[Reduction, Callable[..., Obstacle | None]] = {
-    Reduction.TIME: time_reduction.obstacle,
+WHY_NOT_REDUCIBLE: dict[Reduction, Callable[..., NotReducible | None]] = {
+    Reduction.TIME: time_reduction.why_not_reducible,
 }
 """What looks for the first thing in a net that is in the way of a reduction."""
 OF_ELEMENTS = (Reduction.PARTIAL_ORDER, Reduction.SYMMETRY)
@@ -67,13 +67,13 @@ def possible(
     """
     found: list[Reduction] = []
     for reduction in wanted:
-        if reduction not in OBSTACLES:
+        if reduction not in WHY_NOT_REDUCIBLE:
             continue
-        obstacle = OBSTACLES[reduction](net, predicates)
-        if obstacle is None:
+        why = WHY_NOT_REDUCIBLE[reduction](net, predicates)
+        if why is None:
             found.append(reduction)
         else:
-            refuse(reduction, obstacle.message, obstacle.at, d)
+            refuse(reduction, why.message, why.at, d)
     asked = [r for r in wanted if r in OF_ELEMENTS]
     try:
         table = elements(net, wants_symmetry=Reduction.SYMMETRY in asked) if asked else None

@@ -11,7 +11,7 @@ state must not depend on the time itself:
 * new stamps are the time plus a delay;
 * nothing that is evaluated reads the time, the number of steps, stamps, or what is outside the marking.
 
-reason = obstacle(net)        # None: the reduction is possible
+reason = why_not_reducible(net)        # None: the reduction is possible
 """
 
 from __future__ import annotations
@@ -52,17 +52,17 @@ _TIMED = "timed"
 
 
 @frozen
-class Obstacle:
+class NotReducible:
     """Why the reduction is not possible, and where that stands."""
 
     message: str
     at: Origin | Span
 
 
-def obstacle(net: FlatNet, predicates: Sequence[Predicate] = ()) -> Obstacle | None:
+def why_not_reducible(net: FlatNet, predicates: Sequence[Predicate] = ()) -> NotReducible | None:
     """The first thing in the net, or in what is asked, that tells states apart by the time alone; None: nothing."""
     if net.real_time:
-        return Obstacle("the clock is real, and sums of reals are rounded", Origin(net.file))
+        return NotReducible("the clock is real, and sums of reals are rounded", Origin(net.file))
     look = _Look(net)
     for t in net.transitions:
         found = look.transition(t)
@@ -81,14 +81,14 @@ class _Look:
         self._declared = _declared(net.program)
         self._seen: set[int] = set()
 
-    def transition(self, t: FlatTransition) -> Obstacle | None:
+    def transition(self, t: FlatTransition) -> NotReducible | None:
         for arc in t.arcs:
             timed = self._net.places[arc.place].colset.timed
             if arc.inscription is None or arc.kind is ArcKind.OUTPUT or not timed:
                 continue
             for term in arc.inscription.terms:
                 if term.delay is not None and not _is_natural(term.delay, self._declared):
-                    return Obstacle(
+                    return NotReducible(
                         f"the delay of an input arc of `{t.name}` may be negative", term.delay.span
                     )
         for e in inscriptions(t):
@@ -97,7 +97,7 @@ class _Look:
                 return found
         return None
 
-    def colour_sets(self) -> Obstacle | None:
+    def colour_sets(self) -> NotReducible | None:
         for colset in self._net.program.colsets.values():
             for e in (colset.predicate, colset.members):
                 found = None if e is None else self.expression(e, "a colour set ")
@@ -105,14 +105,14 @@ class _Look:
                     return found
         return None
 
-    def expression(self, e: core.Exp, user: str) -> Obstacle | None:
+    def expression(self, e: core.Exp, user: str) -> NotReducible | None:
         """Looks at an expression and at all that it uses of the declarations."""
         waiting = [e]
         while waiting:
             for x in walk(waiting.pop()):
                 what = _reads(x)
                 if what is not None:
-                    return Obstacle(f"{user}{what}", x.span)
+                    return NotReducible(f"{user}{what}", x.span)
                 if isinstance(x, core.Var) and x.symbol.uid not in self._seen:
                     self._seen.add(x.symbol.uid)
                     waiting += self._declared.get(x.symbol.uid, ())

@@ -48,7 +48,7 @@ class _Graph:
     token: int
     parent: Mapping[int, tuple[int, Mapping[str, Any]]]
 
-    def way(self) -> list[Mapping[str, Any]]:
+    def path(self) -> list[Mapping[str, Any]]:
         """The arcs from the first node."""
         arcs = []
         node = self.node
@@ -124,7 +124,7 @@ def _played(net: FlatNet, storage: Mapping[str, str], graph: _Graph, path: Path)
     try:
         with closing(TraceFile(path)) as file:
             file.header(game, "reference", 1)
-            for arc in graph.way():
+            for arc in graph.path():
                 t = net.transitions[arc["index"]]
                 outputs = t.code.outputs if t.code else ()
                 bound = {
@@ -141,4 +141,4 @@ def _played(net: FlatNet, storage: Mapping[str, str], graph: _Graph, path: Path)
         kept = None
     except GameError:
         return None
-    return Run(len(graph.way()), graph.node, tuple(named), kept, graph.token)
+    return Run(len(graph.path()), graph.node, tuple(named), kept, graph.token)

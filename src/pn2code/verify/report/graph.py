@@ -83,7 +83,7 @@ class StateGraph:
         dead, home: numbers of nodes.
         cyclic: components with more than one node, or with an arc from a node to itself.
         components: how many there are.
-        way: positions in `arcs` that lead to the first dead marking; () when there is none.
+        path: positions in `arcs` that lead to the first dead marking; () when there is none.
     """
 
     nodes: tuple[Node, ...]
@@ -92,7 +92,7 @@ class StateGraph:
     home: frozenset[int]
     cyclic: frozenset[int]
     components: int
-    way: tuple[int, ...]
+    path: tuple[int, ...]
 
     def edges(self) -> dict[tuple[int, int], list[int]]:
         """Positions in `arcs` by source and target: parallel arcs are one line in a picture."""
@@ -152,13 +152,13 @@ def _graph(net: FlatNet, rows: Sequence[Mapping[str, Any]], arcs: tuple[Arc, ...
     sizes = Counter(component.values())
     cyclic = {c for c, n in sizes.items() if n > 1}
     cyclic |= {component[arc.source] for arc in arcs if arc.source == arc.target}
-    way: list[int] = []
+    path: list[int] = []
     at = min(dead, default=1)
     while at in parent:
-        way.append(parent[at])
+        path.append(parent[at])
         at = arcs[parent[at]].source
     return StateGraph(
-        tuple(nodes), arcs, dead, home, frozenset(cyclic), len(sizes), tuple(reversed(way))
+        tuple(nodes), arcs, dead, home, frozenset(cyclic), len(sizes), tuple(reversed(path))
     )
 
 

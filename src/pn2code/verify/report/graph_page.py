@@ -1,6 +1,6 @@
 """A small state space as one HTML file: the picture, and tables of nodes and arcs that it is linked with.
 
-It can be read without scripts and without a network.
+It can be read without a network; with scripts it can be zoomed, moved and searched.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ def page(net: FlatNet, graph: StateGraph, remarks: Sequence[str] = ()) -> str:
         remarks=remarks,
         legend=[{"sample": Markup(sample(item)), "text": item.text} for item in legend(graph)],
         picture=Markup(picture),
-        way=[graph.arcs[i] for i in graph.way],
+        path=[graph.arcs[i] for i in graph.path],
         timed=net.timed,
         nodes=[
             {
@@ -70,6 +70,7 @@ def page(net: FlatNet, graph: StateGraph, remarks: Sequence[str] = ()) -> str:
             for n in graph.nodes
         ],
         arcs=graph.arcs,
+        script=html.script("graph.js"),
     )
 
 

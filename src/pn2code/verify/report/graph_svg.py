@@ -19,7 +19,7 @@ from pn2code.verify.report.graph_layout import Drawn, Layout, Placed, lay_out
 INK, SOFT, BACK = "#1d2330", "#5c6575", "#9aa3b2"
 DEAD, DEAD_FILL = "#c00000", "#fbdcdc"
 HOME = "#1b7a1b"
-WAY = "#d95f02"
+PATH = "#d95f02"
 GROUPS = (
     "#dbe9f8", "#e8dff4", "#dcf0dd", "#fdf0d0", "#dff2f2", "#f6e3ee", "#ecead8", "#e3e6fa",
 )  # fmt: skip
@@ -62,13 +62,13 @@ def picture(graph: StateGraph, title: str) -> str:
 
 def figure(layout: Layout, graph: StateGraph, links: Links) -> tuple[list[str], Box]:
     """All nodes and lines, without the `svg` around them, and the box around them."""
-    way = set(graph.way)
-    on_way = [e for e in layout.edges if way.intersection(e.arcs)]
-    others = [e for e in layout.edges if not way.intersection(e.arcs)]
+    path = set(graph.path)
+    on_path = [e for e in layout.edges if path.intersection(e.arcs)]
+    others = [e for e in layout.edges if not path.intersection(e.arcs)]
     others.sort(key=lambda e: not e.goes_back)  # what leads down is above what leads back
     rows: list[str] = []
     boxes: list[Box] = [p.box for p in layout.nodes]
-    for edges, shown in ((others, False), (on_way, True)):
+    for edges, shown in ((others, False), (on_path, True)):
         for edge in edges:
             drawn, box = _edge(edge, graph, shown, links)
             rows.append(drawn)
@@ -136,9 +136,9 @@ def all_home(graph: StateGraph) -> bool:
     return len(graph.home) == len(graph.nodes)
 
 
-def _edge(edge: Drawn, graph: StateGraph, on_way: bool, links: Links) -> tuple[str, Box]:
-    ink = WAY if on_way else BACK if edge.goes_back else SOFT
-    thick = 2.2 if on_way else 1.0
+def _edge(edge: Drawn, graph: StateGraph, on_path: bool, links: Links) -> tuple[str, Box]:
+    ink = PATH if on_path else BACK if edge.goes_back else SOFT
+    thick = 2.2 if on_path else 1.0
     drawn, direction, tip = _course(edge)
     rows = [
         _tip(edge, graph),
@@ -147,7 +147,7 @@ def _edge(edge: Drawn, graph: StateGraph, on_way: bool, links: Links) -> tuple[s
         f'<path d="{drawn}" fill="none" stroke="#ffffff" stroke-opacity="0" stroke-width="8"/>',
         _head(tip, direction, ink) if edge.source != edge.target else _side_head(tip, ink),
     ]
-    group = f'<g class="arc{" way" if on_way else ""}">{"".join(rows)}</g>'
+    group = f'<g class="arc{" way" if on_path else ""}">{"".join(rows)}</g>'
     box = of_points(edge.points)
     if edge.source == edge.target:
         box = box.grown(26)
@@ -254,8 +254,8 @@ def legend(graph: StateGraph) -> list[Item]:
         many = len(graph.cyclic) > 1
         said = "components with cycles, each its colour" if many else "in a cycle"
         found.append(Item(GROUPS[min(graph.cyclic) % len(GROUPS)], INK, 1.0, said))
-    if graph.way:
-        found.append(Item("", WAY, 2.2, "a shortest way to a dead marking"))
+    if graph.path:
+        found.append(Item("", PATH, 2.2, "a shortest way to a dead marking"))
     return found
 
 

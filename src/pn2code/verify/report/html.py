@@ -10,6 +10,11 @@ from markupsafe import Markup
 from pn2code.base.resources import templates_folder
 
 
+def script(name: str) -> Markup:
+    """A file of `templates/html` as the content of a `script` element."""
+    return Markup((templates_folder() / "html" / name).read_text(encoding="utf-8"))
+
+
 def page(template: str, styles: tuple[str, ...], **values: Any) -> str:
     """A page as text; names, values and inscriptions are strangers' texts: all that is no `Markup` is escaped.
 

@@ -25,7 +25,7 @@ from pn2code.verify.exploring.result import Exploration
 
 GRAPH_KINDS = (".svg", ".html")
 PLOT_KINDS = (".svg", ".png")
-MOST_SVG, MOST_HTML = 300, 2000
+MOST_SVG, MOST_HTML = 300, 5000
 """Nodes in a picture; with a page around it more can be found."""
 _MOST_ARCS = 12
 """Times as many arcs."""
@@ -103,7 +103,7 @@ class Pictures:
                 )
 
     def _write_graph(self, path: Path, net: FlatNet, found: Exploration, d: Diagnostics) -> None:
-        why, hint = self._obstacle(found)
+        why, hint = self._why_no_picture(found)
         if why:
             d.warning(GRAPH_NOT_DRAWN, f"`{path}` is not drawn: {why}", Origin(net.file), hint=hint)
             return
@@ -121,7 +121,7 @@ class Pictures:
         with whole_file(path) as beside:
             beside.write_text(text, encoding="utf-8")
 
-    def _obstacle(self, found: Exploration) -> tuple[str, str]:
+    def _why_no_picture(self, found: Exploration) -> tuple[str, str]:
         """Why there is no picture, and what to do; "" when there is one."""
         smaller = "a smaller space: `--set NAME=VALUE`, `--reduce`; `--plot` draws how the exploration went"
         if found.approximation is not None:
@@ -147,8 +147,8 @@ class Pictures:
 def _both(
     first: Callable[[Mapping[str, Any]], None], second: Callable[[Mapping[str, Any]], None]
 ) -> Callable[[Mapping[str, Any]], None]:
-    def tell(said: Mapping[str, Any]) -> None:
+    def report(said: Mapping[str, Any]) -> None:
         first(said)
         second(said)
 
-    return tell
+    return report

@@ -26,7 +26,7 @@ MOST_FIGURES = 240
 def steps_page(
     document: Document,
     pages: Sequence[RawPage],
-    moments: Sequence[TraceFrame],
+    frames: Sequence[TraceFrame],
     chosen: int,
     last: int,
     title: str,
@@ -36,31 +36,31 @@ def steps_page(
 
     Args:
         document, pages: the net, and its pages to be drawn.
-        moments: some that follow each other.
+        frames: some that follow each other.
         chosen: the number of the step that is shown first, with all pages.
         last: the number of the last step.
         title: what stands above.
         loop: so many steps come before those that are repeated for ever; None: none are.
     """
     scenes = {p.id: build(document, p) for p in pages}
-    every = [_instances(pages, m) for m in moments]
+    every = [_instances(pages, m) for m in frames]
     involved = [
         own if m.number == chosen else [(p, n) for p, n in own if _is_about(p, n, m)]
-        for m, own in zip(moments, every, strict=True)
+        for m, own in zip(frames, every, strict=True)
     ]
     choice = next(
         (c for c in (every, involved) if sum(map(len, c)) <= MOST_FIGURES),
-        [own if m.number == chosen else [] for m, own in zip(moments, every, strict=True)],
+        [own if m.number == chosen else [] for m, own in zip(frames, every, strict=True)],
     )
     sections = [
         {
             "number": m.number,
             "step": m.step,
             "figures": [_figure(scenes[p.id], p, n, m) for p, n in own],
-            "before": m.number - 1 if m is not moments[0] else None,
-            "after": m.number + 1 if m is not moments[-1] else None,
+            "before": m.number - 1 if m is not frames[0] else None,
+            "after": m.number + 1 if m is not frames[-1] else None,
         }
-        for m, own in zip(moments, choice, strict=True)
+        for m, own in zip(frames, choice, strict=True)
     ]
     # The chosen one comes last: it hides when another, before it, is visited.
     sections.sort(key=lambda section: section["number"] == chosen)
@@ -72,8 +72,8 @@ def steps_page(
         chosen=chosen,
         last=last,
         again=loop if loop is not None and loop < last else None,
-        moments=moments,
-        is_timed=any(m.step is not None and m.step.time for m in moments),
+        frames=frames,
+        is_timed=any(m.step is not None and m.step.time for m in frames),
     )
 
 

@@ -1,7 +1,7 @@
 """A trace on the pages of its net: after each step the tokens, what has occurred, and what it has changed.
 
-moments = list(follow(net, {}, Path("net.dead-40.trace.jsonl"), lambda n: True))
-moments[-1].state.overlay(page, 1, Overlay())
+frames = list(follow(net, {}, Path("net.dead-40.trace.jsonl"), lambda n: True))
+frames[-1].state.overlay(page, 1, Overlay())
 """
 
 from __future__ import annotations

@@ -64,7 +64,7 @@ def webpage(
     written: datetime,
     answers: Sequence[Answer] = (),
     control: Control | None = None,
-    medium: Sequence[Mapping[str, Any]] = (),
+    channel_model: Sequence[Mapping[str, Any]] = (),
     subject: Sequence[tuple[str, str, str]] = (),
     remark: str = "",
     counts: Counts | None = None,
@@ -79,7 +79,7 @@ def webpage(
         written: the date it carries.
         answers: of properties that were asked.
         control: the checks of a cell's supervisor.
-        medium: those of its shared files, as rows: `name`, `said`, `remarks`, `answer`, `kind`, `runs` (lines each).
+        channel_model: its shared files, as rows: `name`, `said`, `remarks`, `answer`, `kind`, `runs` (lines each).
         subject: what was looked at: what it is, its name, its SHA-256 or value.
         counts: how all answers have come out; None: as these answers to properties.
         remark: why the subject lacks something; "": it does not.
@@ -88,7 +88,7 @@ def webpage(
     player = _Player(net, storage, deadline)
     tables: dict[str, Sequence[Mapping[str, Any]]] = {
         "Controller checks": list(control_text.rows(control)) if control else [],
-        "Medium": list(medium),
+        "Medium": list(channel_model),
         "Properties": [_property(player, a) for a in answers],
     }
     counts = counts or Counts.of(map(kind_of, answers))
@@ -109,7 +109,10 @@ def webpage(
         assumed=[
             sentence.replace("`", "")
             for sentence in assumed(
-                timed=net.timed, control=control is not None, medium=bool(medium), fair=fair
+                timed=net.timed,
+                control=control is not None,
+                channel_model=bool(channel_model),
+                fair=fair,
             )
         ],
         statistics=list(_statistics(found)),

@@ -18,7 +18,7 @@ extern "C" {
 #define PN_CELL_CHANNELS_MAX 128U
 #define PN_CELL_PEERS_MAX    64U
 
-/* One scalar of a token, as it is written in a file. The leaves of the place's tokens (pn_leaf_count) are the same
+/* One scalar of a token, as it is written in a file. The scalars of the place's tokens (pn_scalar_count) are the same
  * scalars seen from the net; here is what a reader needs besides: names of constructors and ranges. */
 typedef enum pn_scalar_kind {
     PN_SCALAR_UNIT,   /* written 1 */

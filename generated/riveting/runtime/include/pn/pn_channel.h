@@ -49,7 +49,7 @@ typedef enum pn_channel_state {
 
 typedef struct pn_message {
     uint32_t count;
-    pn_leaf_t leaf[PN_CHANNEL_SCALARS];
+    pn_scalar_value_t value[PN_CHANNEL_SCALARS];
     uint32_t column_of[PN_CHANNEL_SCALARS]; /* where in its line each of them begins, 1-based */
     bool sealed;                            /* it has the line `# seq session crc` */
     uint64_t seq;
@@ -57,7 +57,7 @@ typedef struct pn_message {
     uint32_t column;                /* of what was refused, 1-based; 0: the whole */
     char report[PN_CHANNEL_REPORT]; /* what was found and what was expected */
     size_t text_length;
-    char text[PN_CHANNEL_TEXT]; /* decoded strings, to which leaves point */
+    char text[PN_CHANNEL_TEXT]; /* decoded strings, to which scalars point */
 } pn_message_t;
 
 /* --- text form ---------------------------------------------------------------------------------------------------- */
@@ -68,9 +68,10 @@ size_t pn_real_format(double value, char *out, size_t capacity);
 
 /* The scalars separated by one blank. Returns the length; 0 when it does not fit, or when a reader would refuse a
  * scalar: it is not finite, out of its range, no constructor. */
-size_t pn_scalars_format(const pn_scalar_t *scalar, uint32_t count, const pn_leaf_t *leaf, char *out, size_t capacity);
+size_t pn_scalars_format(const pn_scalar_t *scalar, uint32_t count, const pn_scalar_value_t *scalar_value, char *out,
+                         size_t capacity);
 
-/* Reads `count` scalars from the `length` bytes of one line and appends them to `out` (leaves, decoded strings).
+/* Reads `count` scalars from the `length` bytes of one line and appends them to `out` (scalars, decoded strings).
  * On a mistake: false, `out` says which (refusal, column, report). */
 PN_NODISCARD bool pn_scalars_parse(const pn_scalar_t *scalar, uint32_t count, const char *line, size_t length,
                                    pn_message_t *out);
@@ -80,8 +81,8 @@ bool pn_channel_is_empty(const char *text, size_t length);
 
 /* The whole file of a message: payload, and the line `# seq session crc32`. Returns the length; 0 when
  * pn_scalars_format gives nothing or more than PN_CHANNEL_PAYLOAD. */
-size_t pn_channel_compose(const pn_cell_channel_t *channel, const pn_leaf_t *leaf, uint64_t seq, const char *session,
-                          char *out, size_t capacity);
+size_t pn_channel_compose(const pn_cell_channel_t *channel, const pn_scalar_value_t *scalar_value, uint64_t seq,
+                          const char *session, char *out, size_t capacity);
 
 /* Reads a file: EMPTY, MESSAGE or REFUSED. `consumed` is the seq of the last message that was consumed, 0 for none. */
 pn_channel_state_t pn_channel_parse(const pn_cell_channel_t *channel, const char *text, size_t length,
@@ -137,7 +138,7 @@ typedef struct pn_transport {
     /* The token has been consumed: empties the channel (I4). */
     PN_NODISCARD bool (*clear)(void *self, uint32_t channel);
     /* Publishes a message on an outgoing channel; a fault when the one before has not been taken (I3). */
-    PN_NODISCARD bool (*write)(void *self, uint32_t channel, const pn_leaf_t *leaf);
+    PN_NODISCARD bool (*write)(void *self, uint32_t channel, const pn_scalar_value_t *scalar_value);
     /* What is known of the peer (I8, I9). */
     void (*party)(void *self, uint32_t peer, pn_party_t *out);
     /* Says what has become of this side (I9); "" where there is no reason to give. */

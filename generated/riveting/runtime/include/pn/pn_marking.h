@@ -31,10 +31,10 @@ size_t pn_binding_size(const pn_net_t *net);
 /* Makes the initial marking in any memory, and gives the variables outside the marking their first values. Empties the
  * arena before. False on error. */
 PN_NODISCARD bool pn_marking_init(const pn_net_t *net, pn_ctx_t *cx, void *marking);
-/* Puts one token made of leaves into a place, stamped with the marking's time. False (the context has the error) when
+/* Puts one token made of scalars into a place, stamped with the marking's time. False (the context has the error) when
  * they do not fit the colour set or the place is full. */
 PN_NODISCARD bool pn_marking_put(const pn_net_t *net, pn_ctx_t *cx, void *marking, uint32_t place,
-                                 const pn_leaf_t *leaf, uint32_t leaves);
+                                 const pn_scalar_value_t *scalar_value, uint32_t scalars);
 /* The earliest time after now at which something may become enabled: a stamp ends, or the delay of an input arc lets a
  * token be taken before that. False if there is none, or after an error (delays are computed). */
 bool pn_next_time(const pn_net_t *net, pn_ctx_t *cx, const void *marking, pn_time_t *next);

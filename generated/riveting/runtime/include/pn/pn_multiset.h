@@ -118,11 +118,11 @@ void pn_multiset_next_time(const pn_multiset_t *multiset, const void *marking, p
 void pn_multiset_threshold(const pn_multiset_t *multiset, const void *marking, pn_time_t now, pn_time_t early,
                            bool *found, pn_time_t *next);
 void pn_multiset_json(const pn_multiset_t *multiset, const void *marking, pn_text_t *out);
-uint32_t pn_multiset_token(const pn_multiset_t *multiset, const void *marking, uint32_t i, pn_leaf_t *leaf,
-                           uint32_t capacity);
-/* Adds one token made of leaves, stamped with the context's time. */
-bool pn_multiset_put(pn_ctx_t *cx, const pn_multiset_t *multiset, void *marking, const pn_leaf_t *leaf,
-                     uint32_t leaves);
+uint32_t pn_multiset_token(const pn_multiset_t *multiset, const void *marking, uint32_t i,
+                           pn_scalar_value_t *scalar_value, uint32_t capacity);
+/* Adds one token made of scalars, stamped with the context's time. */
+bool pn_multiset_put(pn_ctx_t *cx, const pn_multiset_t *multiset, void *marking, const pn_scalar_value_t *scalar_value,
+                     uint32_t scalars);
 /* Of a timed place they begin with the length of what comes before the stamps, as a uint32_t. */
 #define PN_STAMPS_AT sizeof(uint32_t)
 size_t pn_multiset_encode(const pn_multiset_t *multiset, const void *marking, uint8_t *out, size_t room);

@@ -43,21 +43,21 @@ extern "C" {
 
 /* One scalar of a token, in the declared order of the colour set's components; how tokens cross the border of the net.
  */
-typedef enum pn_leaf_kind {
-    PN_LEAF_BOOL,
-    PN_LEAF_INT,
-    PN_LEAF_REAL,
-    PN_LEAF_STRING,
-    PN_LEAF_ENUM /* value: position of the constructor; also unit (0) and index (its number) */
-} pn_leaf_kind_t;
+typedef enum pn_scalar_value_kind {
+    PN_VALUE_BOOL,
+    PN_VALUE_INT,
+    PN_VALUE_REAL,
+    PN_VALUE_STRING,
+    PN_VALUE_ENUM /* value: position of the constructor; also unit (0) and index (its number) */
+} pn_scalar_value_kind_t;
 
-typedef struct pn_leaf {
-    pn_leaf_kind_t kind;
+typedef struct pn_scalar_value {
+    pn_scalar_value_kind_t kind;
     int64_t integer;  /* BOOL, INT, ENUM */
     double real;      /* REAL */
     const char *text; /* STRING, and the constructor's name for ENUM; valid until the next firing */
     uint32_t length;  /* of a STRING's text, in which any byte may be */
-} pn_leaf_t;
+} pn_scalar_value_t;
 
 /* Called for each enabled binding element; returns false to stop the enumeration. The binding lives until the call
  * returns. */

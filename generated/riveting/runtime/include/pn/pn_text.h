@@ -36,7 +36,7 @@ void pn_text_json_bytes(pn_text_t *text, const char *bytes, size_t length);
 void pn_text_json_string(pn_text_t *text, const char *bytes, size_t length);
 /* A JSON number, or "nan", "inf", "-inf". */
 void pn_text_json_real(pn_text_t *text, double value);
-/* One leaf as a JSON value. */
-void pn_text_json_leaf(pn_text_t *text, const pn_leaf_t *leaf);
+/* One scalar as a JSON value. */
+void pn_text_json_scalar(pn_text_t *text, const pn_scalar_value_t *scalar_value);
 
 #endif /* PN_TEXT_H */

@@ -142,35 +142,38 @@ static size_t string_format(const char *text, size_t length, char *out, size_t c
     return at;
 }
 
-static size_t scalar_format(const pn_scalar_t *scalar, const pn_leaf_t *leaf, char *out, size_t capacity)
+static size_t scalar_format(const pn_scalar_t *scalar, const pn_scalar_value_t *scalar_value, char *out,
+                            size_t capacity)
 {
     int length = 0;
     switch (scalar->kind) {
     case PN_SCALAR_UNIT: length = snprintf(out, capacity, "1"); break;
-    case PN_SCALAR_BOOL: length = snprintf(out, capacity, "%d", (leaf->integer != 0) ? 1 : 0); break;
+    case PN_SCALAR_BOOL: length = snprintf(out, capacity, "%d", (scalar_value->integer != 0) ? 1 : 0); break;
     case PN_SCALAR_INT:
     case PN_SCALAR_INDEX:
-        if (!scalar->bounded || ((leaf->integer >= scalar->low) && (leaf->integer <= scalar->high))) {
-            length = snprintf(out, capacity, "%" PRId64, leaf->integer);
+        if (!scalar->bounded || ((scalar_value->integer >= scalar->low) && (scalar_value->integer <= scalar->high))) {
+            length = snprintf(out, capacity, "%" PRId64, scalar_value->integer);
         }
         break;
     case PN_SCALAR_ENUM:
-        if ((uint64_t)leaf->integer < scalar->name_count) { /* a negative number is a large one here */
-            length = snprintf(out, capacity, "%s", scalar->name[leaf->integer]);
+        if ((uint64_t)scalar_value->integer < scalar->name_count) { /* a negative number is a large one here */
+            length = snprintf(out, capacity, "%s", scalar->name[scalar_value->integer]);
         }
         break;
     case PN_SCALAR_REAL:
-        if (!scalar->bounded || ((leaf->real >= scalar->real_low) && (leaf->real <= scalar->real_high))) {
-            length = (int)pn_real_format(leaf->real, out, capacity);
+        if (!scalar->bounded
+            || ((scalar_value->real >= scalar->real_low) && (scalar_value->real <= scalar->real_high))) {
+            length = (int)pn_real_format(scalar_value->real, out, capacity);
         }
         break;
-    case PN_SCALAR_STRING: length = (int)string_format(leaf->text, leaf->length, out, capacity); break;
+    case PN_SCALAR_STRING: length = (int)string_format(scalar_value->text, scalar_value->length, out, capacity); break;
     default: break;
     }
     return ((length > 0) && ((size_t)length < capacity)) ? (size_t)length : 0U;
 }
 
-size_t pn_scalars_format(const pn_scalar_t *scalar, uint32_t count, const pn_leaf_t *leaf, char *out, size_t capacity)
+size_t pn_scalars_format(const pn_scalar_t *scalar, uint32_t count, const pn_scalar_value_t *scalar_value, char *out,
+                         size_t capacity)
 {
     size_t at = 0U;
     for (uint32_t i = 0U; i < count; i++) {
@@ -180,7 +183,7 @@ size_t pn_scalars_format(const pn_scalar_t *scalar, uint32_t count, const pn_lea
         if (i > 0U) {
             out[at++] = ' ';
         }
-        const size_t length = scalar_format(&scalar[i], &leaf[i], out + at, capacity - at);
+        const size_t length = scalar_format(&scalar[i], &scalar_value[i], out + at, capacity - at);
         if (length == 0U) {
             return 0U;
         }
@@ -197,10 +200,10 @@ static uint32_t seal(const char *payload, size_t length, uint64_t seq, const cha
     return pn_crc32(pn_crc32(0U, payload, length), tail, (size_t)tail_length);
 }
 
-size_t pn_channel_compose(const pn_cell_channel_t *channel, const pn_leaf_t *leaf, uint64_t seq, const char *session,
-                          char *out, size_t capacity)
+size_t pn_channel_compose(const pn_cell_channel_t *channel, const pn_scalar_value_t *scalar_value, uint64_t seq,
+                          const char *session, char *out, size_t capacity)
 {
-    const size_t payload = pn_scalars_format(channel->scalar, channel->scalar_count, leaf, out, capacity);
+    const size_t payload = pn_scalars_format(channel->scalar, channel->scalar_count, scalar_value, out, capacity);
     if ((payload == 0U) || (payload > PN_CHANNEL_PAYLOAD)) {
         return 0U;
     }
@@ -297,7 +300,8 @@ static bool number_text(const pn_scalar_t *scalar, const pn_word_t *word, char *
     return true;
 }
 
-static bool integer_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf_t *leaf, pn_message_t *out)
+static bool integer_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_scalar_value_t *scalar_value,
+                          pn_message_t *out)
 {
     char name[NAMED_MAX];
     char text[NUMBER_MAX];
@@ -325,11 +329,12 @@ static bool integer_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_l
                value, named(scalar, name), scalar->low, scalar->high);
         return false;
     }
-    leaf->integer = (int64_t)value;
+    scalar_value->integer = (int64_t)value;
     return true;
 }
 
-static bool real_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf_t *leaf, pn_message_t *out)
+static bool real_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_scalar_value_t *scalar_value,
+                       pn_message_t *out)
 {
     char shown[160];
     char name[NAMED_MAX];
@@ -352,18 +357,19 @@ static bool real_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf
                scalar->real_high);
         return false;
     }
-    leaf->real = value;
+    scalar_value->real = value;
     return true;
 }
 
-static bool enum_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf_t *leaf, pn_message_t *out)
+static bool enum_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_scalar_value_t *scalar_value,
+                       pn_message_t *out)
 {
     char shown[160];
     char name[NAMED_MAX];
     for (uint32_t i = 0U; i < scalar->name_count; i++) {
         if ((strlen(scalar->name[i]) == word->length) && (memcmp(scalar->name[i], word->text, word->length) == 0)) {
-            leaf->integer = (int64_t)i;
-            leaf->text = scalar->name[i];
+            scalar_value->integer = (int64_t)i;
+            scalar_value->text = scalar->name[i];
             return true;
         }
     }
@@ -380,12 +386,13 @@ static int hex_value(char c)
 }
 
 /* Decodes a quoted string into the message's text. */
-static bool string_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf_t *leaf, pn_message_t *out)
+static bool string_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_scalar_value_t *scalar_value,
+                         pn_message_t *out)
 {
     bool good = (word->length >= 2U) && (word->text[0] == '"') && (word->text[word->length - 1U] == '"')
                 && (out->text_length + word->length < sizeof out->text);
     size_t at = out->text_length;
-    leaf->text = out->text + at;
+    scalar_value->text = out->text + at;
     size_t i = 1U;
     while (good && (i + 1U < word->length)) {
         char c = word->text[i++];
@@ -414,13 +421,14 @@ static bool string_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_le
         refuse_word(out, scalar, word, "is not a string in double quotes (", ")");
         return false;
     }
-    leaf->length = (uint32_t)(at - out->text_length);
+    scalar_value->length = (uint32_t)(at - out->text_length);
     out->text[at++] = '\0';
     out->text_length = at;
     return true;
 }
 
-static bool scalar_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_leaf_t *leaf, pn_message_t *out)
+static bool scalar_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_scalar_value_t *scalar_value,
+                         pn_message_t *out)
 {
     static const char *const bool_name[2] = { "0", "1" };
     static const char *const unit_name[1] = { "1" };
@@ -431,39 +439,39 @@ static bool scalar_parse(const pn_scalar_t *scalar, const pn_word_t *word, pn_le
         .label = scalar->label, .colset = scalar->colset, .name_count = 1U, .name = unit_name
     };
     bool good = false;
-    leaf->integer = 0;
-    leaf->real = 0.0;
-    leaf->text = NULL;
-    leaf->length = 0U;
+    scalar_value->integer = 0;
+    scalar_value->real = 0.0;
+    scalar_value->text = NULL;
+    scalar_value->length = 0U;
     switch (scalar->kind) {
     case PN_SCALAR_UNIT:
-        leaf->kind = PN_LEAF_ENUM;
-        good = enum_parse(&unit_scalar, word, leaf, out);
-        leaf->text = (scalar->name_count > 0U) ? scalar->name[0] : "()";
+        scalar_value->kind = PN_VALUE_ENUM;
+        good = enum_parse(&unit_scalar, word, scalar_value, out);
+        scalar_value->text = (scalar->name_count > 0U) ? scalar->name[0] : "()";
         break;
     case PN_SCALAR_BOOL:
-        leaf->kind = PN_LEAF_BOOL;
-        good = enum_parse(&bool_scalar, word, leaf, out);
+        scalar_value->kind = PN_VALUE_BOOL;
+        good = enum_parse(&bool_scalar, word, scalar_value, out);
         break;
     case PN_SCALAR_INT:
-        leaf->kind = PN_LEAF_INT;
-        good = integer_parse(scalar, word, leaf, out);
+        scalar_value->kind = PN_VALUE_INT;
+        good = integer_parse(scalar, word, scalar_value, out);
         break;
     case PN_SCALAR_INDEX:
-        leaf->kind = PN_LEAF_ENUM;
-        good = integer_parse(scalar, word, leaf, out);
+        scalar_value->kind = PN_VALUE_ENUM;
+        good = integer_parse(scalar, word, scalar_value, out);
         break;
     case PN_SCALAR_REAL:
-        leaf->kind = PN_LEAF_REAL;
-        good = real_parse(scalar, word, leaf, out);
+        scalar_value->kind = PN_VALUE_REAL;
+        good = real_parse(scalar, word, scalar_value, out);
         break;
     case PN_SCALAR_STRING:
-        leaf->kind = PN_LEAF_STRING;
-        good = string_parse(scalar, word, leaf, out);
+        scalar_value->kind = PN_VALUE_STRING;
+        good = string_parse(scalar, word, scalar_value, out);
         break;
     case PN_SCALAR_ENUM:
-        leaf->kind = PN_LEAF_ENUM;
-        good = enum_parse(scalar, word, leaf, out);
+        scalar_value->kind = PN_VALUE_ENUM;
+        good = enum_parse(scalar, word, scalar_value, out);
         break;
     default: refuse(out, PN_REFUSAL_SCALAR, word->column, "unknown kind of scalar"); break;
     }
@@ -514,7 +522,7 @@ bool pn_scalars_parse(const pn_scalar_t *scalar, uint32_t count, const char *lin
                    pn_quote(word.text, word.length, shown, sizeof shown));
             return false;
         }
-        if (!scalar_parse(&scalar[i], &word, &out->leaf[out->count], out)) {
+        if (!scalar_parse(&scalar[i], &word, &out->value[out->count], out)) {
             return false;
         }
         out->column_of[out->count] = (uint32_t)word.column;

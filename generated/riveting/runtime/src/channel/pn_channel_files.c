@@ -253,7 +253,7 @@ static bool holds_nothing(uint32_t index, bool *empty)
     return true;
 }
 
-static bool files_write(void *self, uint32_t index, const pn_leaf_t *leaf)
+static bool files_write(void *self, uint32_t index, const pn_scalar_value_t *scalar_value)
 {
     (void)self;
     static char text[PN_CHANNEL_TEXT];
@@ -270,7 +270,8 @@ static bool files_write(void *self, uint32_t index, const pn_leaf_t *leaf)
                     channel->file, pn_quote(s_files.buffer, strlen(s_files.buffer), shown, sizeof shown),
                     s_files.cell->peer[channel->peer].name);
     }
-    const size_t length = pn_channel_compose(channel, leaf, state->seq + 1U, s_files.session, text, sizeof text);
+    const size_t length =
+        pn_channel_compose(channel, scalar_value, state->seq + 1U, s_files.session, text, sizeof text);
     if (length == 0U) {
         return fail(false,
                     "the token of place `%s` cannot be written to %s: a value is not finite or out of its range, or "

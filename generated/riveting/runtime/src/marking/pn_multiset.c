@@ -445,8 +445,8 @@ void pn_multiset_json(const pn_multiset_t *multiset, const void *marking, pn_tex
     pn_text_char(out, ']');
 }
 
-uint32_t pn_multiset_token(const pn_multiset_t *multiset, const void *marking, uint32_t i, pn_leaf_t *leaf,
-                           uint32_t capacity)
+uint32_t pn_multiset_token(const pn_multiset_t *multiset, const void *marking, uint32_t i,
+                           pn_scalar_value_t *scalar_value, uint32_t capacity)
 {
     if (PN_IS_PACKED(multiset)) {
         pn_colour_t colour;
@@ -458,39 +458,41 @@ uint32_t pn_multiset_token(const pn_multiset_t *multiset, const void *marking, u
             return 0U;
         }
         multiset->colour_of(number, &colour);
-        return pn_to_leaves(multiset->type, &colour, leaf, capacity);
+        return pn_to_scalars(multiset->type, &colour, scalar_value, capacity);
     }
     if (i >= pn_multiset_used(multiset, marking)) {
         return 0U;
     }
-    return pn_to_leaves(multiset->type, part(pn_multiset_entry(multiset, marking, i), multiset->value), leaf, capacity);
+    return pn_to_scalars(multiset->type, part(pn_multiset_entry(multiset, marking, i), multiset->value), scalar_value,
+                         capacity);
 }
 
-/* Whether a token made of these leaves refers to the arena: only its strings do. */
-static bool has_strings(const pn_leaf_t *leaf, uint32_t leaves)
+/* Whether a token made of these scalars refers to the arena: only its strings do. */
+static bool has_strings(const pn_scalar_value_t *scalar_value, uint32_t scalars)
 {
     bool has = false;
-    for (uint32_t i = 0U; (i < leaves) && !has; i++) {
-        has = (leaf[i].kind == PN_LEAF_STRING);
+    for (uint32_t i = 0U; (i < scalars) && !has; i++) {
+        has = (scalar_value[i].kind == PN_VALUE_STRING);
     }
     return has;
 }
 
-bool pn_multiset_put(pn_ctx_t *cx, const pn_multiset_t *multiset, void *marking, const pn_leaf_t *leaf, uint32_t leaves)
+bool pn_multiset_put(pn_ctx_t *cx, const pn_multiset_t *multiset, void *marking, const pn_scalar_value_t *scalar_value,
+                     uint32_t scalars)
 {
     const char *origin = cx->origin;
     const size_t mark = pn_arena_mark(cx->arena);
     pn_colour_t small;
     cx->origin = multiset->origin;
     void *value = (multiset->type->size <= sizeof small) ? &small : pn_arena_alloc(cx, multiset->type->size);
-    if ((value != NULL) && pn_from_leaves(cx, multiset->type, value, leaf, leaves)) {
+    if ((value != NULL) && pn_from_scalars(cx, multiset->type, value, scalar_value, scalars)) {
         pn_narrow(cx, multiset->type, value);
         if (!pn_is_legal(cx, multiset->type, value)) {
             pn_raise(cx, PN_ERR_COLOUR, NULL);
         }
     }
     const bool is_put = pn_ok(cx) && (value != NULL) && pn_multiset_add(cx, multiset, marking, value, 1U, cx->now);
-    if (!is_put || !has_strings(leaf, leaves)) {
+    if (!is_put || !has_strings(scalar_value, scalars)) {
         pn_arena_release(cx->arena, mark); /* a refused message may come again and again */
     }
     cx->origin = origin;

@@ -238,11 +238,11 @@ void sup_final_places(const sup_t *sup, pn_text_t *text)
 
 const char *sup_token_text(const sup_t *sup, const pn_cell_channel_t *channel, char *out, size_t capacity)
 {
-    pn_leaf_t leaf[PN_CHANNEL_SCALARS];
+    pn_scalar_value_t scalar_value[PN_CHANNEL_SCALARS];
     const uint32_t count =
-        pn_multiset_token(sup->net->place[channel->place].multiset, sup->marking, 0U, leaf, PN_CHANNEL_SCALARS);
+        pn_multiset_token(sup->net->place[channel->place].multiset, sup->marking, 0U, scalar_value, PN_CHANNEL_SCALARS);
     if ((count != channel->scalar_count)
-        || (pn_scalars_format(channel->scalar, channel->scalar_count, leaf, out, capacity) == 0U)) {
+        || (pn_scalars_format(channel->scalar, channel->scalar_count, scalar_value, out, capacity) == 0U)) {
         (void)snprintf(out, capacity, "?");
     }
     return out;

@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * Values as leaves: the scalars of which messages and input files are made.
+ * Values as scalars, of which messages and input files are made.
  */
 #include "pn/pn_arena.h"
 #include "pn/pn_num.h"
@@ -15,7 +15,7 @@ static bool is_scalar(const pn_type_t *type)
            && (type->kind != PN_KIND_REF) && (type->kind != PN_KIND_RECORD);
 }
 
-uint32_t pn_leaf_count(const pn_type_t *type)
+uint32_t pn_scalar_count(const pn_type_t *type)
 {
     uint32_t count = 0U;
     for (uint32_t i = 0U; i < parts_of(type); i++) {
@@ -33,60 +33,61 @@ uint32_t pn_leaf_count(const pn_type_t *type)
 
 uint32_t pn_line_count(const pn_type_t *type)
 {
-    const uint32_t leaves = pn_leaf_count(type);
-    if (leaves == 0U) {
+    const uint32_t scalars = pn_scalar_count(type);
+    if (scalars == 0U) {
         return 0U;
     }
-    return ((type->kind == PN_KIND_RECORD) && (leaves != type->count)) ? type->count : 1U;
+    return ((type->kind == PN_KIND_RECORD) && (scalars != type->count)) ? type->count : 1U;
 }
 
-uint32_t pn_line_leaves(const pn_type_t *type, uint32_t line)
+uint32_t pn_line_scalars(const pn_type_t *type, uint32_t line)
 {
-    return (pn_line_count(type) > 1U) ? pn_leaf_count(type->field[line].type) : pn_leaf_count(type);
+    return (pn_line_count(type) > 1U) ? pn_scalar_count(type->field[line].type) : pn_scalar_count(type);
 }
 
 /* --- there and back ----------------------------------------------------------------------------------------------- */
 
-static bool push_leaf(pn_leaf_t *leaf, uint32_t capacity, uint32_t *used, pn_leaf_t value)
+static bool push_scalar(pn_scalar_value_t *scalar_value, uint32_t capacity, uint32_t *used, pn_scalar_value_t value)
 {
     if (*used >= capacity) {
         return false;
     }
-    leaf[*used] = value;
+    scalar_value[*used] = value;
     (*used)++;
     return true;
 }
 
-static bool leaf_of(const pn_type_t *type, const void *value, pn_leaf_t *leaf, uint32_t capacity, uint32_t *used)
+static bool scalar_of(const pn_type_t *type, const void *value, pn_scalar_value_t *scalar_value, uint32_t capacity,
+                      uint32_t *used)
 {
-    pn_leaf_t one = { PN_LEAF_ENUM, 0, 0.0, NULL, 0U };
+    pn_scalar_value_t one = { PN_VALUE_ENUM, 0, 0.0, NULL, 0U };
     switch (type->kind) {
     case PN_KIND_BOOL:
-        one.kind = PN_LEAF_BOOL;
+        one.kind = PN_VALUE_BOOL;
         one.integer = load_bool(value) ? 1 : 0;
-        return push_leaf(leaf, capacity, used, one);
+        return push_scalar(scalar_value, capacity, used, one);
     case PN_KIND_INT:
-        one.kind = type->is_index ? PN_LEAF_ENUM : PN_LEAF_INT;
+        one.kind = type->is_index ? PN_VALUE_ENUM : PN_VALUE_INT;
         one.integer = load_int(value);
-        return push_leaf(leaf, capacity, used, one);
+        return push_scalar(scalar_value, capacity, used, one);
     case PN_KIND_BIG:
-        one.kind = PN_LEAF_INT;
+        one.kind = PN_VALUE_INT;
         one.integer = load_big(value).small;
-        return (load_big(value).large == NULL) && push_leaf(leaf, capacity, used, one);
+        return (load_big(value).large == NULL) && push_scalar(scalar_value, capacity, used, one);
     case PN_KIND_REAL:
-        one.kind = PN_LEAF_REAL;
+        one.kind = PN_VALUE_REAL;
         one.real = load_real(value);
-        return push_leaf(leaf, capacity, used, one);
+        return push_scalar(scalar_value, capacity, used, one);
     case PN_KIND_STRING:
-        one.kind = PN_LEAF_STRING;
+        one.kind = PN_VALUE_STRING;
         one.text = load_string(value).bytes;
         one.length = load_string(value).length;
-        return push_leaf(leaf, capacity, used, one);
+        return push_scalar(scalar_value, capacity, used, one);
     case PN_KIND_ENUM:
         one.integer = (int64_t)load_tag(value);
         one.text = type->name_of_value[load_tag(value)];
-        return push_leaf(leaf, capacity, used, one);
-    case PN_KIND_UNIT: return push_leaf(leaf, capacity, used, one);
+        return push_scalar(scalar_value, capacity, used, one);
+    case PN_KIND_UNIT: return push_scalar(scalar_value, capacity, used, one);
     case PN_KIND_RECORD: return true; /* its parts have been taken */
     case PN_KIND_CHAR:
     case PN_KIND_LIST:
@@ -96,49 +97,51 @@ static bool leaf_of(const pn_type_t *type, const void *value, pn_leaf_t *leaf, u
     }
 }
 
-uint32_t pn_to_leaves(const pn_type_t *type, const void *value, pn_leaf_t *leaf, uint32_t capacity)
+uint32_t pn_to_scalars(const pn_type_t *type, const void *value, pn_scalar_value_t *scalar_value, uint32_t capacity)
 {
     uint32_t used = 0U;
     for (uint32_t i = 0U; i < parts_of(type); i++) {
         const pn_part_t one = part_at(type, i);
-        if (!leaf_of(one.type, part(value, one.offset), leaf, capacity, &used)) {
+        if (!scalar_of(one.type, part(value, one.offset), scalar_value, capacity, &used)) {
             return 0U;
         }
     }
     return used;
 }
 
-static bool enum_from_leaf(const pn_type_t *type, const pn_leaf_t *leaf, void *value)
+static bool enum_from_scalar(const pn_type_t *type, const pn_scalar_value_t *scalar_value, void *value)
 {
     uint32_t tag = 0U;
-    if (leaf->text != NULL) {
-        while ((tag < type->count) && (strcmp(leaf->text, type->name_of_value[tag]) != 0)) {
+    if (scalar_value->text != NULL) {
+        while ((tag < type->count) && (strcmp(scalar_value->text, type->name_of_value[tag]) != 0)) {
             tag++;
         }
     } else {
-        tag = ((leaf->integer >= 0) && (leaf->integer < (int64_t)type->count)) ? (uint32_t)leaf->integer : type->count;
+        tag = ((scalar_value->integer >= 0) && (scalar_value->integer < (int64_t)type->count))
+                  ? (uint32_t)scalar_value->integer
+                  : type->count;
     }
     (void)memcpy(value, &tag, sizeof tag);
     return tag < type->count;
 }
 
-static bool part_from(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn_leaf_t *leaf, uint32_t leaves,
-                      uint32_t *used)
+static bool part_from(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn_scalar_value_t *scalar_value,
+                      uint32_t scalars, uint32_t *used)
 {
     if (type->kind == PN_KIND_RECORD) {
         return true; /* its parts are there */
     }
-    if (*used >= leaves) {
+    if (*used >= scalars) {
         return false;
     }
-    const pn_leaf_t *one = &leaf[*used];
-    const bool is_integer = one->kind == (type->is_index ? PN_LEAF_ENUM : PN_LEAF_INT);
+    const pn_scalar_value_t *one = &scalar_value[*used];
+    const bool is_integer = one->kind == (type->is_index ? PN_VALUE_ENUM : PN_VALUE_INT);
     (*used)++;
     switch (type->kind) {
     case PN_KIND_BOOL: {
         const bool flag = one->integer != 0;
         (void)memcpy(value, &flag, sizeof flag);
-        return one->kind == PN_LEAF_BOOL;
+        return one->kind == PN_VALUE_BOOL;
     }
     case PN_KIND_INT: (void)memcpy(value, &one->integer, sizeof one->integer); return is_integer;
     case PN_KIND_BIG: {
@@ -147,20 +150,20 @@ static bool part_from(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn
         return is_integer;
     }
     case PN_KIND_REAL: {
-        const double number = (one->kind == PN_LEAF_INT) ? (double)one->integer : one->real;
+        const double number = (one->kind == PN_VALUE_INT) ? (double)one->integer : one->real;
         (void)memcpy(value, &number, sizeof number);
-        return (one->kind == PN_LEAF_REAL) || (one->kind == PN_LEAF_INT);
+        return (one->kind == PN_VALUE_REAL) || (one->kind == PN_VALUE_INT);
     }
     case PN_KIND_STRING: {
-        if ((one->kind != PN_LEAF_STRING) || (one->text == NULL)) {
+        if ((one->kind != PN_VALUE_STRING) || (one->text == NULL)) {
             return false;
         }
         const pn_string_t text = pn_string_make(cx, one->text, one->length);
         (void)memcpy(value, &text, sizeof text);
         return true;
     }
-    case PN_KIND_ENUM: return (one->kind == PN_LEAF_ENUM) && enum_from_leaf(type, one, value);
-    case PN_KIND_UNIT: (void)memset(value, 0, type->size); return one->kind == PN_LEAF_ENUM;
+    case PN_KIND_ENUM: return (one->kind == PN_VALUE_ENUM) && enum_from_scalar(type, one, value);
+    case PN_KIND_UNIT: (void)memset(value, 0, type->size); return one->kind == PN_VALUE_ENUM;
     case PN_KIND_CHAR:
     case PN_KIND_RECORD:
     case PN_KIND_LIST:
@@ -170,16 +173,17 @@ static bool part_from(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn
     }
 }
 
-bool pn_from_leaves(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn_leaf_t *leaf, uint32_t leaves)
+bool pn_from_scalars(pn_ctx_t *cx, const pn_type_t *type, void *value, const pn_scalar_value_t *scalar_value,
+                     uint32_t scalars)
 {
     uint32_t used = 0U;
     bool is_good = true;
     (void)memset(value, 0, type->size);
     for (uint32_t i = 0U; is_good && (i < parts_of(type)); i++) {
         const pn_part_t one = part_at(type, i);
-        is_good = part_from(cx, one.type, part_of(value, one.offset), leaf, leaves, &used);
+        is_good = part_from(cx, one.type, part_of(value, one.offset), scalar_value, scalars, &used);
     }
-    if (!is_good || (used != leaves)) {
+    if (!is_good || (used != scalars)) {
         pn_raise(cx, PN_ERR_COLOUR, NULL);
     }
     return pn_ok(cx);

@@ -1,0 +1,108 @@
+"""The picture of a state space in a browser: it can be zoomed, moved and searched."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from helpers.browser import PATIENCE_MS, launched
+from helpers.processes import pn2code
+
+pytestmark = pytest.mark.cc
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Any]:
+    with launched() as found:
+        yield found
+
+
+@pytest.fixture(scope="module")
+def file(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    file = tmp_path_factory.mktemp("graph") / "graph.html"
+    net = root / "examples/philosophers/philosophers.cpn"
+    done = pn2code("verify", net, "--set", "n=6", "--no-found", "--draw", file, "-q")
+    assert done.returncode == 0 and file.is_file(), done.stderr
+    return file
+
+
+@pytest.fixture
+def page(chromium: Any, file: Path) -> Iterator[Any]:
+    context = chromium.new_context(viewport={"width": 1280, "height": 720})
+    context.set_default_timeout(PATIENCE_MS)
+    page = context.new_page()
+    wrong: list[str] = []
+    page.on("pageerror", lambda error: wrong.append(str(error)))
+    page.on("console", lambda said: wrong.append(said.text) if said.type == "error" else None)
+    page.goto(file.as_uri())
+    yield page
+    context.close()
+    assert not wrong
+
+
+def view(page: Any) -> list[float]:
+    """Left, top, width, height of what is seen, in units of the drawing."""
+    text = page.eval_on_selector(".sheet svg", "svg => svg.getAttribute('viewBox')")
+    return [float(x) for x in text.split()]
+
+
+def middle(page: Any) -> tuple[float, float]:
+    left, top, width, height = view(page)
+    return left + width / 2, top + height / 2
+
+
+def centre(page: Any, node: int) -> tuple[float, float]:
+    box = page.eval_on_selector(
+        f"#node-{node}", "g => (b => [b.x + b.width / 2, b.y + b.height / 2])(g.getBBox())"
+    )
+    return box[0], box[1]
+
+
+def test_a_node_is_found_by_its_number(page: Any) -> None:
+    page.keyboard.press("/")
+    page.keyboard.type("17")
+    assert page.locator("#results a").first.text_content() == "node 17"
+    page.keyboard.press("Enter")
+    page.wait_for_url("**#node-17")
+    assert middle(page) == pytest.approx(centre(page, 17), abs=1)
+    near = page.eval_on_selector_all("a.near", "all => all.map(a => a.getAttribute('href'))")
+    rows = page.eval_on_selector_all(
+        "#arcs tbody tr",
+        "all => all.map(r => [r.id, r.cells[0].textContent, r.cells[1].textContent])",
+    )
+    ends = {f"#{row}" for row, *numbers in rows if "17" in [n.strip() for n in numbers]}
+    assert set(near) <= ends and near
+
+
+def test_nodes_are_found_by_their_marking(page: Any) -> None:
+    page.fill("#search", "waits: 1`ph(1)++ 1`ph(2)++ 1`ph(3)++ 1`ph(4)++ 1`ph(5)++ 1`ph(6)")
+    assert page.locator("#results li").first.text_content() == "1 node"
+    page.locator("#results a").click()
+    number = int(page.url.rsplit("-", 1)[1])
+    assert "dead" in page.locator(f"#node-{number}").get_attribute("class")
+    page.fill("#search", "no such marking")
+    assert page.locator("#results li").text_content() == "0 nodes"
+
+
+def test_zooming_and_moving(page: Any) -> None:
+    page.locator("#tools button[value='0']").click()
+    before, whole = middle(page), view(page)
+    page.locator("#tools button[value='0.8']").click()
+    assert view(page)[2] == pytest.approx(0.8 * whole[2], rel=1e-3)
+    assert middle(page) == pytest.approx(before, abs=1)
+    page.locator(".sheet").focus()
+    page.keyboard.press("ArrowRight")
+    assert middle(page)[0] == pytest.approx(before[0] + 0.1 * whole[2], rel=1e-2)
+    page.keyboard.press("0")
+    assert view(page) == pytest.approx(whole, abs=1)
+    page.mouse.move(600, 500)
+    page.mouse.down()
+    page.mouse.move(500, 450, steps=4)
+    page.mouse.up()
+    scale = whole[2] / page.locator(".sheet svg").bounding_box()["width"]
+    moved = [a - b for a, b in zip(middle(page), before, strict=True)]
+    assert moved == pytest.approx([100 * scale, 50 * scale], rel=0.05)
+    assert "#" not in page.url, "dragging is no click"
