@@ -72,7 +72,7 @@ def ask(
         raise of_diagnostics(d, "the property is wrong")
     # Half of the machine is for whoever plays meanwhile.
     limits = Limits(max_states=asked.states, deadline=Deadline.after(asked.seconds), threads=1)
-    checks = Checks(controller=False, medium=False)
+    checks = Checks(controller=False, channel_model=False)
     with ExitStack() as stack:
         stack.enter_context(trace_folder(folder, wanted=True, needed=True))
         options = ExploreOptions(

@@ -39,6 +39,7 @@ from pn2code.ml.typing.inference import (
     from_type,
     i_list,
     prune,
+    to_type,
 )
 from pn2code.ml.typing.mismatches import explain
 from pn2code.ml.typing.patterns import Bindings, Patterns
