@@ -1,5 +1,5 @@
 # What `make` users expect; ./dev does the work and says what else there is.
-.PHONY: misra thorough database-15 help test lint fuzz hosts declarations expressions sanitized bench ml-suite conformance mutation oracle misspell elements forgery adversary
+.PHONY: misra thorough database-15 help test lint fuzz hosts declarations expressions sanitized bench ml-suite conformance mutation oracle misspell elements forgery adversary geometry
 
 help:
 	@./dev help
@@ -36,6 +36,11 @@ declarations:
 expressions:
 	./dev fuzz --expressions 20000
 	./dev fuzz --inscriptions 2000
+
+# Random cells of two arms: what collides in PyBullet was never said to keep apart; and the examples.
+geometry:
+	./dev geometry
+	./dev geometry --cells 200
 
 # A thousand random cells: what `verify` proves of them must be true in runs of their programs.
 adversary:

@@ -30,6 +30,8 @@ EPILOG = """Examples:
   pn2code check net.cpn
 
   pn2code check examples/riveting --json
+
+  pn2code check examples/shared-zone --geometry
 """
 
 COUNTED = ("pages", "places", "transitions", "arcs")
@@ -38,13 +40,62 @@ COUNTED = ("pages", "places", "transitions", "arcs")
 
 def check(
     net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
+    geometry: Annotated[
+        bool,
+        typer.Option(
+            "--geometry",
+            help="Look at all moves and pairs of moves that the net permits (docs/geometry.md).",
+        ),
+    ] = False,
+    layout: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="With `--geometry`: only this layout of the cell."),
+    ] = None,
+    traces: Annotated[
+        Path | None,
+        typer.Option(
+            "--traces",
+            "-o",
+            metavar="DIR",
+            help="With `--geometry`: the folder for the runs and pictures.  (default: NET.geometry)",
+            show_default=False,
+        ),
+    ] = None,
+    pictures: Annotated[
+        bool,
+        typer.Option("--pictures", help="With `--geometry`: a picture of each pair that touches."),
+    ] = False,
+    full: Annotated[
+        bool, typer.Option("--full", help="With `--geometry`: print the whole table of moves.")
+    ] = False,
     as_json: JsonOption = False,
     inputs: InputOption = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
     form: FormatOption = Format.FULL,
 ) -> None:
-    """Check the syntax, types, bindings and hierarchy of a net, and the cell beside it."""
+    """Check the syntax, types, bindings and hierarchy of a net, and the cell beside it.
+
+    With `--geometry` it explores the cell and says whether each move is possible from wherever the arm can be then, and
+    whether two arms can collide in any interleaving that the net permits. The exit code is then 0 (yes, both), 1 or 3.
+    """
+    if geometry:
+        from pn2code.cli.check_geometry import check_geometry
+
+        check_geometry(
+            net,
+            parse_values(settings),
+            layout=layout,
+            traces=traces,
+            pictures=pictures,
+            full=full,
+            as_json=as_json,
+            inputs=inputs,
+            int_bits=int_bits,
+            form=form,
+        )
+        return
+    _refuse_without(layout=layout, traces=traces, pictures=pictures, full=full)
     d = Diagnostics()
     checked = examined(net, parse_values(settings), d, int_bits=int_bits, inputs=inputs)
     result = checked.examined
@@ -66,6 +117,13 @@ def check(
         typer.echo(f"{checked.file}: {counted if elements else ''}{render.count(d)}")
     if not checked.is_fine:
         raise typer.Exit(code_of(d))
+
+
+def _refuse_without(**given: object) -> None:
+    """Options that mean something with `--geometry` only."""
+    for name, value in given.items():
+        if value:
+            raise typer.BadParameter("it needs `--geometry`", param_hint=f"--{name}")
 
 
 def _as_json(item: Diagnostic, net: str) -> dict[str, object]:

@@ -28,6 +28,7 @@ REGISTERING = (
     "pn2code.conform.codes",
     "pn2code.convert.codes",
     "pn2code.drawing.codes",
+    "pn2code.geometry.codes",
     "pn2code.lowering.codes",
     "pn2code.robot_scripts.codes",
     "pn2code.ml.codes",

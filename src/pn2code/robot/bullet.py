@@ -12,7 +12,7 @@ import importlib.util
 import os
 import sys
 import tempfile
-from collections.abc import Iterator, Sequence
+from collections.abc import Container, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from html import escape
@@ -36,12 +36,14 @@ from pn2code.robot.commands import Pose
 from pn2code.robot.geometry import Body, Solid, bodies, body_of
 from pn2code.robot.looks import Look
 from pn2code.robot.parts import Part
+from pn2code.robot.parts_table import PartKind
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, pose_of
 
 _SKY = (148.0, 166.0, 186.0)
 _HORIZON = (236.0, 239.0, 242.0)
 _UPRIGHT = 0.7  # of the normal where a part lies on something: at most 45 degrees steep
+_PAD = 0.004  # m: PyBullet has margins around shapes
 _FIRST_GUESS = 0.05  # m: searched first; most queries find their answer this near to the last one
 
 
@@ -141,6 +143,7 @@ class BulletBackend:
         self._cell = cell
         self._gui = gui
         self._egl: int | None = None
+        self._ball: int | None = None
         self._folder = tempfile.TemporaryDirectory(prefix="pn2code-")
         self._names: dict[str, tuple[str, str | None]] = {}
         if looks and not gui:
@@ -338,6 +341,84 @@ class BulletBackend:
             out += self._known["scene", me] + self._known["self", me]
         return tuple(_closest(out))
 
+    # Each pair, for those who sweep moves against each other
+
+    def pairs(
+        self,
+        kind: ClearanceKind,
+        robot: str,
+        limit: float,
+        other: str = "",
+        only: Container[str] | None = None,
+    ) -> list[Clearance]:
+        """The least distance of each two links, or link and thing, that are nearer than `limit` (m).
+
+        Args:
+            kind: to which things: of the robot `other`, of the scene (with the parts that stand), or its own.
+            robot: of which the links are, with the part that it carries.
+            only: of the scene, the things of these names.
+        """
+        a = self._robots[robot]
+        best: dict[tuple[str, str], Clearance] = {}
+        if kind == "self":
+            for gap in self._every_own(a, limit):
+                _keep_nearest(best, gap)
+            return list(best.values())
+        others = self._standing() if kind == "scene" else self._sides(self._robots[other])
+        for second in list(others):
+            if only is not None and second.whole not in only:
+                continue
+            for first in self._sides(a):
+                found = self._p.getClosestPoints(
+                    first.id, second.id, limit, physicsClientId=self._client
+                )
+                skip_base = first.base != "" and first.base in second.ignored_by
+                for c in found:
+                    if skip_base and c[3] == -1:
+                        continue
+                    one, two = first.link(c[3]), second.link(c[4])
+                    allowed = self._allowed(one, two)
+                    gap = Clearance(kind, first.robot or robot, one, two, c[8], allowed, c[5], c[6])
+                    _keep_nearest(best, gap)
+        return list(best.values())
+
+    def _every_own(self, a: _Loaded, limit: float) -> Iterator[Clearance]:
+        for i, j in a.pairs:
+            for c in self._p.getClosestPoints(
+                a.body, a.body, limit, i, j, physicsClientId=self._client
+            ):
+                one, two = (f"{a.robot.name}/{a.links[k]}" for k in (i, j))
+                yield Clearance("self", a.robot.name, one, two, c[8], None, c[5], c[6])
+        yield from self._carried(a, limit)
+
+    def box(self, robot: str, link: str) -> tuple[Array, Array] | None:
+        """The corners of a box around a link's collision shapes in its frame, a little too large; None: it has none."""
+        loaded = self._robots[robot]
+        tool = loaded.robot.tool
+        text = urdf.with_tool(
+            loaded.robot.arm.urdf, loaded.robot.arm.flange, tool.urdf if tool else None
+        )
+        root = etree.fromstring(text.encode())
+        own = next(e for e in root.findall("link") if e.get("name") == link)
+        shapes = [etree.tostring(e, encoding="unicode") for e in own.findall("collision")]
+        if not shapes:
+            return None
+        lines = ['<robot name="box"><link name="base">', *shapes, "</link></robot>"]
+        with _silent():
+            body = self._load_urdf(f"box_{robot}_{link}", "\n".join(lines))
+        return self._around(body)
+
+    def part_box(self, kind: PartKind) -> tuple[Array, Array]:
+        """The same around a part of a kind, in its frame."""
+        with _silent():
+            body = self._load_body(body_of(replace(kind.shape, name=f"box_{kind.name}")), False).id
+        return self._around(body)
+
+    def _around(self, body: int) -> tuple[Array, Array]:
+        low, high = self._p.getAABB(body, -1, physicsClientId=self._client)
+        self._p.removeBody(body, physicsClientId=self._client)
+        return np.array(low) - _PAD, np.array(high) + _PAD
+
     def _robots_apart(self, a: _Loaded, b: _Loaded, limit: float) -> list[Clearance]:
         """Between two robots, with what they carry."""
         return [
@@ -447,6 +528,22 @@ class BulletBackend:
             self._rules[a, b] = max(depths, default=None)
         return self._rules[a, b]
 
+    def mark(self, point: Sequence[float], radius: float) -> None:
+        """Shows a red ball, of which no distances are measured; it moves when it is shown again."""
+        if self._ball is None:
+            shape = self._p.createVisualShape(
+                self._p.GEOM_SPHERE,
+                radius=radius,
+                rgbaColor=[0.9, 0.05, 0.05, 1.0],
+                physicsClientId=self._client,
+            )
+            self._ball = int(
+                self._p.createMultiBody(0, -1, shape, point, physicsClientId=self._client)
+            )
+        self._p.resetBasePositionAndOrientation(
+            self._ball, point, (0.0, 0.0, 0.0, 1.0), physicsClientId=self._client
+        )
+
     def render(self, camera: Camera, width: int, height: int) -> Picture | None:
         """A picture (height, width, 3), 0..255."""
         p = self._p
@@ -489,6 +586,12 @@ class BulletBackend:
                 self._p.disconnect(self._client)
             self._client = -1
             self._folder.cleanup()
+
+
+def _keep_nearest(best: dict[tuple[str, str], Clearance], gap: Clearance) -> None:
+    old = best.get((gap.a, gap.b))
+    if old is None or gap.distance < old.distance:
+        best[gap.a, gap.b] = gap
 
 
 def _closest(items: Sequence[Clearance]) -> Iterator[Clearance]:

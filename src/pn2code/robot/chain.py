@@ -39,8 +39,8 @@ class Chain:
                 before.append(fixed)
                 self.axes.append(np.array(joint.axis))
                 fixed = np.eye(4)
-        self._before = np.stack(before)
-        self._end = fixed
+        self.before = np.stack(before)
+        self.end = fixed
         self._k = np.stack([skew(a) for a in self.axes])
         self._kk = self._k @ self._k
         self.zero = np.stack([f[0] for f in self.frames(np.zeros((1, AXES)))])
@@ -54,11 +54,11 @@ class Chain:
         turns[:, :, 3, 3] = 1.0
         sine, versine = np.sin(q)[..., None, None], (1.0 - np.cos(q))[..., None, None]
         turns[:, :, :3, :3] = np.eye(3) + sine * self._k + versine * self._kk
-        steps = self._before @ turns
+        steps = self.before @ turns
         out = [steps[:, 0]]
         for i in range(1, AXES):
             out.append(out[-1] @ steps[:, i])
-        out.append(out[-1] @ self._end)
+        out.append(out[-1] @ self.end)
         return out
 
     def axis(self, i: int, frames: Sequence[Array]) -> Array:

@@ -95,6 +95,16 @@ class RobotExecutor:
         self.motion: Motion | None = None
 
     @property
+    def T_base_tcp(self) -> Array:  # noqa: N802
+        """Where the TCP has been told to be, between motions."""
+        return self._T_base_tcp
+
+    def stand(self, q: Array, T_base_tcp: Array) -> None:
+        """Puts the robot where another one has stood between motions: its `q` and `T_base_tcp`."""
+        self.q, self._T_base_tcp = q, T_base_tcp
+        self.motion = self._next = None
+
+    @property
     def pose(self) -> Pose:
         """TCP pose in the world, between motions."""
         return pose_of(self._T_world_base @ self._T_base_tcp)

@@ -179,6 +179,25 @@ class Kinematics:
         """`T_base_joint` of the six axes, after their own rotation, and of the flange: (7, 4, 4)."""
         return np.stack([f[0] for f in self._chain.frames(np.asarray(q, float)[None])])
 
+    def link_frames(self, q: Array) -> list[Array]:
+        """The same of n joint positions (n, 6): seven arrays (n, 4, 4)."""
+        return self._chain.frames(q)
+
+    def axes_of(self, frames: Sequence[Array]) -> Array:
+        """Directions of the six axes in the base frame, (n, 6, 3)."""
+        return self._chain.all_axes(frames)
+
+    @property
+    def T_axis_flange(self) -> Array:  # noqa: N802
+        """The flange in the frame of the last axis."""
+        return self._chain.end
+
+    @property
+    def longest(self) -> float:
+        """m: the TCP is never further from any axis than all lengths between them together."""
+        lengths = np.linalg.norm(self._chain.before[1:, :3, 3], axis=1).sum()
+        return float(lengths + np.linalg.norm((self._chain.end @ self.T_flange_tcp)[:3, 3]))
+
     # Differential
 
     def jacobian(self, q: ArrayLike) -> Array:

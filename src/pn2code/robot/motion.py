@@ -110,6 +110,9 @@ class Trajectory(Protocol):
     def sample(self, times: Array) -> Array:
         """Joint positions at many times, (n, 6)."""
 
+    def on_way(self, s: Array) -> Array:
+        """Joint positions at fractions of the way (n,) from 0 to 1, in order: (n, 6). No time is in it."""
+
 
 @frozen(eq=False)
 class Still:
@@ -129,6 +132,10 @@ class Still:
     def sample(self, times: Array) -> Array:
         """The position, repeated."""
         return np.repeat(self.position[None], len(times), axis=0)
+
+    def on_way(self, s: Array) -> Array:
+        """The position, repeated."""
+        return self.sample(s)
 
 
 class _Law:
@@ -172,6 +179,11 @@ class JointTrajectory:
         self._way = target - start
         self.duration = 0.0 if law is None else law.duration
 
+    @property
+    def turns(self) -> Array:
+        """How far each axis turns, rad."""
+        return self._way
+
     def q(self, t: float) -> Array:
         """Joint position, rad; exactly the target at the end."""
         if t >= self.duration or self._law is None:
@@ -187,6 +199,12 @@ class JointTrajectory:
     def sample(self, times: Array) -> Array:
         """Joint positions at many times."""
         return np.stack([self.q(float(t)) for t in times])
+
+    def on_way(self, s: Array) -> Array:
+        """Joint positions at fractions of the way, whenever the arm is there."""
+        out = self._start + s[:, None] * self._way
+        out[s >= 1.0] = self._target
+        return np.asarray(out)
 
 
 class Line:
@@ -266,6 +284,10 @@ class LinearTrajectory:
         near = self.grid[np.searchsorted(self.times, times).clip(0, len(self.times) - 1)]
         turn = 2.0 * math.pi
         return np.asarray(rows + turn * np.round((near - rows) / turn))
+
+    def on_way(self, s: Array) -> Array:
+        """Joint positions at fractions of the way, in order, whenever the arm is there; NaN out of reach."""
+        return self._k.follow(self.line.at(s), self.branch, self.grid[0])
 
 
 def plan_ptp(

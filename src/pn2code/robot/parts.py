@@ -73,6 +73,16 @@ class Parts:
             for pose in kind.at:
                 self._add(kind, matrix_of(pose))
 
+    def copy(self) -> Parts:
+        """The same parts, to be handled otherwise; a new one gets the first number that none has."""
+        out = Parts(self.cell)
+        out.present = dict(self.present)
+        used = [name.rsplit(".", 1) for name in self.present]
+        for kind in self.cell.parts:
+            last = max((int(number) for own, number in used if own == kind), default=0)
+            out._numbers[kind] = itertools.count(last + 1)
+        return out
+
     def held_by(self, robot: str) -> Part | None:
         """The part that a robot carries."""
         return next((p for p in self.present.values() if p.holder == robot), None)

@@ -19,6 +19,8 @@ from numpy.typing import ArrayLike, NDArray
 from pn2code.robot.commands import Pose
 
 Array: TypeAlias = NDArray[np.float64]
+Flags: TypeAlias = NDArray[np.bool_]
+Numbers: TypeAlias = NDArray[np.intp]
 
 # cos(ry) below this: rx and rz turn about the same axis and only their sum is defined.
 _GIMBAL = 1e-9

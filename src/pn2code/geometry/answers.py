@@ -1,0 +1,227 @@
+"""What is known of the geometry of a cell: moves, pairs, and what would keep pairs apart."""
+
+from __future__ import annotations
+
+from typing import Any, Literal
+
+from pn2code.base.frozen import frozen
+from pn2code.geometry.runs import Run
+from pn2code.robot.backend import Clearance
+
+Verdict = Literal["yes", "no", "unknown"]
+_WORST: tuple[Verdict, ...] = ("no", "unknown", "yes")
+
+
+def worst(verdicts: list[Verdict]) -> Verdict:
+    """That of several together."""
+    return min(verdicts, key=_WORST.index, default="yes")
+
+
+@frozen
+class Move:
+    """A command of an arm from one place.
+
+    Args:
+        robot, transition: who does it, and the (first) transition that commands it.
+        command: in words; begins: the TCP pose where it begins, in words.
+        kind: "ptp", "lin", or what an arm does that stands.
+        answer: whether it can be done; problem: why not, or why it is not known.
+        limit: deg, the least distance from a limit of an axis; axis: which one (from 1).
+        condition: the worst condition number; of an arm in a singularity it is inf.
+        scene, itself: m, the least clearance that is certain, from the scene and from the arm itself; `apart`: the
+            nearest thing. None: not measured.
+        run: leads to where it is under way, if something is wrong.
+    """
+
+    robot: str
+    transition: str
+    command: str
+    begins: str
+    kind: str
+    answer: Verdict
+    problem: str = ""
+    limit: float | None = None
+    axis: int = 0
+    condition: float | None = None
+    scene: float | None = None
+    itself: float | None = None
+    apart: Clearance | None = None
+    run: Run | None = None
+
+    def row(self) -> dict[str, Any]:
+        """For programs."""
+        return {
+            "robot": self.robot,
+            "transition": self.transition,
+            "command": self.command,
+            "from": self.begins,
+            "kind": self.kind,
+            "answer": self.answer,
+            "problem": self.problem,
+            "limit_deg": _rounded(self.limit, 4),
+            "axis": self.axis or None,
+            "condition": _rounded(self.condition, 3),
+            "clearance_m": _rounded(self.scene, 5),
+            "own_clearance_m": _rounded(self.itself, 5),
+            "nearest": [self.apart.a, self.apart.b] if self.apart else None,
+            "run": run_row(self.run),
+        }
+
+
+@frozen
+class Pair:
+    """Two things that can be under way at once and do not surely keep apart.
+
+    Args:
+        robots: whose they are; the second "" of a part that stands.
+        doing: transitions and commands, in words.
+        answer: "no" or "unknown"; says: why.
+        where: what meets what, and where; distance: m, negative: an overlap.
+        joints: where the arms are then, by robot, rad.
+        run: in which they are under way.
+    """
+
+    robots: tuple[str, str]
+    transitions: tuple[str, str]
+    doing: tuple[str, str]
+    answer: Verdict
+    says: str
+    where: Clearance | None = None
+    distance: float = 0.0
+    joints: tuple[tuple[str, tuple[float, ...]], ...] = ()
+    run: Run | None = None
+    picture: str = ""
+
+    def row(self) -> dict[str, Any]:
+        """For programs."""
+        return {
+            "robots": [r for r in self.robots if r],
+            "transitions": list(self.transitions),
+            "doing": list(self.doing),
+            "answer": self.answer,
+            "says": self.says,
+            "links": [self.where.a, self.where.b] if self.where else None,
+            "point_m": [round(v, 4) for v in self.where.point] if self.where else None,
+            "distance_m": round(self.distance, 6),
+            "joints": {name: [round(v, 6) for v in q] for name, q in self.joints},
+            "run": run_row(self.run),
+            "picture": self.picture or None,
+        }
+
+
+@frozen
+class Proposal:
+    """A place that would keep pairs apart.
+
+    Args:
+        robots: that share the zone; transitions: of which not two may be under way at once.
+        name: of the new place, with one token.
+        takes, gives: the transitions of the supervisor that take the token, and that give it back.
+        while_: the places that are marked meanwhile.
+        works: whether the pairs keep apart with it, and the cell still comes to its end; says: what was found.
+    """
+
+    robots: tuple[str, ...]
+    transitions: tuple[str, ...]
+    name: str = ""
+    takes: tuple[str, ...] = ()
+    gives: tuple[str, ...] = ()
+    while_: tuple[str, ...] = ()
+    works: bool = False
+    says: str = ""
+
+    def row(self) -> dict[str, Any]:
+        """For programs."""
+        return {
+            "robots": list(self.robots),
+            "transitions": list(self.transitions),
+            "place": self.name or None,
+            "takes": list(self.takes),
+            "gives": list(self.gives),
+            "while": list(self.while_),
+            "works": self.works,
+            "says": self.says,
+        }
+
+
+@frozen
+class Layout:
+    """What is known of a layout.
+
+    Args:
+        name: "" where there are none.
+        states, situations: that were seen; looked: pairs of legs that were compared, and `queries` distances measured.
+        open: why not all situations are known; "": they are.
+        nearest: the pair of arms that comes nearest without touching, as far as it was measured.
+    """
+
+    name: str
+    states: int
+    situations: int
+    moves: tuple[Move, ...]
+    pairs: tuple[Pair, ...]
+    looked: int
+    queries: int
+    seconds: float
+    open: str = ""
+    proposals: tuple[Proposal, ...] = ()
+    nearest: Clearance | None = None
+
+    @property
+    def of_moves(self) -> Verdict:
+        """Whether each move can be done from wherever the arm can be then."""
+        found = worst([m.answer for m in self.moves])
+        return "unknown" if self.open and found == "yes" else found
+
+    @property
+    def of_pairs(self) -> Verdict:
+        """Whether no two arms, and no arm and part, collide in any interleaving that the net permits."""
+        found = worst([p.answer for p in self.pairs])
+        return "unknown" if self.open and found == "yes" else found
+
+    @property
+    def answer(self) -> Verdict:
+        """Both together."""
+        return worst([self.of_moves, self.of_pairs])
+
+    def row(self) -> dict[str, Any]:
+        """For programs (docs/geometry.md)."""
+        return {
+            "layout": self.name or None,
+            "answer": self.answer,
+            "moves_answer": self.of_moves,
+            "pairs_answer": self.of_pairs,
+            "open": self.open or None,
+            "states": self.states,
+            "situations": self.situations,
+            "pairs_compared": self.looked,
+            "distances_measured": self.queries,
+            "seconds": round(self.seconds, 2),
+            "nearest": self._nearest_row(),
+            "moves": [m.row() for m in self.moves],
+            "pairs": [p.row() for p in self.pairs],
+            "proposals": [p.row() for p in self.proposals],
+        }
+
+    def _nearest_row(self) -> dict[str, Any] | None:
+        if self.nearest is None:
+            return None
+        links = [self.nearest.a, self.nearest.b]
+        return {"links": links, "distance_m": round(self.nearest.distance, 5)}
+
+
+def run_row(run: Run | None) -> dict[str, Any] | None:
+    """For programs."""
+    if run is None:
+        return None
+    return {
+        "trace": str(run.file) if run.file is not None else None,
+        "steps": run.steps,
+        "under_way": run.under_way,
+    }
+
+
+def _rounded(value: float | None, digits: int) -> float | None:
+    if value is None or value != value or value in (float("inf"), float("-inf")):
+        return None
+    return round(value, digits)

@@ -1,0 +1,168 @@
+"""`pn2code check --geometry`: the geometry of a cell in all of its layouts, over all states of its net.
+
+found = examine(opened, layout, limits, folder, d)         # Geometry; None after an error that was reported
+found.answer                                               # "yes", "no", "unknown"
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from pn2code.base.frozen import frozen
+from pn2code.cell.config import CellConfig
+from pn2code.cell.divide import divide
+from pn2code.cell.load import load as load_cell
+from pn2code.cell.partition import Partition
+from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.geometry import codes
+from pn2code.geometry.answers import Layout, Verdict, worst
+from pn2code.geometry.graph import CellGraph, explore_cell
+from pn2code.geometry.look import Look, Options
+from pn2code.geometry.words import reason
+from pn2code.robot import scene
+from pn2code.robot.robot_cell import RobotCell
+from pn2code.verdict.opened import OpenNet
+from pn2code.verify.controller.running import NotModelledError
+from pn2code.verify.exploring.limits import Limits
+
+
+def _silent(_: str) -> None:
+    """For those who do not care."""
+
+
+@frozen(eq=False)
+class Geometry:
+    """What is known of a cell.
+
+    Args:
+        layouts: those that were looked at, with the scene of each.
+        why: why nothing is known; "": something is.
+    """
+
+    layouts: tuple[tuple[Layout, RobotCell], ...]
+    why: str = ""
+
+    @property
+    def answer(self) -> Verdict:
+        """Of all layouts together."""
+        return "unknown" if self.why else worst([x.answer for x, _ in self.layouts])
+
+    def row(self) -> dict[str, Any]:
+        """For programs (docs/geometry.md)."""
+        return {
+            "answer": self.answer,
+            "why": self.why or None,
+            "layouts": [x.row() for x, _ in self.layouts],
+        }
+
+
+def examine(
+    opened: OpenNet,
+    layout: str | None,
+    limits: Limits,
+    folder: Path,
+    d: Diagnostics,
+    stage: Callable[[str], None] = _silent,
+) -> Geometry | None:
+    """Looks at everything; None after an error that was reported.
+
+    Args:
+        opened: the cell.
+        layout: only this one; None: all of them.
+        limits: of the exploration.
+        folder: of the traces.
+        d: gets the errors.
+        stage: hears in words what is done.
+
+    Raises:
+        GameError: a declaration or an initial marking raises an exception.
+    """
+    config = cell_of(opened, d)
+    if config is None or not _is_there(config, d):
+        return None
+    partition = divide(opened.flat, config, d)
+    if partition is None:
+        return None
+    cells = cells_of(config, layout, d)
+    if cells is None:
+        return None
+    if not any(cell.robots for _, cell in cells):
+        return Geometry((), "no robot of the cell has an arm")
+    stage("exploring the cell as its programs run ...")
+    try:
+        graph = explore_cell(partition, opened.storage, limits, d, opened.initial)
+    except NotModelledError as problem:
+        return Geometry((), f"the cell as it runs cannot be modelled: {problem}")
+    if graph is None:
+        return None
+    if not graph.arcs:
+        return Geometry((), reason(graph.why))
+
+    def explore(changed: Partition) -> CellGraph | None:
+        try:
+            return explore_cell(changed, opened.storage, limits, Diagnostics(), opened.initial)
+        except NotModelledError:
+            return None
+
+    stem = re.sub(r"[^A-Za-z0-9_.-]+", "_", opened.flat.name) or "net"
+    folder.mkdir(parents=True, exist_ok=True)
+    options = Options(folder, stem, opened.initial, explore, stage)
+    found = []
+    for name, cell in cells:
+        looking = Look(graph, cell, options, name)
+        try:
+            found.append((looking.answer(), cell))
+        finally:
+            looking.close()
+    return Geometry(tuple(found))
+
+
+def cell_of(opened: OpenNet, d: Diagnostics) -> CellConfig | None:
+    """The cell beside a net; None, which is reported: there is none."""
+    if opened.config is None:
+        d.error(
+            codes.GEOMETRY_NO_CELL,
+            "only a cell has a geometry, and there is no cell.toml",
+            Origin(opened.flat.file),
+            hint="give a cell.toml or its folder",
+        )
+    return opened.config
+
+
+def _is_there(config: CellConfig, d: Diagnostics) -> bool:
+    if importlib.util.find_spec("pybullet") is not None:
+        return True
+    d.error(
+        codes.GEOMETRY_NO_LIBRARY,
+        "distances between arms are measured with PyBullet, which is not installed",
+        Origin(str(config.path)),
+        hint="`pip install 'pn2code[cell]'` brings it (there are packages for Python 3.11 at the latest; for later "
+        "ones it is compiled)",
+    )
+    return False
+
+
+def cells_of(
+    config: CellConfig, layout: str | None, d: Diagnostics
+) -> list[tuple[str, RobotCell]] | None:
+    """What stands in each layout, or in one of them; None after an error that was reported."""
+    names = list(config.layouts) or [""]
+    if layout is not None:
+        chosen = load_cell(config.path, d, layout=layout)
+        if chosen is None:
+            return None
+        names = [layout]
+    out = []
+    for name in names:
+        chosen = config if name == config.layout else load_cell(config.path, d, layout=name)
+        if chosen is None:
+            return None
+        cell = scene.load(chosen.geometry, chosen.folder, chosen.locator.origin, d, partial=True)
+        if cell is None:
+            return None
+        out.append((name, cell))
+    return out

@@ -1,0 +1,141 @@
+"""Sweeps what situations show: each leg against the scene, legs of two arms against each other, legs and parts.
+
+    compared = Comparison(cell, planner, backend)
+    compared.move(leg, held)                     # Swept: clearances, margins
+    compared.two((leg, held), (other, held))     # Apart
+
+Everything is swept once, in whatever situations it occurs.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from pn2code.base.frozen import frozen
+from pn2code.geometry.activities import Activity, spot
+from pn2code.geometry.legs import Leg, Planner
+from pn2code.geometry.sweeps import Apart, Sweeper
+from pn2code.geometry.tracks import ArmShape, Track
+from pn2code.robot.bullet import BulletBackend
+from pn2code.robot.kinematics import MOST_CONDITION
+from pn2code.robot.motion import LinearTrajectory
+from pn2code.robot.parts import Part
+from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.transforms import Array
+
+_PIECES = 16
+_SAMPLES = 65
+
+
+@frozen(eq=False)
+class Margins:
+    """Along a leg: rad from the nearest limit, of which axis; the worst condition number."""
+
+    limit: float
+    axis: int
+    condition: float
+
+
+class Comparison:
+    """Keeps what has been swept."""
+
+    def __init__(self, cell: RobotCell, planner: Planner, backend: BulletBackend) -> None:
+        self.cell, self._planner, self._backend = cell, planner, backend
+        self.sweeper = Sweeper(backend)
+        self._shapes = {r.name: ArmShape.of(r, backend) for r in cell.robots}
+        self._boxes = {k.name: backend.part_box(k) for k in cell.parts.values()}
+        self._tracks: dict[tuple[int, str], Track] = {}
+        self._extents: dict[tuple[int, str], tuple[Array, Array]] = {}
+        self._around: dict[tuple[int, str], tuple[Apart, Apart]] = {}
+        self._pairs: dict[tuple[tuple[int, str], tuple[int, str]], Apart] = {}
+        self._beside: dict[tuple[tuple[int, str], str], Apart] = {}
+        self._margins: dict[int, Margins] = {}
+        self.compared = 0
+
+    def _track(self, leg: Leg, held: Part | None) -> tuple[tuple[int, str], Track]:
+        if leg.path is None:
+            leg = self._planner.standing(leg.start)
+        key = (leg.number, "" if held is None else spot(held))
+        if key not in self._tracks:
+            shape = self._shapes[leg.robot]
+            link = None
+            if held is not None:
+                # A name for the collision library that no other part has that is shown at the same time.
+                held = replace(held, name=f"{held.kind.name}.held_by_{leg.robot}")
+                link = shape.holding(held, *self._boxes[held.kind.name])
+            self._tracks[key] = Track(shape, leg, link, held)
+        return key, self._tracks[key]
+
+    def _extent(self, key: tuple[int, str]) -> tuple[Array, Array]:
+        """The corners of a box around all that an arm sweeps on a leg."""
+        if key not in self._extents:
+            track = self._tracks[key]
+            count = 1 if track.is_still else _PIECES
+            edges = np.linspace(0.0, 1.0, count + 1)
+            knots = track.knots(edges[:-1], edges[1:])
+            off = (knots.spread + track.radii)[..., None, None]
+            low = (knots.ends - off).min(axis=(0, 1, 2))
+            high = (knots.ends + off).max(axis=(0, 1, 2))
+            self._extents[key] = (low, high)
+        return self._extents[key]
+
+    def two(self, a: tuple[Leg, Part | None], b: tuple[Leg, Part | None]) -> Apart:
+        """Two legs of two arms."""
+        (one, first), (other, second) = self._track(*a), self._track(*b)
+        if (one, other) not in self._pairs:
+            self.compared += 1
+            (low, high), (from_, to) = self._extent(one), self._extent(other)
+            if (low > to).any() or (high < from_).any():
+                self._pairs[one, other] = Apart("clear", 0.0, math.inf)
+            else:
+                self._pairs[one, other] = self.sweeper.apart(first, second)
+        return self._pairs[one, other]
+
+    def activities(self, a: Activity, b: Activity) -> Iterator[tuple[Leg, Leg, Apart]]:
+        """Each leg of one with each of the other, since nobody knows how far they are."""
+        for leg, contents in a.legs:
+            for other, more in b.legs:
+                own = (leg, contents.held_by(leg.robot))
+                yield leg, other, self.two(own, (other, more.held_by(other.robot)))
+
+    def beside(self, a: tuple[Leg, Part | None], part: Part) -> Apart:
+        """A leg and a part that stands."""
+        key, track = self._track(*a)
+        where = (key, spot(part))
+        if where not in self._beside:
+            self.compared += 1
+            shown = replace(part, name=f"{part.kind.name}.standing")
+            self._beside[where] = self.sweeper.beside(track, shown, self._boxes[part.kind.name])
+        return self._beside[where]
+
+    def around(self, leg: Leg, held: Part | None) -> tuple[Apart, Apart]:
+        """A leg and the scene; a leg and the arm itself."""
+        key, track = self._track(leg, held)
+        if key not in self._around:
+            self._around[key] = (
+                self.sweeper.around(track, "scene"),
+                self.sweeper.around(track, "self"),
+            )
+        return self._around[key]
+
+    def margins(self, leg: Leg) -> Margins:
+        """Limits and conditioning along a leg."""
+        if leg.number not in self._margins:
+            self._margins[leg.number] = self._worst(leg)
+        return self._margins[leg.number]
+
+    def _worst(self, leg: Leg) -> Margins:
+        assert leg.path is not None
+        kinematics = self.cell.robot(leg.robot).kinematics
+        q = leg.path.on_way(np.linspace(0.0, 1.0, _SAMPLES if leg.is_moving else 1))
+        if isinstance(leg.path, LinearTrajectory):
+            q = np.vstack([q, leg.path.grid])
+        arm = kinematics.arm
+        off = np.minimum(q - arm.lower, arm.upper - q).min(axis=0)
+        axis = int(np.argmin(off))
+        worst = max(c.condition for c in kinematics.conditioning_many(q))
+        return Margins(float(off[axis]), axis, worst if worst <= MOST_CONDITION else math.inf)

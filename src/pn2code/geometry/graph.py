@@ -1,0 +1,237 @@
+"""The graph of a cell as it runs: who can do what in which state.
+
+    graph = explore_cell(partition, storage, limits, d)
+    graph.arcs[0]                   # ((element, target), ...) of the state at the start
+    graph.elements[3]               # Element(transition=7, owner=1, binding={...})
+    graph.commands(3)               # what its arm or device is told, in order
+
+States are those of `verify.controller.running`. A transition of a robot occurs when all of its commands are done, and
+its messages stay where they are until then: so it is under way exactly in states in which it can occur.
+"""
+
+from __future__ import annotations
+
+import json
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from pn2code.base.frozen import frozen
+from pn2code.cell.partition import OwnerKind, Partition
+from pn2code.diagnostics import Diagnostics
+from pn2code.net.flat import ArcKind
+from pn2code.primitive_calls import Calls, Listener, Unknown
+from pn2code.robot.commands import Command
+from pn2code.semantics.evaluation.effects import Effect, effects_of
+from pn2code.semantics.evaluation.files import Files
+from pn2code.semantics.game.marking import Binding
+from pn2code.semantics.game.token_game import Game, GameError
+from pn2code.semantics.values.colour_json import from_json
+from pn2code.verify.controller.running import Running
+from pn2code.verify.exploring.explore import ExploreOptions, explore
+from pn2code.verify.exploring.limits import Limits, Reduction
+from pn2code.verify.exploring.nondeterminism import undetermined
+from pn2code.verify.exploring.programs import Sizes
+
+MOST_STATES = 300_000
+"""States of a cell that are looked at."""
+CLOCK = -1
+"""The owner of steps of the clock."""
+_OUTSIDE = frozenset({Effect.DRAW, Effect.LOOK, Effect.READ, Effect.COUNT})
+
+
+@frozen(eq=False)
+class Element:
+    """A transition with values of its variables.
+
+    Args:
+        transition: its index in the net of the running cell; the first ones are those of the cell's net.
+        owner: who lets it occur.
+        binding: as JSON.
+        is_step: it is a step of a program or of the clock, which the net does not have.
+        is_end: it is the last step of a run, after which robots do nothing more.
+    """
+
+    number: int
+    transition: int
+    owner: int
+    binding: Mapping[str, Any]
+    is_step: bool
+    is_end: bool
+
+
+class CellGraph:
+    """The graph.
+
+    Args:
+        partition: the cell.
+        running: its programs.
+        elements: what occurs in it.
+        arcs: of each state the elements that can occur, with the states that they lead to.
+        marked: of each state the places of the cell's net that hold tokens, and how many.
+        over: the states in which the supervisor has come to a final place.
+        why: it is not whole, and why; "": it is.
+    """
+
+    def __init__(
+        self,
+        partition: Partition,
+        storage: Mapping[str, str],
+        running: Running,
+        elements: Sequence[Element],
+        arcs: Sequence[Sequence[tuple[int, int]]],
+        marked: Sequence[Mapping[int, int]],
+        why: str,
+    ) -> None:
+        self.partition, self.storage, self.running = partition, storage, running
+        self.elements, self.arcs, self.marked = elements, arcs, marked
+        self.why = why or undetermined(partition.net)
+        self.over = frozenset(i for i, m in enumerate(marked) if running.over in m)
+        self._game = Game(partition.net, storage, files=Files(None))
+        self._listener = Listener(
+            self._game, partition.config.primitives if partition.config else {}
+        )
+        self._commands: dict[int, tuple[Command, ...]] = {}
+        effects = effects_of(partition.net.program)
+        self.outside: dict[int, str] = {}
+        for t in partition.net.transitions:
+            if t.code is not None and partition.transition_owner[t.index] > 0:
+                taken = [a.inscription.value for a in t.arcs if a.inscription is not None]
+                found = effects.of(t.code.action, *t.guards, *taken) & _OUTSIDE
+                self.outside[t.index] = min((e.value for e in found), default="")
+
+    def commands(self, number: int) -> tuple[Command, ...]:
+        """What an element tells its arm or device, in order."""
+        if number not in self._commands:
+            self._commands[number] = self._told(self.elements[number])
+        return self._commands[number]
+
+    def binding(self, element: Element) -> Binding:
+        """The values of the variables, without those that the code segment gives."""
+        t = self.partition.net.transitions[element.transition]
+        outputs = t.code.outputs if t.code is not None else ()
+        return {
+            s: from_json(s.colset, element.binding[s.name])
+            for s in t.variables
+            if s.colset is not None and s not in outputs and s.name in element.binding
+        }
+
+    def _told(self, element: Element) -> tuple[Command, ...]:
+        if element.is_step:
+            return ()
+        t = self.partition.net.transitions[element.transition]
+        owner = self.partition.owners[element.owner]
+        if t.code is None or owner.kind is OwnerKind.SUPERVISOR:
+            return ()
+        calls = Calls()
+        self._game.evaluator.now = self._game.start
+        with suppress(GameError), self._listener.noting(calls):
+            self._game.action(t, self.binding(element))
+        return tuple(c for c in calls if not isinstance(c, Unknown))
+
+
+def explore_cell(
+    partition: Partition, storage: Mapping[str, str], limits: Limits, d: Diagnostics,
+    initial: str | None = None,
+) -> CellGraph | None:  # fmt: skip
+    """Explores the cell as it runs; None after an error that was reported.
+
+    Raises:
+        NotModelledError: it cannot be said what its programs do.
+    """
+    running = Running.of(partition)
+    most = min(limits.max_states or MOST_STATES, MOST_STATES)
+    limits = replace(
+        limits,
+        max_states=most,
+        graph=True,
+        approximation=None,
+        traces=0,
+        reductions=(Reduction.TIME,) if partition.net.timed else (),
+    )
+    with tempfile.TemporaryDirectory(prefix="pn2code-") as folder:
+        file = Path(folder) / "graph.jsonl"
+        options = ExploreOptions(
+            initial=initial,
+            sizes=Sizes.start(running.net, storage),
+            graph=file,
+            questions="".join(f"{line}\n" for line in running.lines(first=True)),
+            evidence=Path(folder),
+            quick=True,
+        )
+        found = explore(running.net, storage, limits, d, options)
+        if found is None:
+            return None
+        why = "" if found.complete else found.why
+        if not file.exists():
+            return _read(partition, storage, running, (), why or "states")
+        graph = _read(partition, storage, running, _rows(file), why)
+        seen = len(graph.arcs), sum(map(len, graph.arcs))
+        if not why and seen != (found.nodes, found.arcs):
+            graph.why = "file"
+        return graph
+
+
+def _rows(file: Path) -> Iterator[Mapping[str, Any]]:
+    with file.open(encoding="utf-8", errors="surrogateescape") as lines:
+        for line in lines:
+            yield json.loads(line)
+
+
+def _read(
+    partition: Partition,
+    storage: Mapping[str, str],
+    running: Running,
+    rows: Iterable[Mapping[str, Any]],
+    why: str,
+) -> CellGraph:
+    count = len(partition.net.transitions)
+    places = {p.name: p.index for p in running.net.places}
+    owners = [*partition.transition_owner, *running.steps]
+    clock = set(running.clock)
+    ends = {running.over, running.stopped}
+    final = {
+        t.index
+        for t in running.net.transitions[count:]
+        if any(a.place in ends and a.kind is ArcKind.OUTPUT for a in t.arcs)
+        or t.name.startswith("cell.ends the robots")
+    }
+    known: dict[tuple[int, str], int] = {}
+    elements: list[Element] = []
+    arcs: list[list[tuple[int, int]]] = []
+    marked: list[Mapping[int, int]] = []
+
+    def grow(size: int) -> None:
+        while len(arcs) < size:
+            arcs.append([])
+            marked.append({})
+
+    for row in rows:
+        if "node" in row:
+            grow(row["node"])
+            marked[row["node"] - 1] = {
+                places[name]: sum(entry[0] for entry in tokens)
+                for name, tokens in row["marking"].items()
+                if tokens
+            }
+            continue
+        index = row["index"]
+        key = (index, json.dumps(row["binding"]))
+        if key not in known:
+            known[key] = len(elements)
+            elements.append(
+                Element(
+                    len(elements),
+                    index,
+                    CLOCK if index in clock else owners[index],
+                    row["binding"],
+                    index >= count,
+                    index in final,
+                )
+            )
+        grow(max(row["from"], row["to"]))
+        arcs[row["from"] - 1].append((known[key], row["to"] - 1))
+    return CellGraph(partition, storage, running, elements, arcs, marked, why)

@@ -1,0 +1,99 @@
+"""How far the joints of an arm turn within a piece of a line, although only samples of it are worked out.
+
+    follower = Follower(kinematics, path)
+    q, turns = follower.pieces(a, b)   # joint positions in the middle of pieces, and how far each axis may be from them
+
+On a line dq/ds = J(q)^-1 v, where v is the twist of the line. With sigma the least singular value of J at a sample, L a
+bound on how fast J changes with q, and w the norm of the twist times half the distance of samples: as long as
+2 L w <= sigma^2, q is no further from the sample than y = (sigma - sqrt(sigma^2 - 2 L w)) / L (the comparison theorem
+for y' = |v| / (sigma - L y)). In that ball the inverse of J differs by no more than |J^-1|^2 L y / (1 - |J^-1| L y),
+which bounds how fast each axis turns. A piece in which the condition does not hold is not known, and has to be divided.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from pn2code.robot.kinematics import TURN, Kinematics
+from pn2code.robot.model import AXES
+from pn2code.robot.motion import LinearTrajectory
+from pn2code.robot.transforms import Array, Flags
+
+SAMPLES = 8
+"""Steps within a piece."""
+SHORTEST = 1e-6
+"""m and rad: a piece that is shorter, and still not known, is given up."""
+
+
+class Follower:
+    """A line in pieces."""
+
+    def __init__(self, kinematics: Kinematics, path: LinearTrajectory) -> None:
+        self._k, self._path = kinematics, path
+        self.trouble = ""
+        self._speed = float(np.hypot(path.line.length, path.line.angle))
+        self._steep = _steepness(kinematics)
+        self._planned = path.way(path.times)
+
+    def pieces(self, a: Array, b: Array) -> tuple[Array, Array]:
+        """Of the pieces from a to b: joint positions in the middle, (n, 6), and how far axes are from there, (n, 6).
+
+        The latter is inf where it is not known.
+        """
+        count = len(a)
+        parts = np.linspace(0.0, 1.0, SAMPLES + 1)
+        s = a[:, None] + (b - a)[:, None] * parts
+        q = self._at(s.ravel()).reshape(count, SAMPLES + 1, AXES)
+        half = (b - a) * (self._speed / (2.0 * SAMPLES))
+        turns, is_fine = self._bounds(q, half)
+        middle = q[:, SAMPLES // 2]
+        away = (np.abs(q - middle[:, None]) + turns).max(axis=1)
+        away[~is_fine] = np.inf
+        lost = ~is_fine & ((b - a) * self._speed < SHORTEST)
+        if lost.any():
+            self.trouble = "the line passes so near to a singularity that what lies between samples is not known"
+            away[lost] = 0.0
+        return middle, away
+
+    def _at(self, s: Array) -> Array:
+        """Joint positions on the branch of the line, with the turns that the plan has there."""
+        rows = self._k.on_branch(self._path.line.at(s), self._path.branch)
+        index = np.searchsorted(self._planned, s).clip(0, len(self._planned) - 1)
+        near = self._path.grid[index]
+        return np.asarray(rows + TURN * np.round((near - rows) / TURN))
+
+    def _bounds(self, q: Array, half: Array) -> tuple[Array, Flags]:
+        """How far each axis turns from a sample to half way to the next, (n, samples, 6); for which pieces."""
+        there = ~np.isnan(q).any(axis=(1, 2))
+        flat = np.nan_to_num(q).reshape(-1, AXES)
+        jacobian = self._k.jacobian_many(flat).reshape(*q.shape[:2], 6, AXES)
+        sigma = np.linalg.svd(jacobian, compute_uv=False)[..., -1]
+        w = half[:, None]
+        inside = sigma**2 - 2.0 * self._steep * w
+        y = (sigma - np.sqrt(np.maximum(inside, 0.0))) / self._steep
+        reach = sigma - self._steep * y
+        # Neighbours are no further from each other than both half steps are long; else the branch leaps.
+        leap = np.linalg.norm(np.diff(q, axis=1), axis=2)
+        is_fine = there & ((inside > 0.0) & (reach > 0.0)).all(axis=1)
+        is_fine &= (np.nan_to_num(leap, nan=np.inf) <= y[:, :-1] + y[:, 1:] + 1e-9).all(axis=1)
+        line = self._path.line
+        rotation = self._k.forward_many(flat)[:, :3, :3]
+        spin = (rotation @ (line.axis * line.angle)).reshape(*q.shape[:2], 3)
+        twist = np.concatenate([np.broadcast_to(line.shift, spin.shape), spin], axis=2)
+        turns = np.zeros(q.shape)
+        if is_fine.any():
+            own = np.linalg.solve(jacobian[is_fine], twist[is_fine][..., None])[..., 0]
+            least = sigma[is_fine]
+            other = self._steep * y[is_fine] / (least * reach[is_fine])
+            # The twist turns with the tool, by no more than the angle of half a step.
+            more = (other + w[is_fine] / least) * self._speed
+            way = w[is_fine] / max(self._speed, 1e-12)
+            bound = (np.abs(own) + more[..., None]) * way[..., None]
+            turns[is_fine] = np.minimum(bound, y[is_fine][..., None])
+        return turns, is_fine
+
+
+def _steepness(kinematics: Kinematics) -> float:
+    """A bound on the norm of dJ/dq: no column changes faster than the arm is long (m) and 1 for its turn."""
+    reach = kinematics.longest
+    return float(AXES * np.sqrt(reach * reach + 1.0))

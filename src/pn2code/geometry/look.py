@@ -1,0 +1,282 @@
+"""The whole check of a layout: situations, moves, pairs, and what would keep pairs apart.
+
+looking = Look(graph, cell, Options(folder, "cell"), "")
+looking.answer()                                          # answers.Layout
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from pn2code.base.frozen import frozen
+from pn2code.geometry.activities import Activity, Doing, spot
+from pn2code.geometry.answers import Layout, Move, Pair, Verdict
+from pn2code.geometry.compare import Comparison
+from pn2code.geometry.graph import CellGraph
+from pn2code.geometry.legs import Leg, Planner
+from pn2code.geometry.runs import Run, write
+from pn2code.geometry.situations import Met, Side, Situations
+from pn2code.geometry.sweeps import Apart
+from pn2code.geometry.words import numbers, reason, words
+from pn2code.geometry.zones import Explore, Zones
+from pn2code.robot.backend import Clearance
+from pn2code.robot.bullet import BulletBackend
+from pn2code.robot.parts import Part
+from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.transforms import pose_of
+
+MOST_RUNS = 40
+"""Traces that are written."""
+
+
+@frozen
+class Options:
+    """How.
+
+    Args:
+        folder: of the traces; stem: what their names begin with.
+        initial: markings that files gave, for the headers of traces.
+        explore: explores a changed cell; None: no proposals.
+        stage: hears in words what is done.
+    """
+
+    folder: Path
+    stem: str
+    initial: str | None = None
+    explore: Explore | None = None
+    stage: Callable[[str], None] = lambda _text: None
+
+
+class Look:
+    """One layout."""
+
+    def __init__(self, graph: CellGraph, cell: RobotCell, options: Options, layout: str) -> None:
+        self.graph, self.cell, self.options, self.layout = graph, cell, options, layout
+        self.planner = Planner(cell)
+        self.doing = Doing(self.planner, cell)
+        self.backend = BulletBackend(cell, looks=False)
+        self.comparison = Comparison(cell, self.planner, self.backend)
+        self.robots = tuple(r.name for r in cell.robots)
+        self.runs: dict[tuple[int, tuple[int, ...]], Run] = {}
+        self.nearest: Clearance | None = None
+
+    def close(self) -> None:
+        """Ends the collision library."""
+        self.backend.close()
+
+    def answer(self) -> Layout:
+        """All that is known."""
+        began = time.perf_counter()
+        self.options.stage("looking where arms can be ...")
+        found = Situations(self.graph, self.doing, self.robots)
+        found.explore()
+        self.options.stage("sweeping moves ...")
+        moves = self._moves(found)
+        self.options.stage("sweeping pairs ...")
+        bad = self._pairs(found)
+        pairs = [*bad.values(), *self._parts(found)]
+        touching = [sides for sides, pair in bad.items() if pair.answer == "no"]
+        explore = self.options.explore
+        zones = None
+        if touching and explore is not None:
+            self.options.stage("looking for a place that guards the zone ...")
+            zones = Zones(found, self.comparison, explore).proposals(bad, touching)
+        return Layout(
+            self.layout,
+            len(self.graph.arcs),
+            len(found.situations),
+            tuple(moves),
+            tuple(pairs),
+            self.comparison.compared,
+            self.comparison.sweeper.queries,
+            time.perf_counter() - began,
+            reason(found.why),
+            tuple(zones or ()),
+            self.nearest,
+        )
+
+    # --- moves -----------------------------------------------------------------------------------
+
+    def _moves(self, found: Situations) -> list[Move]:
+        rows: dict[tuple[int, str], Move] = {}
+        for (number, _element), met in found.activities.items():
+            activity = self.doing.activities[number]
+            for leg, contents in activity.legs:
+                held = contents.held_by(leg.robot)
+                key = (leg.number, "" if held is None else spot(held))
+                is_at_rest = leg.fault is None and not leg.is_moving
+                if key in rows or (is_at_rest and held is None and leg.command is not None):
+                    continue
+                row = self._move(found, leg, held, met)
+                if leg.command is not None or row.answer != "yes":
+                    rows[key] = row
+            if activity.is_part and (-1 - number, "") not in rows:
+                rows[-1 - number, ""] = self._handling(found, activity, met)
+        return list(rows.values())
+
+    def _handling(self, found: Situations, activity: Activity, met: Met) -> Move:
+        """What an action cannot do to a part."""
+        t, owner = _who(found, met.elements[0])
+        begins = ""
+        if activity.end is not None:
+            base = self.cell.robot(owner).T_world_base
+            begins = numbers(pose_of(base @ activity.end.T_base_tcp))
+        does = words(activity.command)
+        run = self._run(found, met)
+        return Move(owner, t, does, begins, "tool", "no", activity.fault, run=run)
+
+    def _move(self, found: Situations, leg: Leg, held: Part | None, met: Met) -> Move:
+        t, _ = _who(found, met.elements[0])
+        base = self.cell.robot(leg.robot).T_world_base
+        begins = numbers(pose_of(base @ leg.start.T_base_tcp))
+        does = words(leg.command) + (f" with {held.kind.name}" if held is not None else "")
+        if leg.fault is not None:
+            return Move(
+                leg.robot,
+                t,
+                does,
+                begins,
+                leg.kind,
+                "no",
+                leg.fault.message,
+                run=self._run(found, met),
+            )
+        margins = self.comparison.margins(leg)
+        scene, itself = self.comparison.around(leg, held)
+        answer: Verdict = "yes"
+        why = ""
+        for apart, what in ((scene, ""), (itself, " of itself")):
+            if apart.outcome == "touch" and answer != "no":
+                answer, why = "no", _touch(apart) + what
+            elif apart.outcome == "open" and answer == "yes":
+                answer, why = "unknown", apart.why
+        return Move(
+            leg.robot,
+            t,
+            does,
+            begins,
+            leg.kind,
+            answer,
+            why,
+            math.degrees(margins.limit),
+            margins.axis + 1,
+            margins.condition,
+            _least(scene),
+            _least(itself),
+            scene.where,
+            self._run(found, met) if answer != "yes" else None,
+        )
+
+    # --- pairs -----------------------------------------------------------------------------------
+
+    def _pairs(self, found: Situations) -> dict[tuple[Side, Side], Pair]:
+        """Pairs of arms that are not surely apart; of what two transitions do the first that touches."""
+        bad: dict[tuple[Side, Side], Pair] = {}
+        for numbers_, met in found.pairs.items():
+            a, b = (self.doing.activities[n] for n in numbers_)
+            sides = found.sides(a, b, met)
+            if sides in bad and bad[sides].answer == "no":
+                continue
+            for leg, other, apart in self.comparison.activities(a, b):
+                self._note_nearest(apart)
+                if apart.outcome == "touch" or (apart.outcome == "open" and sides not in bad):
+                    bad[sides] = self._pair(found, leg, other, apart, met)
+                if apart.outcome == "touch":
+                    break
+        return bad
+
+    def _note_nearest(self, apart: Apart) -> None:
+        gap = apart.where
+        if apart.outcome == "clear" and gap is not None:
+            least = self.nearest.distance if self.nearest is not None else math.inf
+            self.nearest = gap if gap.distance < least else self.nearest
+
+    def _pair(self, found: Situations, leg: Leg, other: Leg, apart: Apart, met: Met) -> Pair:
+        names = [_who(found, e)[0] for e in met.elements]
+        does = (words(leg.command), words(other.command))
+        joints = tuple(
+            (x.robot, tuple(map(float, q)))
+            for x, q in zip((leg, other), apart.joints, strict=False)
+        )
+        is_touch = apart.outcome == "touch"
+        return Pair(
+            (leg.robot, other.robot),
+            (names[0], names[1]),
+            does,
+            "no" if is_touch else "unknown",
+            _touch(apart) if is_touch else apart.why,
+            apart.where,
+            apart.where.distance if apart.where else 0.0,
+            joints,
+            self._run(found, met),
+        )
+
+    def _parts(self, found: Situations) -> list[Pair]:
+        """Arms, with what they carry, and parts that stand."""
+        parts = found.parts() if found.beside else {}
+        bad: dict[tuple[str, str, str], Pair] = {}
+        for (number, i, where), met in found.beside.items():
+            leg, contents = self.doing.activities[number].legs[i]
+            part = parts[where]
+            t, _ = _who(found, met.elements[0])
+            key = (leg.robot, t, part.kind.name)
+            if key in bad and bad[key].answer == "no":
+                continue
+            apart = self.comparison.beside((leg, contents.held_by(leg.robot)), part)
+            if apart.outcome == "clear" or (key in bad and apart.outcome == "open"):
+                continue
+            is_touch = apart.outcome == "touch"
+            joints = ((leg.robot, tuple(map(float, apart.joints[0]))),) if apart.joints else ()
+            bad[key] = Pair(
+                (leg.robot, ""),
+                (t, ""),
+                (words(leg.command), f"{part.kind.name} stands at {numbers(pose_of(part.frame))}"),
+                "no" if is_touch else "unknown",
+                _touch(apart) if is_touch else apart.why,
+                apart.where,
+                apart.where.distance if apart.where else 0.0,
+                joints,
+                self._run(found, met),
+            )
+        return list(bad.values())
+
+    # --- words and runs --------------------------------------------------------------------------
+
+    def _run(self, found: Situations, met: Met) -> Run | None:
+        """A run to where something is under way; None: there are enough of them."""
+        key = (met.situation, met.elements)
+        if key not in self.runs and len(self.runs) < MOST_RUNS:
+            number = len(self.runs) + 1
+            layout = f"-{self.layout}" if self.layout else ""
+            name = f"{self.options.stem}.geometry{layout}-{number}.trace.jsonl"
+            self.runs[key] = write(
+                found.graph,
+                found.way(met.situation),
+                [e for e in met.elements if e >= 0],
+                self.options.folder / name,
+                self.options.initial,
+            )
+        return self.runs.get(key)
+
+
+def _who(found: Situations, element: int) -> tuple[str, str]:
+    """The transition and the owner; of an arm that stands nobody."""
+    if element < 0:
+        return "", ""
+    e = found.graph.elements[element]
+    partition = found.graph.partition
+    return partition.net.transitions[e.transition].name, partition.owners[e.owner].name
+
+
+def _least(apart: Apart) -> float | None:
+    return None if apart.outcome == "open" else apart.least
+
+
+def _touch(apart: Apart) -> str:
+    gap = apart.where
+    assert gap is not None
+    at = ", ".join(f"{1000.0 * v:.0f}" for v in gap.point)
+    return f"`{gap.a}` and `{gap.b}` overlap by {-1000.0 * gap.distance:.1f} mm at ({at}) mm"

@@ -1,0 +1,165 @@
+"""The answers for people: a table of moves, and what is wrong with pairs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+from pn2code.geometry.answers import Layout, Move, Pair, Proposal
+from pn2code.geometry.runs import Run
+from pn2code.geometry.sweeps import RESOLUTION, SEARCHED
+
+MOST_MOVES = 12
+"""Moves of a table that is not full."""
+_ANSWERS = {"yes": "yes", "no": "NO", "unknown": "not known"}
+
+
+def text(layouts: Sequence[Layout], *, full: bool) -> str:
+    """The whole report."""
+    return "\n".join(line for layout in layouts for line in _lines(layout, full))
+
+
+def _lines(layout: Layout, full: bool) -> Iterator[str]:
+    where = f"Layout `{layout.name}`: " if layout.name else ""
+    yield (
+        f"{where}{layout.states:,} states of the cell, {layout.situations:,} with the places of the arms; "
+        f"{_many(len(layout.moves), 'move')}, {_many(layout.looked, 'pair')} of moves; {layout.seconds:.1f} s"
+    )
+    if layout.open:
+        yield f"  not all is known: {layout.open}"
+    yield ""
+    yield from _table(layout.moves, full)
+    yield ""
+    yield from _verdicts(layout)
+    for move in layout.moves:
+        if move.answer != "yes":
+            yield from _bad_move(move)
+    for pair in layout.pairs:
+        yield from _bad_pair(pair)
+    for proposal in layout.proposals:
+        yield from _proposed(proposal)
+    yield ""
+
+
+def _verdicts(layout: Layout) -> Iterator[str]:
+    yield (
+        f"{_ANSWERS[layout.of_moves]:>9}  each move can be done from wherever the arm can be then, without touching "
+        "what stands or itself"
+    )
+    resolution = f"resolution {1000.0 * RESOLUTION:g} mm"
+    yield (
+        f"{_ANSWERS[layout.of_pairs]:>9}  no two arms collide, nor an arm and a part, in any interleaving that the net "
+        f"permits ({resolution})"
+    )
+    if layout.of_pairs == "yes" and layout.nearest is not None:
+        near = layout.nearest
+        yield (
+            f"           the nearest that was measured: `{near.a}` and `{near.b}`, "
+            f"{1000.0 * near.distance:.0f} mm"
+        )
+
+
+def _table(moves: Sequence[Move], full: bool) -> Iterator[str]:
+    shown = sorted(moves, key=_badness)
+    left = 0 if full else max(0, len(shown) - MOST_MOVES)
+    rows: list[tuple[str, ...]] = [
+        ("robot", "transition", "move", "limit", "condition", "scene", "itself", "")
+    ]
+    rows += [_cells(m) for m in (shown[:MOST_MOVES] if left else shown)]
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    for row in rows:
+        yield "  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip()
+    if left:
+        yield f"... and {_many(left, 'move')} with larger margins (`--full` shows all)"
+
+
+def _badness(m: Move) -> tuple[int, float, str]:
+    """The worst first: what cannot be done, then the least clearance and the worst conditioning, each by its scale."""
+    rank = {"no": 0, "unknown": 1, "yes": 2}[m.answer]
+    parts = [
+        1.0 if m.scene is None else m.scene / 0.1,
+        1.0 if m.itself is None else m.itself / 0.1,
+        1.0 if m.limit is None else m.limit / 20.0,
+        1.0 if not m.condition else 50.0 / m.condition,
+    ]
+    return rank, min(parts), m.transition
+
+
+def _cells(m: Move) -> tuple[str, ...]:
+    condition = (
+        "-"
+        if m.condition is None
+        else "singular"
+        if math.isinf(m.condition)
+        else f"{m.condition:.1f}"
+    )
+    limit = "-" if m.limit is None else f"{m.limit:.1f} deg A{m.axis}"
+    mark = "" if m.answer == "yes" else _ANSWERS[m.answer]
+    return (
+        m.robot,
+        m.transition.removeprefix("Cell."),
+        m.command,
+        limit,
+        condition,
+        _millimetres(m.scene),
+        _millimetres(m.itself),
+        mark,
+    )
+
+
+def _millimetres(value: float | None) -> str:
+    if value is None:
+        return "-"
+    if value >= SEARCHED - 0.15 * SEARCHED:
+        return f"> {1000.0 * value:.0f} mm"
+    return f"{1000.0 * value:.0f} mm" if value >= 0.01 else f"{1000.0 * value:.1f} mm"
+
+
+def _bad_move(m: Move) -> Iterator[str]:
+    yield ""
+    yield f"{_ANSWERS[m.answer]}: {m.robot}, `{m.transition}`: {m.command}"
+    if m.begins:
+        yield f"  from TCP pose {m.begins}"
+    yield f"  {m.problem}"
+    yield from _run(m.run)
+
+
+def _bad_pair(p: Pair) -> Iterator[str]:
+    yield ""
+    names = " and ".join(
+        f"`{t}`" if t else f"{robot} at rest" if robot else "a part"
+        for t, robot in zip(p.transitions, p.robots, strict=True)
+    )
+    yield f"{_ANSWERS[p.answer]}: {names} may be under way at once"
+    for robot, does in zip(p.robots, p.doing, strict=True):
+        yield f"  {robot or 'part'}: {does}"
+    yield f"  {p.says}"
+    yield from _run(p.run)
+    if p.picture:
+        yield f"  picture: {p.picture}"
+
+
+def _run(run: Run | None) -> Iterator[str]:
+    if run is None:
+        return
+    last = {1: "the last of them", 2: "the last two of them"}.get(run.under_way, "")
+    which = f" ({last} under way)" if last else ""
+    yield f"  a run of {_many(run.steps, 'step')} leads there{which}: {run.file or 'it could not be written'}"
+
+
+def _proposed(p: Proposal) -> Iterator[str]:
+    yield ""
+    zone = " and ".join(f"`{t}`" for t in p.transitions)
+    yield f"{zone} share a zone that the net does not guard"
+    if not p.works:
+        yield f"  {p.says}"
+        return
+    yield f"  proposal: a place `{p.name}` of the supervisor with one token `()`"
+    yield f"    taken by {', '.join(f'`{t}`' for t in p.takes)}"
+    yield f"    given back by {', '.join(f'`{t}`' for t in p.gives)}"
+    yield f"    (it is empty while {', '.join(f'`{x}`' for x in p.while_)} is marked)"
+    yield f"  {p.says}"
+
+
+def _many(n: int, what: str) -> str:
+    return f"{n:,} {what}{'s' * (n != 1)}"

@@ -1,0 +1,269 @@
+"""All situations of a cell: each state that it can come to, with where each arm stands and which parts are there.
+
+    found = Situations(graph, doing, robots)
+    found.explore()
+    found.activities[number]        # the first situation in which it is under way, ...
+    found.pairs[(4, 9)]             # and the first one in which both are, of two arms
+    found.way(situation)            # the elements that lead there
+
+Where an arm stands is where its last transition has left it; so a situation is a state of the cell, a place for each
+arm, and the parts. Of what is under way in one nobody knows how far it is.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections import deque
+from collections.abc import Sequence
+
+from pn2code.base.frozen import frozen
+from pn2code.cell.partition import OwnerKind
+from pn2code.geometry.activities import Activity, Contents, Doing
+from pn2code.geometry.graph import CellGraph
+from pn2code.geometry.legs import Stand
+from pn2code.robot.parts import Part
+
+Side = tuple[int, int, int]
+"""What one arm does of two: (arm, transition, -1), or (arm, -1, place where it stands)."""
+MOST = 1_000_000
+"""Situations that are looked at."""
+
+
+@frozen(eq=False)
+class Situation:
+    """A state of the cell with its arms and parts."""
+
+    state: int
+    stands: tuple[Stand, ...]
+    contents: Contents
+
+    @property
+    def key(self) -> tuple[int, ...]:
+        """What tells it from others."""
+        return (self.state, self.contents.number, *(s.number for s in self.stands))
+
+
+@frozen
+class Met:
+    """Where something is met first.
+
+    Args:
+        situation: its number.
+        elements: what is under way there (-1: an arm that stands).
+    """
+
+    situation: int
+    elements: tuple[int, ...]
+
+
+class Situations:
+    """Goes through them."""
+
+    def __init__(self, graph: CellGraph, doing: Doing, robots: Sequence[str]) -> None:
+        self.graph, self.doing = graph, doing
+        self.robots = tuple(robots)
+        self.situations: list[Situation] = []
+        self._numbers: dict[tuple[int, ...], int] = {}
+        self._from: list[tuple[int, int]] = []
+        self.activities: dict[tuple[int, int], Met] = {}
+        """by (activity, element or -1)"""
+        self.pairs: dict[tuple[int, int], Met] = {}
+        """by activities, of the earlier robot first"""
+        self.beside: dict[tuple[int, int, str], Met] = {}
+        """by (activity, leg of it, part that stands)"""
+        self.states: dict[Side, set[int]] = {}
+        """the states in which that is so"""
+        self.why = graph.why
+        names = {o.name: o.index for o in graph.partition.owners}
+        self._arm_of = {names[r]: i for i, r in enumerate(self.robots) if r in names}
+        self._seen: set[tuple[object, ...]] = set()
+        self._owner_names = {o.index: o.name for o in graph.partition.owners}
+        self._acting = {
+            o.index for o in graph.partition.owners if o.kind is not OwnerKind.SUPERVISOR
+        }
+
+    def explore(self) -> None:
+        """Goes through all of them."""
+        stands = tuple(self.doing.planner.home(r) for r in self.robots)
+        self._number(Situation(0, stands, self.doing.start), -1, -1)
+        todo = deque([0])
+        while todo:
+            number = todo.popleft()
+            here = self.situations[number]
+            under_way = self._under_way(here)
+            self._note(number, here, under_way)
+            for element, target in self.graph.arcs[here.state]:
+                after = self._after(here, element, target, under_way)
+                if after is None:
+                    continue
+                if len(self.situations) >= MOST and after.key not in self._numbers:
+                    self.why = self.why or "situations"
+                    continue
+                before = len(self.situations)
+                found = self._number(after, number, element)
+                if found == before:
+                    todo.append(found)
+
+    def way(self, situation: int) -> list[int]:
+        """The elements that lead to a situation, from the start."""
+        out = []
+        while situation > 0:
+            situation, element = self._from[situation]
+            out.append(element)
+        return out[::-1]
+
+    def sides(self, a: Activity, b: Activity, met: Met) -> tuple[Side, Side]:
+        """What two arms do."""
+        one, other = met.elements
+        return self._side(a, one), self._side(b, other)
+
+    def _side(self, activity: Activity, element: int) -> Side:
+        leg = activity.legs[0][0]
+        arm = self.robots.index(leg.robot)
+        if element < 0:
+            return (arm, -1, leg.start.number)
+        return (arm, self.graph.elements[element].transition, -1)
+
+    def _number(self, s: Situation, parent: int, element: int) -> int:
+        if s.key not in self._numbers:
+            self._numbers[s.key] = len(self.situations)
+            self.situations.append(s)
+            self._from.append((parent, element))
+        return self._numbers[s.key]
+
+    def _under_way(self, here: Situation) -> dict[int, Activity]:
+        """By element: what can be under way."""
+        out: dict[int, Activity] = {}
+        for element, _ in self.graph.arcs[here.state]:
+            if element in out:
+                continue
+            e = self.graph.elements[element]
+            if e.is_step or e.owner not in self._acting:
+                continue
+            commands = self.graph.commands(element)
+            if not commands:
+                continue
+            if self.graph.outside.get(e.transition):
+                self.why = self.why or "outside"
+            arm = self._arm_of.get(e.owner)
+            stand = here.stands[arm] if arm is not None else None
+            name = self._owner_names[e.owner]
+            out[element] = self.doing.of(name, commands, stand, here.contents)
+        return out
+
+    def _after(
+        self, here: Situation, element: int, target: int, under_way: dict[int, Activity]
+    ) -> Situation | None:
+        activity = under_way.get(element)
+        self._expect_kept(here, element, target, under_way)
+        if activity is None:
+            return Situation(target, here.stands, here.contents)
+        if activity.fault:
+            return None
+        stands = here.stands
+        arm = self._arm_of.get(self.graph.elements[element].owner)
+        if arm is not None and activity.end is not None:
+            stands = (*stands[:arm], activity.end, *stands[arm + 1 :])
+        return Situation(target, stands, activity.after)
+
+    def _expect_kept(
+        self, here: Situation, element: int, target: int, under_way: dict[int, Activity]
+    ) -> None:
+        """What is under way stays so, whatever others do; else more could be under way than is seen."""
+        e = self.graph.elements[element]
+        if e.is_end or not under_way:
+            return
+        there: set[int] | None = None
+        for other in under_way:
+            if self.graph.elements[other].owner == e.owner:
+                continue
+            there = there if there is not None else {x for x, _ in self.graph.arcs[target]}
+            if other not in there:
+                self.why = self.why or "overtaken"
+
+    def _note(self, number: int, here: Situation, under_way: dict[int, Activity]) -> None:
+        busy: set[int] = set()
+        for element in under_way:
+            doing = self.graph.elements[element]
+            arm = self._arm_of.get(doing.owner)
+            if arm is not None:
+                busy.add(arm)
+                self.states.setdefault((arm, doing.transition, -1), set()).add(here.state)
+        for arm, stand in enumerate(here.stands):
+            if arm not in busy:
+                self.states.setdefault((arm, -1, stand.number), set()).add(here.state)
+        key = (
+            tuple(sorted((e, a.number) for e, a in under_way.items())),
+            tuple(s.number for s in here.stands),
+            here.contents.number,
+        )
+        if key in self._seen:
+            return
+        self._seen.add(key)
+        by_arm: list[list[tuple[int, Activity]]] = [[] for _ in self.robots]
+        for element, activity in under_way.items():
+            owner = self._arm_of.get(self.graph.elements[element].owner)
+            self.activities.setdefault((activity.number, element), Met(number, (element,)))
+            if owner is not None:
+                by_arm[owner].append((element, activity))
+        for arm, stand in enumerate(here.stands):
+            if not by_arm[arm]:
+                activity = self.doing.standing(stand, here.contents)
+                by_arm[arm].append((-1, activity))
+                self.activities.setdefault((activity.number, -1), Met(number, (-1,)))
+        for one, other in itertools.combinations(by_arm, 2):
+            for (e, a), (f, b) in itertools.product(one, other):
+                self.pairs.setdefault((a.number, b.number), Met(number, (e, f)))
+        self._note_parts(number, here, under_way, by_arm)
+        self._expect_order(under_way)
+
+    def _note_parts(
+        self,
+        number: int,
+        here: Situation,
+        under_way: dict[int, Activity],
+        by_arm: list[list[tuple[int, Activity]]],
+    ) -> None:
+        """Parts that stand while arms move: those that are there, and those that others put there meanwhile."""
+        if not self.doing.start.parts.cell.parts:
+            return
+        own = here.contents.standing
+        for acts in by_arm:
+            for element, activity in acts:
+                owner = self.graph.elements[element].owner if element >= 0 else None
+                added: set[str] = set()
+                for other, doing in under_way.items():
+                    if self.graph.elements[other].owner != owner:
+                        for contents in doing.between:
+                            added |= contents.standing.keys() - own.keys()
+                for i, (_, contents) in enumerate(activity.legs):
+                    for spot in contents.standing.keys() | added:
+                        self.beside.setdefault((activity.number, i, spot), Met(number, (element,)))
+
+    def _expect_order(self, under_way: dict[int, Activity]) -> None:
+        """What two do to parts of a kind must come to the same in both orders; else it depends on how far each is."""
+        handling = [(e, a) for e, a in under_way.items() if a.kinds]
+        for (e, a), (f, b) in itertools.combinations(handling, 2):
+            if self.graph.elements[e].owner == self.graph.elements[f].owner:
+                continue
+            if a.kinds & b.kinds and (a.fault or b.fault or not self._commute(e, a, f, b)):
+                self.why = self.why or "order"
+
+    def _commute(self, e: int, a: Activity, f: int, b: Activity) -> bool:
+        first = self._again(f, b, a.after)
+        second = self._again(e, a, b.after)
+        return not (first.fault or second.fault) and first.after is second.after
+
+    def _again(self, element: int, activity: Activity, contents: Contents) -> Activity:
+        owner = self.graph.elements[element].owner
+        stand = activity.legs[0][0].start if activity.legs else None
+        name = self._owner_names[owner]
+        return self.doing.of(name, self.graph.commands(element), stand, contents)
+
+    def parts(self) -> dict[str, Part]:
+        """Each part that ever stands somewhere, by its spot."""
+        out = dict(self.doing.start.standing)
+        for activity in self.doing.activities:
+            for contents in activity.between:
+                out |= contents.standing
+        return out

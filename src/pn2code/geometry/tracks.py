@@ -1,0 +1,241 @@
+"""Legs in space: where the links of an arm are within a piece of a leg, and by how much their points may be off.
+
+    arm = ArmShape.of(robot, backend)
+    track = Track(arm, leg, held=None)
+    rows = track.knots(np.array([0.25]), np.array([0.5]))
+    rows.spread                     # (1, links): in this quarter of the way no point of a link is further than this (m)
+                                    # from where it is in the middle of it
+
+Joint moves are straight lines of joint positions. When the joints turn one after the other, the last one first, each
+turns what comes after it about an axis that stands still meanwhile; so a point goes no further than the sum of angle
+times distance from the axis. On lines the joints come from the inverse kinematics: `lines` says how far each may turn.
+"""
+
+from __future__ import annotations
+
+import itertools
+
+import numpy as np
+
+from pn2code.base.frozen import frozen
+from pn2code.geometry.legs import Leg
+from pn2code.geometry.lines import Follower
+from pn2code.robot.bullet import BulletBackend
+from pn2code.robot.chain import cross
+from pn2code.robot.model import AXES
+from pn2code.robot.motion import JointTrajectory, LinearTrajectory, Still
+from pn2code.robot.parts import Part
+from pn2code.robot.robot_cell import CellRobot
+from pn2code.robot.transforms import Array, Numbers
+from pn2code.robot.urdf import Joint, Urdf
+
+
+@frozen(eq=False)
+class Link:
+    """A rigid piece: a box, and the capsule around it, in the frame of the joint that moves it.
+
+    Args:
+        name: as in messages, "robot1/link_4".
+        joint: how many axes move it, 0 .. 6.
+        corners: (8, 3); ends: of the capsule's axis, (2, 3); radius: of the capsule.
+    """
+
+    name: str
+    joint: int
+    corners: Array
+    ends: Array
+    radius: float
+
+    @staticmethod
+    def of(name: str, joint: int, T_joint_link: Array, low: Array, high: Array) -> Link:  # noqa: N803
+        """Around a box in the frame of the link."""
+        corners = np.array(list(itertools.product(*zip(low, high, strict=True))))
+        middle, half = (low + high) / 2.0, (high - low) / 2.0
+        long = int(np.argmax(half))
+        radius = float(np.hypot(*np.delete(half, long)))
+        ends = np.stack([middle, middle])
+        ends[0, long] -= half[long]
+        ends[1, long] += half[long]
+        turn, shift = T_joint_link[:3, :3].T, T_joint_link[:3, 3]
+        return Link(name, joint, corners @ turn + shift, ends @ turn + shift, radius)
+
+
+@frozen(eq=False)
+class ArmShape:
+    """The links of an arm with its tool that have a shape."""
+
+    robot: CellRobot
+    links: tuple[Link, ...]
+
+    @staticmethod
+    def of(robot: CellRobot, backend: BulletBackend) -> ArmShape:
+        """As the collision library has them."""
+        links = []
+        for name, joint, frame in _frames(robot):
+            box = backend.box(robot.name, name)
+            if box is not None:
+                links.append(Link.of(f"{robot.name}/{name}", joint, frame, *box))
+        return ArmShape(robot, tuple(links))
+
+    def holding(self, part: Part, low: Array, high: Array) -> Link:
+        """A part that its tool carries, as a further link."""
+        frame = self.robot.kinematics.T_flange_tcp @ part.frame
+        return Link.of(f"{self.robot.name}/{part.name}", AXES + 1, frame, low, high)
+
+
+def _frames(robot: CellRobot) -> list[tuple[str, int, Array]]:
+    """Each link with how many axes move it (7: it is on the flange), and its frame in that of the last of them."""
+    arm = robot.arm
+    moving = {name: i for i, name in enumerate(arm.axes)}
+    out = []
+    for link in arm.urdf.links:
+        joint, frame = _placed(arm.urdf, link, moving)
+        out.append((link, joint, frame))
+    if robot.tool is not None:
+        for link in robot.tool.urdf.links:
+            out.append((f"tool_{link}", AXES + 1, _placed(robot.tool.urdf, link, {})[1]))
+    return out
+
+
+def _placed(tree: Urdf, link: str, moving: dict[str, int]) -> tuple[int, Array]:
+    joint, frame = 0, np.eye(4)
+    for step in tree.chain(link):
+        if step.name in moving:
+            joint, frame = moving[step.name] + 1, np.eye(4)
+        else:
+            frame = frame @ _at_zero(step)
+    return joint, frame
+
+
+def _at_zero(joint: Joint) -> Array:
+    """Joints that are no axes of the arm stand at zero."""
+    return joint.T_parent_joint
+
+
+@frozen(eq=False)
+class Knots:
+    """Pieces of a leg, each by its middle.
+
+    Args:
+        q: joint positions in the middle, (n, 6).
+        ends: of the capsules in the world, (n, links, 2, 3).
+        spread: (n, links), see above.
+    """
+
+    q: Array
+    ends: Array
+    spread: Array
+
+    def pick(self, rows: Numbers) -> Knots:
+        """Some of them."""
+        return Knots(self.q[rows], self.ends[rows], self.spread[rows])
+
+
+class Track:
+    """A leg of an arm, with the part that it carries.
+
+    Args:
+        shape: of the arm.
+        leg: one that can be carried out.
+        held: what is carried, as a link.
+        part: the same for the collision library.
+    """
+
+    def __init__(
+        self, shape: ArmShape, leg: Leg, held: Link | None = None, part: Part | None = None
+    ) -> None:
+        assert leg.path is not None
+        self.shape, self.leg, self.part = shape, leg, part
+        self.links = shape.links + (() if held is None else (held,))
+        self.radii = np.array([x.radius for x in self.links])
+        self._corners = np.stack([x.corners for x in self.links])
+        self._ends = np.stack([x.ends for x in self.links])
+        self._joints = np.array([x.joint for x in self.links])
+        self.names = {x.name: i for i, x in enumerate(self.links)}
+        self._rows: dict[tuple[float, float], tuple[int, int]] = {}
+        self._kept: list[Knots] = []
+        self._follower: Follower | None = None
+        self.is_still = isinstance(leg.path, Still) or (
+            isinstance(leg.path, JointTrajectory) and not np.any(leg.path.turns)
+        )
+        if isinstance(leg.path, LinearTrajectory):
+            self._follower = Follower(shape.robot.kinematics, leg.path)
+
+    @property
+    def robot(self) -> str:
+        """Whose it is."""
+        return self.leg.robot
+
+    @property
+    def trouble(self) -> str:
+        """Why nothing is known of what lies between samples; "": something is."""
+        return self._follower.trouble if self._follower is not None else ""
+
+    def knots(self, a: Array, b: Array) -> Knots:
+        """The pieces from fraction a to b of the way, (n,) each; each is worked out once."""
+        keys = list(zip(a.tolist(), b.tolist(), strict=True))
+        new = [i for i, key in enumerate(keys) if key not in self._rows]
+        if new:
+            found = self._worked_out(a[new], b[new])
+            first = len(self._kept)
+            self._kept.append(found)
+            for row, i in enumerate(new):
+                self._rows[keys[i]] = (first, row)
+        where = [self._rows[key] for key in keys]
+        if len({batch for batch, _ in where}) == 1:
+            return self._kept[where[0][0]].pick(np.array([row for _, row in where]))
+        return Knots(
+            np.stack([self._kept[batch].q[row] for batch, row in where]),
+            np.stack([self._kept[batch].ends[row] for batch, row in where]),
+            np.stack([self._kept[batch].spread[row] for batch, row in where]),
+        )
+
+    def _worked_out(self, a: Array, b: Array) -> Knots:
+        path = self.leg.path
+        assert path is not None
+        rigid: Array | None = None
+        if self._follower is not None:
+            q, turns = self._follower.pieces(a, b)
+            rigid = (b - a) / 2.0
+        elif isinstance(path, JointTrajectory):
+            q = path.on_way((a + b) / 2.0)
+            turns = np.abs(path.turns) * ((b - a) / 2.0)[:, None]
+        else:
+            q, turns = path.on_way(a), np.zeros((len(a), AXES))
+        return self._placed(q, turns, rigid)
+
+    def _placed(self, q: Array, turns: Array, rigid: Array | None) -> Knots:
+        kinematics = self.shape.robot.kinematics
+        frames = kinematics.link_frames(q)
+        axes = kinematics.axes_of(frames)
+        base = self.shape.robot.T_world_base
+        turn = np.stack(
+            [np.eye(3)[None].repeat(len(q), 0), *(f[:, :3, :3] for f in frames)], axis=1
+        )
+        shift = np.stack([np.zeros((len(q), 3)), *(f[:, :3, 3] for f in frames)], axis=1)
+        turn, shift = turn[:, self._joints].transpose(0, 1, 3, 2), shift[:, self._joints, None]
+        corners = self._corners @ turn + shift
+        ends = (self._ends @ turn + shift) @ base[:3, :3].T + base[:3, 3]
+        spread = np.zeros((len(q), len(self.links)))
+        for j in reversed(range(AXES)):
+            arms = corners - frames[j][:, None, None, :3, 3]
+            off = np.sqrt((cross(axes[:, None, None, j], arms) ** 2).sum(-1).max(axis=2))
+            more = spread + turns[:, j, None] * (off + spread)
+            spread = np.where(self._joints > j, more, spread)
+        if rigid is not None:
+            for i, link in enumerate(self.links):
+                if link.joint >= AXES:
+                    spread[:, i] = np.minimum(spread[:, i], self._on_line(link, rigid))
+        return Knots(q, ends, spread)
+
+    def _on_line(self, link: Link, half: Array) -> Array:
+        """How far a link beyond the last axis goes in half a piece of a line: as the TCP does."""
+        path = self.leg.path
+        assert isinstance(path, LinearTrajectory)
+        kinematics = self.shape.robot.kinematics
+        tcp = kinematics.T_flange_tcp
+        corners = link.corners
+        if link.joint == AXES:
+            corners = (corners - kinematics.T_axis_flange[:3, 3]) @ kinematics.T_axis_flange[:3, :3]
+        arm = float(np.linalg.norm(corners - tcp[:3, 3], axis=1).max())
+        return np.asarray(half * (path.line.length + path.line.angle * arm))

@@ -1,0 +1,68 @@
+"""Commands and reasons in words."""
+
+from __future__ import annotations
+
+import math
+
+from pn2code.robot.commands import (
+    Command,
+    Measure,
+    MoveHome,
+    MoveJoint,
+    MoveLinear,
+    Pose,
+    ToolAction,
+    Wait,
+)
+from pn2code.verify.answers.reasons import clause
+
+_OPEN = {
+    "states": "the cell has more states than were looked at",
+    "seconds": "the time was over before all states of the cell were seen",
+    "memory": "the memory was full before all states of the cell were seen",
+    "interrupted": "it was interrupted before all states of the cell were seen",
+    "error": "an inscription raises an exception in a state of the cell",
+    "situations": "arms and parts can be in more ways together than were looked at",
+    "overtaken": "a transition of a robot that is under way may be overtaken by another one, and what the robot does "
+    "then is not followed",
+    "order": "what becomes of a part depends on how far two programs are that handle it at the same time",
+    "file": "the graph of the cell could not be written into a temporary file; is the disk full?",
+    "outside": "what a robot is told depends on more than tokens: random numbers, files, the time, or the number of "
+    "steps",
+}
+
+
+def reason(why: str) -> str:
+    """Why not all is known, as a clause; "": all is."""
+    return _OPEN.get(why) or clause(why)
+
+
+def words(command: Command | None) -> str:
+    """A command in the units of scripts."""
+    match command:
+        case None:
+            return "stands"
+        case MoveJoint(target=pose):
+            return f"joint {numbers(pose)}"
+        case MoveLinear(target=pose, frame=frame):
+            return f"linear {numbers(pose)}" + (" in tool" if frame == "tool" else "")
+        case MoveHome():
+            return "home"
+        case Measure():
+            return "measure"
+        case ToolAction(action=action):
+            return f"tool {action}"
+        case Wait(duration=seconds):
+            return f"wait {seconds:g} s"
+
+
+def numbers(pose: Pose) -> str:
+    """mm and degrees."""
+    mm = " ".join(_short(1000.0 * v) for v in (pose.x, pose.y, pose.z))
+    deg = " ".join(_short(math.degrees(v)) for v in (pose.rx, pose.ry, pose.rz))
+    return f"{mm}, {deg}"
+
+
+def _short(value: float) -> str:
+    text = f"{value:.1f}".removesuffix(".0")
+    return "0" if text == "-0" else text

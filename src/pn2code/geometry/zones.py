@@ -1,0 +1,134 @@
+"""The zones that a net does not guard: which transitions share them, and a place that would guard each, tried out.
+
+zones = Zones(found, comparison, explore)
+zones.proposals(bad, touching)              # [Proposal(...)]
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+
+from pn2code.cell.partition import Partition
+from pn2code.geometry import mutex
+from pn2code.geometry.answers import Proposal
+from pn2code.geometry.compare import Comparison
+from pn2code.geometry.graph import CellGraph
+from pn2code.geometry.situations import Side, Situations
+from pn2code.geometry.words import reason
+
+Explore = Callable[[Partition], CellGraph | None]
+Sides = tuple[Side, Side]
+_NONE = (
+    "no places of the supervisor are marked exactly while these robots are there: let it command each of them by a "
+    "transition of its own, wait for the answer, and bring an arm out of the zone before it rests"
+)
+
+
+class Zones:
+    """Looks for places.
+
+    Args:
+        found: the situations of the cell as it is.
+        comparison: of legs.
+        explore: explores a changed cell.
+    """
+
+    def __init__(self, found: Situations, comparison: Comparison, explore: Explore) -> None:
+        self._found, self._comparison, self._explore = found, comparison, explore
+        self._stuck = mutex.stuck(found.graph)
+
+    def proposals(self, bad: Collection[Sides], touching: Sequence[Sides]) -> list[Proposal]:
+        """One for each zone.
+
+        Args:
+            bad: pairs of sides that are not surely apart; touching: those that touch.
+        """
+        return [self._proposal(zone, bad) for zone in together(touching)]
+
+    def _proposal(self, zone: frozenset[Side], bad: Collection[Sides]) -> Proposal:
+        found, net = self._found, self._found.graph.partition.net
+        arms = sorted({side[0] for side in zone})
+        robots = tuple(found.robots[a] for a in arms)
+        names = tuple(
+            net.transitions[t].name if t >= 0 else f"{found.robots[arm]} at rest"
+            for arm, t, _ in sorted(zone)
+        )
+        names = tuple(dict.fromkeys(names))
+        sides = [
+            frozenset[int]().union(*(found.states[s] for s in zone if s[0] == arm)) for arm in arms
+        ]
+        name = mutex.free_name(net)
+        tried = ""
+        for number, guard in enumerate(mutex.guards(found.graph, sides)):
+            if number == mutex.MOST_TRIED:
+                break
+            problem, says = self._tried(guard, name, zone, bad)
+            if not problem:
+                return Proposal(
+                    robots,
+                    names,
+                    name,
+                    tuple(net.transitions[t].name for t in guard.takes),
+                    tuple(net.transitions[t].name for t in guard.gives),
+                    tuple(net.places[p].name for p in guard.places),
+                    works=True,
+                    says=says,
+                )
+            tried = tried or problem
+        says = f"no place that was tried helps: {tried}" if tried else _NONE
+        return Proposal(robots, names, says=says)
+
+    def _tried(
+        self, guard: mutex.Guard, name: str, zone: frozenset[Side], bad: Collection[Sides]
+    ) -> tuple[str, str]:
+        """Why the net with the place is no better, "" if it is; and what was found."""
+        before = self._found.graph
+        graph = self._explore(mutex.guarded(before.partition, guard, name))
+        if graph is None or graph.why or not graph.arcs:
+            return "the cell with the place was not seen to its end", ""
+        stuck = mutex.stuck(graph)
+        if stuck > self._stuck:
+            return f"with it, {stuck:,} states have no way to the end", ""
+        lost = mutex.fired(before) - mutex.fired(graph)
+        if lost:
+            return f"with it, `{before.partition.net.transitions[min(lost)].name}` never occurs", ""
+        found = Situations(graph, self._found.doing, self._found.robots)
+        found.explore()
+        if found.why:
+            return f"with it, {reason(found.why)}", ""
+        if self._can_meet(found, zone, bad):
+            return "with it, arms can still collide", ""
+        end = "the cell comes to its end from each of them"
+        if not graph.partition.final_places:
+            end = "there is no deadlock"
+        if self._stuck:
+            end = f"no more of them than before have no way to the end ({stuck:,})"
+        return "", (
+            f"tried: with it these arms keep apart in each of the {len(graph.arcs):,} states of the cell, and {end}"
+        )
+
+    def _can_meet(self, found: Situations, zone: frozenset[Side], bad: Collection[Sides]) -> bool:
+        """Whether two of a zone are not surely apart, or others that were so before."""
+        for pair, met in found.pairs.items():
+            a, b = (found.doing.activities[number] for number in pair)
+            sides = found.sides(a, b, met)
+            if sides in bad and not zone.issuperset(sides):
+                continue
+            if any(x.outcome != "clear" for _, _, x in self._comparison.activities(a, b)):
+                return True
+        return False
+
+
+def together(pairs: Sequence[Sides]) -> list[frozenset[Side]]:
+    """Sides that hang together by pairs that touch."""
+    groups: list[set[Side]] = []
+    for pair in pairs:
+        joined = set(pair)
+        rest = []
+        for group in groups:
+            if group & joined:
+                joined |= group
+            else:
+                rest.append(group)
+        groups = [*rest, joined]
+    return [frozenset(g) for g in groups]

@@ -1,0 +1,159 @@
+"""`./dev geometry`: the examples' cells, with figures; shared-zone without its zone; random cells next to their runs.
+
+./dev geometry                       a table of all examples (docs/benchmarks.md)
+./dev geometry --pictures DIR        the pictures of docs/geometry.md
+./dev geometry --cells 40            random cells of two arms: what collides in PyBullet is never said to keep apart
+"""
+
+from __future__ import annotations
+
+import argparse
+import resource
+import sys
+import tempfile
+from pathlib import Path
+from random import Random
+
+sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))
+
+from tools.geometry.unguarded import unguarded
+from tools.geometry.wander import wander
+
+from helpers.netbuilder import cpn
+from helpers.two_arm_cells import two_arm_cell
+from pn2code.cell.divide import divide
+from pn2code.diagnostics import Diagnostics
+from pn2code.geometry.check import Geometry, examine
+from pn2code.geometry.graph import explore_cell
+from pn2code.geometry.pictures import draw
+from pn2code.geometry.report import text
+from pn2code.run.cell import RunOptions, run_cell
+from pn2code.verdict.opened import read, with_inputs
+from pn2code.verify.exploring.limits import Limits, cores
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+STEPS = 3_000
+CELLS = ("minimal", "handover", "palletiser", "shared-zone", "tending", "riveting")
+
+
+def looked(cell: Path, traces: Path) -> Geometry:
+    """All layouts of a cell."""
+    d = Diagnostics()
+    opened = read(cell, {}, d)
+    assert opened is not None, [i.message for i in d]
+    found = examine(with_inputs(opened, d), None, Limits(threads=cores()), traces, d)
+    assert found is not None and not found.why, [i.message for i in d]
+    return found
+
+
+def processor() -> float:
+    """Seconds of this process and its children so far."""
+    own, others = (resource.getrusage(w) for w in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return own.ru_utime + own.ru_stime + others.ru_utime + others.ru_stime
+
+
+def table(folder: Path) -> int:
+    """The examples, and shared-zone without its zone."""
+    cells = {name: EXAMPLES / name for name in CELLS}
+    cells["shared-zone without `Free`"] = folder / "unguarded"
+    assert unguarded(EXAMPLES / "shared-zone", "Station", "Free", folder / "unguarded")
+    print(
+        "| cell | layout | states | moves | pairs of moves | distances | moves possible | arms apart | processor, s |"
+    )
+    print("|---|---|---|---|---|---|---|---|---|")
+    wrong = 0
+    for name, cell in cells.items():
+        before = processor()
+        found = looked(cell, folder / "runs" / name)
+        seconds = processor() - before
+        for x, _ in found.layouts:
+            figures = f"{x.states:,} | {len(x.moves)} | {x.looked:,} | {x.queries:,}"
+            took = f"{seconds:.1f}" if x is found.layouts[-1][0] else ""
+            print(
+                f"| {name} | {x.name} | {figures} | {x.of_moves} | {x.of_pairs} | {took} |",
+                flush=True,
+            )
+        expected = "no" if "without" in name else "yes"
+        helps = all(p.works for x, _ in found.layouts for p in x.proposals)
+        if found.answer != expected or not helps:
+            wrong += 1
+            print(text([x for x, _ in found.layouts], full=False))
+    return wrong
+
+
+def pictures(folder: Path, to: Path) -> int:
+    """The arms of shared-zone where they touch without the zone."""
+    unguarded(EXAMPLES / "shared-zone", "Station", "Free", folder / "unguarded")
+    for layout, cell in looked(folder / "unguarded", folder / "runs").layouts:
+        draw(cell, layout.pairs, to, "touch")
+    return 0
+
+
+def strolled(cell: Path, found: Geometry, seed: int, walks: int) -> str:
+    """What happens on random walks of a cell; "": nothing."""
+    d = Diagnostics()
+    opened = read(cell, {}, d)
+    assert opened is not None
+    partition = divide(opened.flat, opened.config, d)
+    assert partition is not None
+    graph = explore_cell(partition, opened.storage, Limits(), d)
+    assert graph is not None
+    for number in range(walks):
+        met = wander(graph, found.layouts[0][1], Random(f"{seed} {number}"), STEPS)
+        if met:
+            return met
+    return ""
+
+
+def ran(cell: Path, out: Path) -> str:
+    """Why a run in PyBullet fails; "": it does not."""
+    d = Diagnostics()
+    result = run_cell(cell, RunOptions(out, looks=False, checked=False), d)
+    assert result is not None, [i.message for i in d]
+    return result.record.reason
+
+
+def random_cells(folder: Path, count: int, seed: int, walks: int, *, is_run: bool) -> int:
+    """Random cells next to runs of them in PyBullet, and random walks with moving arms."""
+    said: dict[tuple[str, str], int] = {}
+    wrong = 0
+    for number in range(seed, seed + count):
+        net, toml = two_arm_cell(Random(number))
+        cell = folder / str(number)
+        cell.mkdir()
+        (cell / "cell.cpn").write_bytes(cpn(net))
+        (cell / "cell.toml").write_text(toml)
+        found = looked(cell, folder / f"{number}.runs")
+        met = ran(cell, folder / f"{number}.run") if is_run else ""
+        met = met or strolled(cell, found, number, walks)
+        key = (found.answer, "something" if met else "nothing")
+        said[key] = said.get(key, 0) + 1
+        if found.answer == "yes" and met:
+            wrong += 1
+            print(f"cell {number}: said yes, but {met}", flush=True)
+    for (answer, happens), times in sorted(said.items()):
+        print(f"{times:4} cells: the answer is {answer}, in runs {happens} happens")
+    return wrong
+
+
+def main() -> int:
+    """As the command line says."""
+    parser = argparse.ArgumentParser(prog="./dev geometry", description=__doc__.split("\n")[0])
+    parser.add_argument("--cells", type=int, default=0, metavar="N")
+    parser.add_argument("--seed", type=int, default=1, metavar="K")
+    parser.add_argument("--no-runs", dest="runs", action="store_false", help="random walks alone")
+    parser.add_argument("--walks", type=int, default=5, metavar="N", help="of each random cell")
+    parser.add_argument("--pictures", type=Path, metavar="DIR")
+    options = parser.parse_args()
+    with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
+        if options.cells:
+            return random_cells(
+                Path(name), options.cells, options.seed, options.walks, is_run=options.runs
+            )
+        if options.pictures:
+            return pictures(Path(name), options.pictures)
+        return table(Path(name))
+
+
+if __name__ == "__main__":
+    sys.exit(min(main(), 1))
