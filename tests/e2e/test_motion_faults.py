@@ -75,7 +75,7 @@ def test_a_line_that_leaves_the_reach(root: Path, tmp_path: Path) -> None:
     )
     check_stopped(result, tmp_path, root)
     assert "(net transition Cell.Robot1.MoveLinear)" in result.record.reason
-    assert 0 < result.summary["rivets"] < 7
+    assert 0 < result.summary["counts"]["rivets"] < 7
 
 
 @pytest.mark.cc

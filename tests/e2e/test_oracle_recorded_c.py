@@ -100,6 +100,7 @@ net Library
     out Q : String.concat (map (fn (k, x) => k ^ Int.toString (x * n)) (counted ["z", "ab", "z", "q"]))
     out Q : Date.toString day ^ Int.toString (Date.yearDay day + n)
     out Q : ListFormat.listToString Int.toString (ListMergeSort.sort Int.> [3, n, 2])
+    out Q : IntInf.toString (RealToIntInf n 20737418.245)
     out Q : IntInf.toString (RealToIntInf n 3.14159) ^ Real.toString (IntInfToReal n 314)
     out Q : Int.toString (IntBinaryMap.lookup (IntBinaryMap.singleton (2, 7), n) handle LibBase.NotFound => n)
     out Q : Int.toString (Fifo.head (#1 (Fifo.dequeue (Fifo.enqueue (Fifo.enqueue (Fifo.empty, 1), n)))))
@@ -118,6 +119,7 @@ def test_the_utility_library_is_compiled(fast_workshop: Workshop, tmp_path: Path
     wanted = (
         '"q1ab1z2"',
         '"1yz"',
+        '"207374182"',
         '"3131.4"',
         '"Sat Mar  2 01:02:03 202462"',
         '"[1,2,3]"',

@@ -69,7 +69,7 @@ def assert_both_are_home(root: Path, arms: Arms) -> None:
 def test_the_drill_fails_at_the_third_rivet(root: Path, tmp_path: Path, built: Path) -> None:
     result, arms = failing(root, tmp_path, built, backend="fake")
     assert (result.record.verdict, result.summary["final"]) == ("finished", FINAL)
-    assert result.summary["rivets"] == 2
+    assert result.summary["counts"]["rivets"] == 2
     assert_both_are_home(root, arms)
     # Table 2 up to the retreat of the third rivet, and nothing more.
     sent = [line.split("\t") for line in (tmp_path / "rows.tsv").read_text().splitlines()]

@@ -81,7 +81,7 @@ class TestWholeRun:
     ) -> None:
         _, _, result, _ = bullet_run
         assert (result.record.verdict, result.record.reason) == ("finished", "")
-        assert result.summary["rivets"] == 7
+        assert result.summary["counts"]["rivets"] == 7
         assert result.summary["rows"] == 22
         for name, entry in result.summary["clearances"].items():
             assert entry["m"] > 0.0, name

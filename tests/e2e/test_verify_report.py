@@ -28,7 +28,7 @@ def test_a_cell(tmp_path: Path) -> None:
     page = page_of(cell, tmp_path, "--no-medium", "--property", "always tokens(Finished) <= 1")
     assert "Verification report, 20" in page
     assert "Controller checks: 8 of 8 are as they should be." in page
-    assert "Properties: 1 of 1 are as they should be." in page
+    assert "Properties: 1 of 1 is as it should be." in page
     assert "Medium" not in page and "File system" not in page
     assert "places of [[input]] begin with the tokens that their files held" in page
     done = pn2code("generate", cell, "-o", tmp_path / "out")
@@ -52,7 +52,7 @@ def test_a_part_of_a_cell(tmp_path: Path) -> None:
     cell = write(tmp_path / "cell")
     page = page_of(cell, tmp_path, "--no-medium", "--max-states", "5")
     assert "No programs were generated: not all markings were seen." in page
-    assert "Controller checks: 1 of 8 are as they should be, 7 are open." in page
+    assert "Controller checks: 1 of 8 is as it should be, 7 are open." in page
 
 
 def test_a_net(tmp_path: Path) -> None:

@@ -86,4 +86,7 @@ def test_the_token_that_somebody_has_forgotten_is_named(
     assert lines[at + 1] == "The supervisor waits: `Ask` needs a message in `done`."
     assert lines[at + 2].startswith("Robot `robot1` waits for `flag` (robot1.tdl:")
     # Not the transitions for which the end of a run, and not only a zone, is missing.
-    assert lines[at + 3 : at + 5] == ["`Next` cannot occur: place `Zone` is empty.", ""]
+    assert lines[at + 3 : at + 5] == [
+        "`Next` cannot occur: place `Zone` is empty, which it was not at the start.",
+        "",
+    ]

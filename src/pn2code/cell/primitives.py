@@ -20,6 +20,7 @@ from dataclasses import dataclass, field
 from pn2code.cell import codes
 from pn2code.cell.config import CellConfig, CommandName, Primitive
 from pn2code.cell.partition import Owner, Partition
+from pn2code.cell.pose_types import is_pose, pose_types
 from pn2code.cell.reach import Reach, bound
 from pn2code.diagnostics import Diagnostics, Span
 from pn2code.diagnostics.suggestions import nearest
@@ -28,7 +29,6 @@ from pn2code.ml.core.types import INT, REAL, UNIT, TFun, TRecord, TVar, Type
 from pn2code.net.flat import CodeSegment, FlatTransition
 from pn2code.net.uses import walk
 
-_POSE = {"x", "y", "z", "rx", "ry", "rz"}
 _TAKES: dict[CommandName, str] = {
     "move_joint": "POSE -> unit` or `POSE * real -> unit",
     "move_linear": "POSE -> unit` or `POSE * real -> unit",
@@ -120,6 +120,18 @@ class _Checker:
                     if "POSE" in _TAKES[primitive.command]
                     else [],
                     hint=_other_commands(symbol.type),
+                )
+            elif (
+                "POSE" in _TAKES[primitive.command]
+                and _takes_any_pose(symbol.type)
+                and len(types := pose_types(self.partition.net)) > 1
+            ):
+                listed = " and ".join(f"`{t}`" for t in types)
+                self.d.error(
+                    codes.PRIMITIVE_ENTRY,
+                    f"`{name}` takes a value of any type, and the net has poses of {len(types)} types, {listed}",
+                    at,
+                    hint=f"give its argument the colour set of the poses: `fun {name} (p : POSE) = ...`",
                 )
             elif primitive.speed is not None and moves_at_speed(symbol.type):
                 self.d.error(
@@ -368,12 +380,16 @@ def _carries_nothing(t: Type) -> bool:
 
 
 def _is_pose(t: Type) -> bool:
-    return isinstance(t, TVar) or (
-        isinstance(t, TRecord)
-        and len(t.fields) == len(_POSE)
-        and {label.lower() for label, _ in t.fields} == _POSE
-        and all(x == REAL for _, x in t.fields)
-    )
+    return isinstance(t, TVar) or is_pose(t)
+
+
+def _takes_any_pose(t: Type) -> bool:
+    """Whether a function that is told a pose takes anything in its place."""
+    match t:
+        case TFun(TRecord((("1", pose), ("2", _))), _) | TFun(pose, _):
+            return isinstance(pose, TVar)
+        case _:
+            return False
 
 
 def moves_at_speed(t: Type) -> bool:

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from pn2code.cli.nets import open_net, playing
+from pn2code.cli.nets import in_time, open_net, playing
 from pn2code.cli.options import (
     DEFAULT_INT_BITS,
     DEFAULT_SEED,
@@ -21,6 +21,7 @@ from pn2code.cli.options import (
     SeedOption,
     SetOption,
     parse_values,
+    seconds_option,
 )
 from pn2code.semantics.game import report
 
@@ -40,14 +41,18 @@ def enabled(
     seed: SeedOption = DEFAULT_SEED,
     files: FilesOption = None,
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
+    max_seconds: Annotated[
+        float | None,
+        seconds_option("Stop after S seconds, without an answer."),
+    ] = None,
     form: FormatOption = Format.FULL,
 ) -> None:
     """Print the binding elements that are enabled in the initial marking.
 
     If all tokens are still in the future, the clock is moved to the first time at which something is enabled.
     """
-    opened = open_net(net, parse_values(settings), form, int_bits=int_bits, inputs=inputs)
-    with playing(form):
+    with in_time(max_seconds, net, "the binding elements were found", form), playing(form):
+        opened = open_net(net, parse_values(settings), form, int_bits=int_bits, inputs=inputs)
         game = opened.game(seed=seed, files=files)
         game.advance()
         elements = game.enabled()

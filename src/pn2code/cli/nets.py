@@ -8,10 +8,11 @@ from pathlib import Path
 
 import typer
 
+from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.cell.codes import INPUT_MISSING
 from pn2code.cell.config import CellConfig
-from pn2code.cli.options import DEFAULT_INT_BITS, Format, print_diagnostics, stop
-from pn2code.diagnostics import Diagnostics, Severity
+from pn2code.cli.options import DEFAULT_INT_BITS, Exit, Format, print_diagnostics, stop
+from pn2code.diagnostics import Diagnostics, Origin, Severity
 from pn2code.semantics.game.token_game import GameError
 from pn2code.verdict.opened import OpenNet, read, with_inputs
 
@@ -66,6 +67,28 @@ def refuse_wide(config: CellConfig | None, int_bits: int) -> None:
             f"with {int_bits}; colour set `intinf` has larger ones",
             param_hint="--int-bits",
         )
+
+
+@contextmanager
+def in_time(
+    seconds: float | None, net: Path, what: str, form: Format = Format.FULL
+) -> Iterator[None]:
+    """What takes longer from the start of the command on ends it with a warning; None: there is no limit.
+
+    Args:
+        what: was not done then: `the marking was computed`.
+    """
+    from pn2code.verify.codes import TIME_OVER
+
+    try:
+        with Deadline.of_command(seconds).enforced():
+            yield
+    except TimeIsOverError:
+        d = Diagnostics()
+        hint = "give it more time with `--max-seconds`"
+        d.warning(TIME_OVER, f"the time was up before {what}", Origin(str(net)), hint=hint)
+        print_diagnostics(d.sorted(), form)
+        raise typer.Exit(Exit.INCONCLUSIVE) from None
 
 
 @contextmanager

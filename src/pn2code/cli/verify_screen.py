@@ -24,7 +24,7 @@ from pn2code.trace.script import TraceRefusedError
 from pn2code.verdict import channel_model
 from pn2code.verdict.whole import Said
 from pn2code.verify.answers import basis, outcome, why_disabled
-from pn2code.verify.answers.outcome import error_text
+from pn2code.verify.answers.outcome import error_text, good_of
 from pn2code.verify.answers.path import Step, play, steps, text
 from pn2code.verify.answers.properties import kind as kind_of
 from pn2code.verify.answers.waiting import Scripts
@@ -398,7 +398,7 @@ def _premises(said: Said) -> Iterator[str]:
 
 def _count(kinds: Sequence[str]) -> str:
     good, bad, is_open = (kinds.count(kind) for kind in ("good", "bad", "open"))
-    text = f"{good} of {len(kinds)} are as they should be"
+    text = good_of(good, len(kinds))
     text += f", {bad} {'are' if bad != 1 else 'is'} not" if bad else ""
     return text + (f", {is_open} {'are' if is_open != 1 else 'is'} not known" if is_open else "")
 

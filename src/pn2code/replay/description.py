@@ -87,14 +87,13 @@ def facts(summary: Mapping[str, Any]) -> list[list[str]]:
         ["backend", str(summary["backend"])],
         ["cycle time", f"{summary['cycle_seconds']:.2f} s"],
     ]
-    known = {"cycle_seconds", "rows"}
-    rows += [[k, str(v)] for k, v in summary.items() if isinstance(v, int) and k not in known]
+    rows += [[label, str(number)] for label, number in summary["counts"].items()]
     rows += [
         [f"least clearance, {name}", f"{entry['m'] * 1000:.1f} mm"]
         for name, entry in summary["clearances"].items()
     ]
     rows += [
-        [f"worst conditioning, {name}", f"{entry['worst']:.1f}"]
+        [f"worst condition number, {name}", f"{entry['worst']:.1f}"]
         for name, entry in summary["conditioning"].items()
     ]
     rows += [

@@ -19,6 +19,8 @@ from pn2code.run.record import RunRecord, merged_rows, summary_counts
 
 MOST_PARTS = 12
 """on one screen"""
+MOST_NUMBERS = 12
+"""in one line"""
 KINDS = ("joint", "home", "linear", "tool", "measure", "wait")
 
 
@@ -76,7 +78,7 @@ def summarise(
         "final": list(record.final),
         "cycle_seconds": round(record.time, 6),
         "rows": len(merged_rows(record.messages, report.rows)) if report.rows else 0,
-        **summary_counts(record, dict(report.count), occurrences),
+        "counts": summary_counts(record, dict(report.count), occurrences),
         "activities": totals,
         "robots": per_robot,
         "clearances": _minima(record),
@@ -146,6 +148,18 @@ def _conditioning(
     return out
 
 
+def _counted(entry: dict[str, Any]) -> str:
+    """Condition numbers at the actions that are counted, by the labels of cell.toml."""
+    out = ""
+    for key, values in entry.items():
+        label = key.removeprefix("at_")
+        if label != key and values:
+            shown = " ".join(condition_text(v, 1) for v in values[:MOST_NUMBERS])
+            more = " ..." if len(values) > MOST_NUMBERS else ""
+            out += f"; at {label}: {shown}{more}"
+    return out
+
+
 def page(summary: dict[str, Any]) -> RenderableType:
     """The summary for a terminal."""
     good = summary["verdict"] == "finished"
@@ -169,20 +183,16 @@ def page(summary: dict[str, Any]) -> RenderableType:
     facts.add_row("cycle time", f"{summary['cycle_seconds']:.2f} s (simulated)")
     if summary["rows"]:
         facts.add_row("rows sent", str(summary["rows"]))
-    known = {"cell", "layout", "backend", "verdict", "reason", "cycle_seconds", "rows"}
-    for key, value in summary.items():
-        if key not in known and isinstance(value, int):
-            facts.add_row(key, str(value))
+    for label, number in summary["counts"].items():
+        facts.add_row(label, str(number))
     for name, entry in summary["clearances"].items():
         facts.add_row(
             f"least clearance, {name}", f"{entry['m'] * 1000:.1f} mm at {entry['t']:.2f} s"
         )
     for robot, entry in summary["conditioning"].items():
-        at = [v for k, v in entry.items() if k.startswith("at_") for v in v]
-        each = "; at each: " + " ".join(condition_text(v, 1) for v in at[:12]) if at else ""
         facts.add_row(
-            f"conditioning, {robot}",
-            f"worst {condition_text(entry['worst'], 1)} at {entry['t']:.2f} s{each}",
+            f"condition number, {robot}",
+            f"worst {condition_text(entry['worst'], 1)} at {entry['t']:.2f} s{_counted(entry)}",
         )
     for part, changes in list(summary.get("parts", {}).items())[:MOST_PARTS]:
         told = (f"{c['robot']} {c['effect']} it at {c['t']:.2f} s" for c in changes)

@@ -26,7 +26,7 @@ from pn2code.robot.commands import (
     ToolAction,
     Wait,
 )
-from pn2code.robot.motion import MotionFault, Still, Trajectory, plan_lin, plan_ptp
+from pn2code.robot.motion import MotionFault, Still, Trajectory, other_branches, plan_lin, plan_ptp
 from pn2code.robot.robot_cell import CellRobot, MotionConfig
 from pn2code.robot.transforms import Array, describe, difference, inverse, matrix_of, pose_of
 
@@ -203,7 +203,8 @@ class RobotExecutor:
         if self.robot.branch is not None:
             return MotionFault(
                 "unreachable",
-                f"branch {self.robot.branch} does not reach the pose inside the limits",
+                f"branch {self.robot.branch} does not reach the pose inside the joint limits"
+                + other_branches(self.robot.kinematics, target, self.robot.branch),
             )
         margins = [self.robot.kinematics.limit_margin(q) for q in there]
         margin, axis = max(margins)

@@ -19,7 +19,7 @@ import numpy as np
 
 from pn2code.base.frozen import frozen
 from pn2code.robot.commands import Pose
-from pn2code.robot.kinematics import BRANCHES, Branch, Kinematics, condition_text
+from pn2code.robot.kinematics import Branch, Kinematics, condition_text
 from pn2code.robot.model import AXES
 from pn2code.robot.transforms import (
     Array,
@@ -383,7 +383,15 @@ def _check_line(kinematics: Kinematics, lin: LinearTrajectory, limits: MotionLim
             pose=where,
             time=float(times[first]),
         )
-    _check_limits(kinematics, path, times)
+    try:
+        _check_limits(kinematics, path, times)
+    except MotionFault as fault:
+        assert fault.time is not None, "it has the times"
+        others = _other_branches(kinematics, lin, int(np.argmax(times >= fault.time)))
+        message = f"on branch {lin.branch}, on which the line begins, {fault.message}{others}"
+        raise MotionFault(
+            fault.kind, message, pose=fault.pose, q=fault.q, time=fault.time
+        ) from None
     # Exact joint speeds, and the real steps: the one sees a singularity nearby, the other a leap over it.
     rate = np.array([lin.rate(float(t)) for t in times])
     exact = np.abs(lin.rates(path, rate)) / limits.axis_velocity
@@ -419,6 +427,16 @@ def _check_line(kinematics: Kinematics, lin: LinearTrajectory, limits: MotionLim
 
 def _other_branches(kinematics: Kinematics, lin: LinearTrajectory, index: int) -> str:
     pose = lin.line.at(lin.way(lin.times[index : index + 1]))
-    rows = kinematics.all_branches(pose)[0]
-    there = [str(b) for b in BRANCHES if not np.isnan(rows[b.index, 0])]
-    return f"; other branches reach it: {', '.join(there)}" if there else ""
+    return other_branches(kinematics, pose[0], lin.branch)
+
+
+def other_branches(kinematics: Kinematics, target: Array, but: Branch) -> str:
+    """Which other branches reach a pose inside the joint limits, and how to choose one; "" if none does."""
+    found = kinematics.inverse(target)
+    there = [str(s.branch) for s in found if s.branch != but]
+    if not there:
+        return "; no other branch reaches the pose inside the joint limits"
+    return (
+        f"; branches that reach the pose inside the joint limits: {', '.join(there)} (`branch` of the robot in "
+        "cell.toml chooses the one in which joint moves end)"
+    )

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import fnmatch
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -35,6 +35,15 @@ from pn2code.robot.robot_cell import (
 from pn2code.robot.scene_objects import SceneObject, read_object
 from pn2code.robot.table import Locate, Table, is_number
 from pn2code.robot.table_poses import read_pose
+
+RADIANS = "angles in cell.toml are in degrees; if these are radians, multiply them by 57.2958"
+FEW_RADIANS = 3.2
+"""No axis at HOME is further from 0: written in radians this is half a turn, in degrees next to nothing."""
+
+
+def in_radians(angles: Sequence[float]) -> bool:
+    """Whether the angles of HOME look as if they were written in radians."""
+    return max(map(abs, angles)) < FEW_RADIANS and sum(abs(q) > 0.5 for q in angles) > 1
 
 
 def load(
@@ -107,6 +116,7 @@ def _robot(t: Table, name: str, folder: Path) -> CellRobot | None:
                 f"HOME of `{name}` puts axis {i + 1} at {home_deg[i]:g} degrees, outside "
                 f"{math.degrees(low):g} .. {math.degrees(high):g}",
                 t.at("home"),
+                hint=RADIANS if in_radians(home_deg) else "",
             )
     kinematics = Kinematics.of(arm, tool, t.at("model"), t.d)
     if kinematics is None:

@@ -7,11 +7,14 @@ w + 1.0         reals do not fail
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Set
 
 from pn2code.base.frozen import frozen
+from pn2code.ml.core.colsets import Kind
+from pn2code.ml.core.terms import Symbol
 from pn2code.robot_scripts.guards import Constant, fact, ways
 from pn2code.robot_scripts.not_a_number import MayBeNan
+from pn2code.robot_scripts.values import Env, Scalar
 from pn2code.tdl import tree as t
 from pn2code.tdl.paths import children
 from pn2code.tdl.pretty import expression
@@ -69,6 +72,18 @@ class Known:
             if type(f.value) is int:
                 known = _range(f.operator, f.value)
                 ranges[f.subject] = ranges.get(f.subject, ALL).both(known)
+        return Known(self.constants, self.may_be_nan, ranges)
+
+    def with_colours(self, variables: Iterable[Symbol], of: Set[int], env: Env) -> Known:
+        """What is known where some variables of the net (by their uid) have values of their colour sets."""
+        ranges = dict(self.ranges)
+        for v in variables:
+            value, c = env.get(v.uid), v.colset.resolved if v.colset is not None else None
+            if v.uid in of and c is not None and c.kind is Kind.INT and isinstance(value, Scalar):
+                low = c.low if isinstance(c.low, int) else MIN_INT
+                high = c.high if isinstance(c.high, int) else MAX_INT
+                subject = expression(value.exp)
+                ranges[subject] = ranges.get(subject, ALL).both(Range(low, high))
         return Known(self.constants, self.may_be_nan, ranges)
 
     def range_of(self, e: t.Expression) -> Range:

@@ -1,19 +1,22 @@
-"""Whether a token is in the colour set of the variable that takes it, as the net asks whenever it binds one.
+"""Whether a value is in a colour set: that of the variable that takes it, or of the place that gets it.
 
     var s : SMALL;  and an arc `in flag : s` from a place of colour set INT
     ->  s >= 0 and s <= 3
+    place Count : SMALL;  and an arc `out Count : s + 1`
+    ->  s + 1 >= 0 and s + 1 <= 3
 
-Where all tokens of the place are in the colour set, nothing is asked.
+Where all values that may come are in the colour set, nothing is asked.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Set
 
 from pn2code.diagnostics import Span
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.terms import Symbol
+from pn2code.robot_scripts.failing import Known
 from pn2code.robot_scripts.values import Rec, Scalar, UnsupportedError, Value, builtin, select
 from pn2code.tdl import tree as t
 from pn2code.tdl import types as tdl
@@ -56,6 +59,93 @@ def conditions(
             "whether a value is in it: give the variable the colour set of the place, or of what is computed",
             span,
         ) from None
+
+
+def of_token(
+    colset: Colset, value: Value, e: core.Exp, taken: Set[int], known: Known
+) -> list[t.Expression]:
+    """What has to be so of a token that a place of a colour set gets.
+
+    Args:
+        colset: of the place.
+        value: of the token.
+        e: the expression of the net that gives it.
+        taken: the variables (by their uid) whose values are in their colour sets, because an arc or an equation binds
+            them.
+        known: of numbers.
+
+    Raises:
+        UnsupportedError: scripts cannot ask it.
+    """
+    try:
+        return [
+            condition
+            for part, inner, of in _components(colset, value, e, e.span)
+            if (source := _source(of, taken)) is None or source.resolved != part
+            for condition in _unless_known(part, inner, source, known, e.span)
+        ]
+    except _UnaskableError as problem:
+        place = problem.args[0]
+        raise UnsupportedError(
+            f"what is put here has to be in colour set `{place.name}`, and a script cannot ask whether a value is in "
+            "it: put the value of a variable of this colour set, or a constant",
+            e.span,
+        ) from None
+
+
+def _components(
+    c: Colset, value: Value, e: core.Exp | None, span: Span
+) -> Iterator[tuple[Colset, Value, core.Exp | None]]:
+    """The parts of a value that have bounds, with what gives each of them where that is written."""
+    c = c.resolved
+    if not _has_bounds(c):
+        return
+    if c.kind not in (Kind.RECORD, Kind.PRODUCT) or isinstance(e, core.Var | core.Select):
+        yield c, value, e
+        return
+    written = dict(e.fields) if isinstance(e, core.RecordExp) else {}
+    for label, part in _parts(c).items():
+        yield from _components(part, select(value, label, span), written.get(label), span)
+
+
+def _source(e: core.Exp | None, taken: Set[int]) -> Colset | None:
+    """The colour set that the value of an expression is in, where its variables say so."""
+    match e:
+        case core.Var(symbol) if symbol.uid in taken:
+            return symbol.colset
+        case core.Select(label, record):
+            return _parts(_source(record, taken)).get(label)
+        case _:
+            return None
+
+
+def _unless_known(
+    c: Colset, value: Value, source: Colset | None, known: Known, span: Span
+) -> Iterator[t.Expression]:
+    if isinstance(value, Scalar) and c.kind is Kind.INT:
+        found = known.range_of(value.exp)
+        if isinstance(c.low, int) and found.low < c.low:
+            yield _compared("Int.>=", value, c.low, span)
+        if isinstance(c.high, int) and found.high > c.high:
+            yield _compared("Int.<=", value, c.high, span)
+        return
+    if c.kind is Kind.STRING and isinstance(value, Scalar):
+        text = value.exp
+        if isinstance(text, t.Name):
+            constant = known.constants.get(text.name)
+            text = t.Value(constant) if isinstance(constant, str) else text
+        if isinstance(text, t.Value) and _is_text_of(c, str(text.value)):
+            return
+    yield from (e for e in _of(c, value, source, span) if e != t.Value(True))
+
+
+def _is_text_of(c: Colset, text: str) -> bool:
+    low, high = c.low, c.high
+    if isinstance(low, str) and any(x < low for x in text):
+        return False
+    if isinstance(high, str) and any(x > high for x in text):
+        return False
+    return c.length is None or c.length[0] <= len(text) <= c.length[1]
 
 
 class _UnaskableError(Exception):

@@ -31,6 +31,7 @@ from pn2code.robot_scripts.assignments import one_after_the_other
 from pn2code.robot_scripts.conditions import Asked, Order
 from pn2code.robot_scripts.evaluate import Evaluator
 from pn2code.robot_scripts.failing import Known
+from pn2code.robot_scripts.illegal_tokens import stops
 from pn2code.robot_scripts.ir import Chain, Comment, Element, Line, Node
 from pn2code.robot_scripts.machine import Machine, Outcome, Step, delayed_tokens
 from pn2code.robot_scripts.names import Names, identifier
@@ -423,6 +424,7 @@ class StepTranslator:
         outputs = statements(
             open_of(self._outputs(situation, env), None, self.known(situation.ordered))
         )
+        outputs += stops(self.machine, self.pure, situation, env, self.known, self._way)
         out = without_repetition([*acts, *outputs], situation.ordered, expressions_of(mark))
         out.append(Line(mark))
         out += [Line(t.Clear(t.Target(self.file_names[p]))) for p in situation.channels]
@@ -454,6 +456,17 @@ class StepTranslator:
         env: Env,
     ) -> list[Owed]:
         """What is computed for some of the ways in which an inscription turns out."""
+        path, out = self._way(conditions, env)
+        if path is not None:
+            for e in values:
+                if e is not None:
+                    out += self.pure.owing(e, env, path)[1]
+        return out
+
+    def _way(
+        self, conditions: Iterable[tuple[core.Exp, bool]], env: Env
+    ) -> tuple[Path | None, list[Owed]]:
+        """Where an inscription turns out in some way (None: never), and what is computed to ask that."""
         out: list[Owed] = []
         path: Path = ()
         for condition, holds in conditions:
@@ -462,13 +475,10 @@ class StepTranslator:
             assert isinstance(value, Scalar)
             if isinstance(value.exp, t.Value):
                 if value.exp.value is not holds:
-                    return out
+                    return None, out
                 continue
             path = (*path, (value.exp, holds))
-        for e in values:
-            if e is not None:
-                out += self.pure.owing(e, env, path)[1]
-        return out
+        return path, out
 
     def datum(self, value: Value, colset: Colset | None, span: Span) -> t.Datum:
         """A value as traces write it: records with their fields in declared order."""

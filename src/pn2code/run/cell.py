@@ -50,7 +50,7 @@ from pn2code.run.files import RobotFiles
 from pn2code.run.realtime import RealtimeEngine
 from pn2code.run.record import RunRecord, RunWarning
 from pn2code.run.sensors import load as load_sensors
-from pn2code.run.supervisor import EXIT_USAGE, Exit, SupervisorProcess
+from pn2code.run.supervisor import EXIT_FINISHED, EXIT_USAGE, Exit, SupervisorProcess
 from pn2code.tdl.check import CheckedProgram, check
 from pn2code.tdl.parse import parse
 from pn2code.toolchain import build
@@ -254,15 +254,27 @@ def _start(
         robot.name: stack.enter_context(SharedDirectory(shared, robot.name, specs))
         for robot in prepared.config.programs
     }
-    for side in sides.values():
-        if not side.await_supervisor(ROBOT_START_S if supervisor.running else 0.0):
-            _report_start(supervisor.close(), inputs, options, d)
+    late: list[str] = []
+    for name, side in sides.items():
+        if side.await_supervisor(ROBOT_START_S if supervisor.running else 0.0):
+            continue
+        ended = supervisor.close()
+        if ended.code != EXIT_FINISHED:
+            _report_start(ended, inputs, options, d)
             return None
+        late.append(
+            name
+        )  # on the wall clock: the supervisor waits for nobody, and has come to its end
     trace = GrowingTrace(trace_path)
     stack.callback(trace.close)
     engine = _engine(prepared, options, supervisor, trace, backend, observers)
     arms = {robot.name for robot in prepared.config.robots}
+    for name in late:
+        text = "has found no supervisor: it had come to its end before"
+        engine.record.warnings.append(RunWarning(0.0, name, text))
     for name, side in sides.items():
+        if name in late:
+            continue
         script, program = prepared.scripts[name]
         executor = (
             RobotExecutor(cell.robot(name), cell.motion) if name in arms else DeviceExecutor(name)

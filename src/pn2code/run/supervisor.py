@@ -36,6 +36,7 @@ EXIT_MEANING: Final[dict[int, str]] = {
 }
 """The supervisor's exit codes (docs/protocol.md)."""
 
+EXIT_FINISHED: Final = 0
 EXIT_USAGE: Final = 2
 """Wrong usage, or a mistake in an input file."""
 

@@ -64,22 +64,18 @@ def look_ahead(
             _reach(arms, ir, d)
 
 
-_FEW_RADIANS = 3.2
-"""No axis at HOME is further from 0: written in radians this is half a turn, in degrees next to nothing."""
-
-
 def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> None:
     """Arms that are in something, or in each other, where the run begins."""
     if not cell.robots:
         return
     for robot in cell.robots:
         angles = [round(math.degrees(q), 4) for q in robot.home]
-        if max(map(abs, angles)) < _FEW_RADIANS and sum(abs(q) > 0.5 for q in angles) > 1:
+        if scene.in_radians(angles):
             d.warning(
                 codes.ROBOT_HOME,
-                f"at HOME{where} no axis of robot `{robot.name}` is further than {_FEW_RADIANS:g} degrees from 0",
+                f"at HOME{where} no axis of robot `{robot.name}` is further than {scene.FEW_RADIANS:g} degrees from 0",
                 config.locator.origin("robots", robot.name, "home"),
-                hint="angles in cell.toml are in degrees; if these are radians, multiply them by 57.2958",
+                hint=scene.RADIANS,
             )
     at = config.locator.origin("robots", cell.robots[0].name, "home")
     try:

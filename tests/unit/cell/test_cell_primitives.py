@@ -239,3 +239,22 @@ def test_a_primitive_in_a_guard_of_a_robot(tmp_path: Path) -> None:
     ((code, message),) = errors(tmp_path, net)
     assert code == "primitive-misplaced"
     assert "in the guard of transition `Report` on page `Rob` of the robot `robot1`" in message
+
+
+ANY = (
+    "  fun moveJoint p = ();\n"
+    "  fun flat ({x, y, ...} : POSE) = {X = x, Y = y, Z = 0.0, RX = 0.0, RY = 0.0, RZ = 0.0};\n"
+)
+
+
+def test_a_primitive_that_takes_anything_is_told_one_type_of_poses(tmp_path: Path) -> None:
+    """Else it is not known of what it has to be finite."""
+    one = changed(NET, "  fun moveJoint (p : POSE) = ();\n", "  fun moveJoint p = ();\n")
+    assert not said(tmp_path / "one", one)
+    two = changed(NET, "  fun moveJoint (p : POSE) = ();\n", ANY)
+    two = changed(two, "action moveJoint p", "action moveJoint (flat p)")
+    ((code, message),) = errors(tmp_path / "two", two)
+    assert code == "primitive-entry"
+    assert message.startswith(
+        "`moveJoint` takes a value of any type, and the net has poses of 2 types"
+    )

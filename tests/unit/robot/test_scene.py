@@ -161,6 +161,12 @@ def test_mistakes_are_reported(change, code, message):
     assert error.origin.file == "cell.toml"
 
 
+def test_home_in_radians_that_is_outside_the_limits_gets_a_hint():
+    _, d = read(put("robots", "robot1", "home", value=[0, -2.18, 2.18, 0, 0.785, 1.57]))
+    assert "outside -140 .. -5" in d.errors[0].message
+    assert "if these are radians, multiply them by 57.2958" in d.errors[0].hint
+
+
 def test_near_names_are_suggested():
     _, d = read(put("motion", "linear_sped", value=1))
     assert d.errors[0].hint == "did you mean `linear_speed`?"

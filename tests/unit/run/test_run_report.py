@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
+from rich.console import Console
 
 from pn2code.cell.config import ReportConfig
 from pn2code.report import album, charts
 from pn2code.report.activities import activities, busy_seconds
 from pn2code.report.album import Album
-from pn2code.report.summary import summarise
+from pn2code.report.summary import page, summarise
 from pn2code.run.cell import _warn
 from pn2code.run.record import ActionRecord, ActivityRecord, RunRecord
 
@@ -74,7 +75,9 @@ def test_the_summary_has_an_activity_once(record: RunRecord) -> None:
 
 def test_occurrences_of_a_path_are_not_those_of_longer_paths(record: RunRecord) -> None:
     record.events += [{"transition": "A.T"}, {"transition": "B.A.T"}, {"transition": "B.A.T"}]
-    counts = summarise(record, ReportConfig(), ROBOTS, {"one": ["A.T"], "all": ["A.T", "B.A.T"]})
+    counts = summarise(record, ReportConfig(), ROBOTS, {"one": ["A.T"], "all": ["A.T", "B.A.T"]})[
+        "counts"
+    ]
     assert (counts["one"], counts["all"]) == (1, 3)
 
 
@@ -177,3 +180,25 @@ def test_a_cell_without_arms_has_no_pictures(tmp_path: Path) -> None:
     unwanted = Album(tmp_path, pictures=False)
     unwanted.begun(engine)
     assert not unwanted.is_empty, "nobody asked for any"
+
+
+def test_labels_of_counts_are_free(record: RunRecord) -> None:
+    """Whatever cell.toml calls what is counted, the figures of the run keep their names."""
+    labels = ("verdict", "parts", "cycle_seconds", "robots")
+    wanted = ReportConfig(count=tuple((label, "grip") for label in labels))
+    summary = summarise(record, wanted, ROBOTS, {})
+    assert (summary["verdict"], summary["cycle_seconds"]) == ("finished", 20.0)
+    assert set(summary["robots"]) == set(ROBOTS)
+    assert list(summary["counts"]) == list(labels)
+    printed = "".join(x.text for x in Console(width=200).render(page(summary)))
+    assert "finished" in printed and "parts" in printed
+
+
+def test_condition_numbers_are_given_by_what_is_counted(record: RunRecord) -> None:
+    summary = summarise(record, ReportConfig(), ROBOTS, {})
+    entry = {"worst": 9.0, "t": 3.0, "at_grips": [4.5, 4.5], "at_welds": [6.5] * 20, "at_none": []}
+    summary["conditioning"] = {"arm": entry}
+    printed = "".join(x.text for x in Console(width=300).render(page(summary)))
+    assert "condition number, arm" in printed
+    assert "worst 9.0 at 3.00 s; at grips: 4.5 4.5; at welds: 6.5 6.5" in printed
+    assert printed.count("6.5") == 12 and "6.5 ..." in printed

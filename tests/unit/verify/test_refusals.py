@@ -35,6 +35,16 @@ CASES = {
         "k - 3",
         WAIT,
     ),
+    "a pose that may be anything": (
+        "fun drill p = ();",
+        "{x = 1.0 / Real.fromInt (k - 2), y = 0.0, z = 0.0, rx = 0.0, ry = 0.0, rz = 0.0}",
+        'drill = { command = "move_joint" }',
+    ),
+    "anything beside a speed": (
+        "fun drill (p, s : real) = ();",
+        "{x = 1.0 / Real.fromInt (k - 2), y = 0.0, z = 0.0, rx = 0.0, ry = 0.0, rz = 0.0}, 50.0",
+        'drill = { command = "move_linear", frame = "world" }',
+    ),
     "a speed": (
         "val drill = fn (p : POSE, s : int) => ();",
         "at 1, k - 3",

@@ -73,3 +73,31 @@ def test_of_those_that_lack_equally_many_the_one_that_has_most_comes_first() -> 
     two = "      trans Two\n        in A : n\n        in Clock : n\n        in C : m\n"
     found = reasons(Game(flat(HEAD.replace("1`7", "1`1") + one + two)))
     assert [line.split()[0] for line in found] == ["`Two`", "`One`"]
+
+
+def test_what_was_not_given_back_comes_first() -> None:
+    """`Feed` has a counter only, and lacks what `Take` has taken for good; `Clear` has more, and lacks as much."""
+    text = (
+        HEAD
+        + """
+      place Free = 1
+      place Ready = 1
+      trans Take
+        in Free
+        out Clock : 9
+      trans Feed
+        in A : n
+        out A : n + 1
+        both Free
+        both Ready
+      trans Clear
+        in Ready
+        in Clock : 1
+        in B : n
+    """
+    )
+    game = Game(flat(text))
+    (take,) = (e for e in game.enabled() if game.net.transitions[e.transition].short == "Take")
+    game.fire(take)
+    first, *_ = reasons(game)
+    assert first == "`Feed` cannot occur: place `Free` is empty, which it was not at the start."

@@ -238,6 +238,7 @@ STRUCTURE_ALIASES: dict[str, str] = {
     "Real64": "Real",
     "Word31": "Word",
     "SMLTime": "Time",
+    "CPN'Time": "ModelTime",
     "Real.Math": "Math",
     "LargeReal.Math": "Math",
     "Real64.Math": "Math",
@@ -258,7 +259,7 @@ HIDDEN: frozenset[str] = frozenset(
 
 _OTHER_STRUCTURES = """
 Array2 BinIO CharVector CharArray ArraySlice VectorSlice CharVectorSlice CharArraySlice IEEEReal IO Int32 Int64
-LargeWord SMLofNJ StringCvt Unix Posix Socket Word32 Word64 Word8Array Word8VectorSlice CPN'Time CPN'Replications
+LargeWord SMLofNJ StringCvt Unix Posix Socket Word32 Word64 Word8Array Word8VectorSlice CPN'Replications
 Replications Comms CPN'Sim CPN'NetCapture CPN'Monitors CPN'Env CPN'Settings CPN'StreamIO Cpn
 """
 
@@ -285,7 +286,8 @@ STRUCTURES: frozenset[str] = frozenset(
 """Structures of the library."""
 
 _INTERNAL = frozenset(
-    {s for s in STRUCTURES if s.startswith("CPN'")} | {"Replications", "Comms", "Cpn", "Output"}
+    {s for s in STRUCTURES if s.startswith("CPN'") and s not in STRUCTURE_ALIASES}
+    | {"Replications", "Comms", "Cpn", "Output"}
 )
 """Structures of CPN Tools itself, of which it is not known here what they have."""
 

@@ -132,6 +132,8 @@ def unsupported(name: str) -> str:
             "it is the number of the page instance: keep it as a token of a place that each instance has from the "
             "page above, as in `place Self : INT` with `1`1` for the first one"
         )
+    if name.endswith(".model_time"):
+        return "it is the clock of the engine itself, a reference: write `time ()` for what `!` of it is"
     return "write a function of your own for it" if "." in name else ""
 
 

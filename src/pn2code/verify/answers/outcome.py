@@ -83,7 +83,7 @@ def closing(net: FlatNet, found: Exploration, counts: Counts) -> str:
         are = "are" if counts.open != 1 else "is"
         return f"Verdict: NOT KNOWN. {counts.open} of {counts.all} answers {are} not known."
     if counts.all and (counts.asked or found.complete):
-        return f"Verdict: YES. All {counts.all} answers are as they should be."
+        return f"Verdict: YES. {_all_good(counts.all)}."
     if found.complete:
         one = nondeterminism.undetermined(net)
         what = (
@@ -91,8 +91,21 @@ def closing(net: FlatNet, found: Exploration, counts: Counts) -> str:
         )
         return f"Verdict: COMPLETE. All {what} were seen, and there are no properties to check."
     why = _why(found, counts)
-    known = f"All {counts.all} answers are as they should be, but " if counts.all else ""
+    known = f"{_all_good(counts.all)}, but " if counts.all else ""
     return f"Verdict: NOT COMPLETE. {known}{why if known else why[:1].upper() + why[1:]}."
+
+
+def _all_good(number: int) -> str:
+    return (
+        f"All {number} answers are as they should be"
+        if number != 1
+        else "The answer is as it should be"
+    )
+
+
+def good_of(good: int, number: int) -> str:
+    """How many of some answers are as they should be."""
+    return f"{good} of {number} {'are as they' if good != 1 else 'is as it'} should be"
 
 
 def endless(net: FlatNet, found: Exploration) -> str:

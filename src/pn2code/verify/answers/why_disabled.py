@@ -3,9 +3,13 @@
     `Order` cannot occur: its guard `n > 9` is false for the tokens that are there.
     `StartPress` cannot occur: place `placed` is empty.
 
-A transition none of whose input places holds a token is not worth a line. Nor is one whose only tokens are those that
-never leave their places (of a mode, a counter), if there are others: such a token says nothing about who is near.
-Of those that lack equally many tokens the ones that have most come first. It is the reference token game that answers.
+    `Feed` cannot occur: place `TableFree` is empty, which it was not at the start.
+
+A transition that could occur if its empty places held what they held at the start comes first: somebody did not give
+back what he took. A transition none of whose input places holds a token is not worth a line. Nor is one whose only
+tokens are those that never leave their places (of a mode, a counter), if there are others: such a token says nothing
+about who is near. Of those that lack equally many tokens the ones that have most come first. It is the reference token
+game that answers.
 """
 
 from __future__ import annotations
@@ -16,7 +20,8 @@ from dataclasses import replace
 from pn2code.net.flat import ArcKind, FlatArc, FlatTransition
 from pn2code.semantics.game.enabling import Enabling
 from pn2code.semantics.game.marking import Marking
-from pn2code.semantics.game.token_game import Game
+from pn2code.semantics.game.token_game import Game, GameError
+from pn2code.semantics.values.data import MlException
 
 MOST_REASONS = 3
 """So many transitions are named."""
@@ -37,7 +42,7 @@ def reasons(game: Game, among: Iterable[FlatTransition] | None = None) -> list[s
     if game.advance():
         return []
     kept = _kept(game)
-    found: list[tuple[int, int, str]] = []
+    found: list[tuple[int, bool, int, str]] = []
     for t in game.net.transitions if among is None else among:
         inputs = list(_inputs(t))
         empty = {a.place for a in inputs if not _holds(game.marking, a.place)}
@@ -45,12 +50,28 @@ def reasons(game: Game, among: Iterable[FlatTransition] | None = None) -> list[s
             continue
         name = t.name.rpartition(".")[2]
         arrived = len({a.place for a in inputs} - empty - kept)
-        found.append(
-            (len(empty), arrived, f"`{name}` cannot occur: {_lack(game, t, sorted(empty))}.")
-        )
-    near = [row for row in found if row[1] or not row[0]] or found
-    least = sorted(near, key=lambda row: (row[0], -row[1]))[:MOST_REASONS]
-    return [text for _, _, text in least]
+        was_possible = bool(empty) and _is_possible_with_first(game, t, empty)
+        lack = _lack(game, t, sorted(empty))
+        if was_possible:
+            lack += f", which {'it was' if len(empty) == 1 else 'they were'} not at the start"
+        row = (0 if was_possible else len(empty), not was_possible, arrived)
+        found.append((*row, f"`{name}` cannot occur: {lack}."))
+    near = [row for row in found if row[2] or not row[0]] or found
+    least = sorted(near, key=lambda row: (row[0], row[1], -row[2]))[:MOST_REASONS]
+    return [text for *_, text in least]
+
+
+def _is_possible_with_first(game: Game, t: FlatTransition, empty: set[int]) -> bool:
+    """Whether it could occur if its empty places held what they held at the start."""
+    first = game.own_initial_marking.places
+    if any(not any(True for _ in first[p]) for p in empty):
+        return False
+    places = tuple(first[p] if p in empty else x for p, x in enumerate(game.marking.places))
+    marking = replace(game.marking, places=places)
+    try:
+        return next(game.enabling.enabled(t, marking), None) is not None
+    except (GameError, MlException):
+        return False
 
 
 def _kept(game: Game) -> set[int]:

@@ -16,6 +16,7 @@ from itertools import count
 
 from pn2code.cell.config import Primitive
 from pn2code.cell.partition import Partition
+from pn2code.cell.pose_types import pose_types
 from pn2code.diagnostics import Span
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import BOOL, INT, REAL, TFun, TRecord, TVar, Type, tuple_of
@@ -40,7 +41,7 @@ def refusing(partition: Partition, moves: Sequence[Bad] = ()) -> FlatNet:
     net = partition.net
     uids = count(max([1 << 24, *(s.uid for s in net.program.variables.values())]) + 1)
     true = next(c for c, _ in net.program.datatypes["bool"].constructors if c.name == "true")
-    make = _Refusal(true, uids)
+    make = _Refusal(true, uids, pose_types(net))
     declarations = tuple(
         part for d in net.program.declarations for part in make.declared(d, partition.primitives)
     )
@@ -63,9 +64,11 @@ def refusing(partition: Partition, moves: Sequence[Bad] = ()) -> FlatNet:
 
 
 class _Refusal:
-    def __init__(self, true: core.Constructor, uids: count[int]) -> None:
+    def __init__(self, true: core.Constructor, uids: count[int], poses: Sequence[TRecord]) -> None:
         self._true = true
         self._uids = uids
+        self._poses = poses
+        """the types of poses in the net; where a primitive takes anything there is at most one"""
 
     def declared(self, d: core.Dec, primitives: Mapping[int, Primitive]) -> Iterator[core.Dec]:
         """A declaration; the primitives in it take what a robot can carry out."""
@@ -123,6 +126,14 @@ class _Refusal:
                     *self._of_argument(core.Select("1", value, pose, at), primitive),
                     *_of_speed(own, primitive),
                 ]
+            case TVar() if primitive.command in ("move_joint", "move_linear", "measure"):
+                assert isinstance(value, core.Var | core.Select)
+                parts = [
+                    core.Select(label, replace(value, type=pose), t, value.span)
+                    for pose in self._poses
+                    for label, t in pose.fields
+                ]
+                return [_is_finite(x) for x in parts]
             case TRecord(fields):
                 parts = [core.Select(label, value, t, value.span) for label, t in fields]
                 return [_is_finite(x) for x in parts if x.type == REAL]

@@ -15,7 +15,7 @@ from pn2code.semantics.game.token_game import GameError
 from pn2code.trace.script import TraceRefusedError
 from pn2code.verify.answers import basis
 from pn2code.verify.answers.assumptions import assumed
-from pn2code.verify.answers.outcome import Counts, error_text, header
+from pn2code.verify.answers.outcome import Counts, error_text, good_of, header
 from pn2code.verify.answers.path import Step, steps
 from pn2code.verify.answers.properties import Answer
 from pn2code.verify.answers.properties import kind as kind_of
@@ -132,7 +132,7 @@ def _summary(tables: Mapping[str, Sequence[Mapping[str, Any]]]) -> Iterator[dict
             continue
         count = {kind: sum(row["kind"] == kind for row in rows) for kind in ("good", "bad", "open")}
         kind = "bad" if count["bad"] else "open" if count["open"] else "good"
-        text = f"{title}: {count['good']} of {len(rows)} are as they should be"
+        text = f"{title}: {good_of(count['good'], len(rows))}"
         if count["bad"]:
             text += f", {count['bad']} {'are' if count['bad'] > 1 else 'is'} not"
         if count["open"]:
