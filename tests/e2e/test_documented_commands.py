@@ -65,6 +65,7 @@ LONG = {
 }
 """Too long for each run of the tests; `make thorough` types them, too. With the reason."""
 
+PLAYED = "a server that goes on until somebody ends it; test_play_server begins and ends it"
 NEVER = {
     "./dev test": "these are the tests",
     "./dev bench": "minutes of measuring on an idle machine; tools/bench has its own tests",
@@ -80,6 +81,10 @@ NEVER = {
     "does it where there is a compiler for it",
     "make misra": "test_misra does it",
     "make mutation": "twenty minutes; test_conform changes programs, too",
+    "pn2code play mynet.cpn": PLAYED,
+    "pn2code play examples/philosophers/philosophers.cpn": PLAYED,
+    "pn2code play mynet.cpn --trace mynet.dead-40.trace.jsonl": PLAYED,
+    "pn2code play mycell --no-browser --port 8080": PLAYED,
     ". .venv/bin/activate": "the environment of the tests is one of another place",
 }
 """Typed by people only, with the reason."""

@@ -16,6 +16,7 @@ import pytest
 from e2e.test_check_cell import with_sensor
 from e2e.test_input_sizes import STOCK, TOML, cell, dry_run
 from e2e.test_verify_inputs import INPUT
+from helpers.played import first_page
 from helpers.processes import pn2code
 from helpers.small_cell import write
 from pn2code.api import check, generate, load
@@ -79,10 +80,18 @@ def ran(done: Done, folder: Path) -> int:
     return int(value)
 
 
+def in_play(done: Done, folder: Path) -> int:
+    """What the place holds for the first page."""
+    rows = json.loads(done.stdout.splitlines()[-1]).values()
+    (text,) = (row[1] for row in rows if re.fullmatch(r"1`\d+", row[1]))
+    return int(text.removeprefix("1`"))
+
+
 VERB: dict[str, tuple[list[str], Callable[[Done, Path], int]]] = {
     "marking": (["marking", "--json"], shown),
     "enabled": (["enabled", "--json"], bound),
     "simulate": (["simulate", "--json"], played),
+    "play": (["play"], in_play),
     "verify": (["verify", "--json", "--no-controller", "--no-medium"], explored),
     "draw --marking": (["draw", "--marking", "--page", "Sup", "-o", "out.svg"], drawn),
     "convert": (["convert", "--unfold", "-o", "out.pnml"], unfolded),
@@ -111,6 +120,8 @@ def row(root: Path, verb: str) -> list[str]:
 
 def do(where: Path, command: list[str], *more: str | Path) -> Done:
     verb, *options = command
+    if verb == "play":
+        return first_page(where / "cell", *more)
     options = [str(where / o) if o.startswith("out") else o for o in options]
     return pn2code(verb, where / "cell", *options, *more)
 
@@ -119,6 +130,7 @@ def test_the_table_has_each_verb(root: Path) -> None:
     named = [v for verbs, _ in table(root) for v in verbs]
     assert set(VERBS) == {v.split()[0] for v in named if v != "./supervisor"}
     tested = {*VERB, "check", "structure", "reach", "replay", "simulate --replay", "draw --trace"}
+    tested.add("play --trace")
     assert set(named) - {"./supervisor", *UNREAD} == tested
 
 

@@ -23,6 +23,7 @@ EPILOG = """Examples:
 REGISTERING = (
     "pn2code.cell.codes",
     "pn2code.cli.robot",
+    "pn2code.cli.play",
     "pn2code.cli.show",
     "pn2code.conform.codes",
     "pn2code.convert.codes",

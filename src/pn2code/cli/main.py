@@ -28,6 +28,7 @@ VERBS = {
     "marking": "Print the initial marking of each place in the form of CPN Tools.",
     "enabled": "Print the binding elements that are enabled in the initial marking.",
     "simulate": "Simulate a net: choose an enabled binding element at random, let it occur, and repeat this.",
+    "play": "Play the token game of a net in a browser: on a page of this machine, for this machine only.",
     "replay": "Repeat a recorded run, and check that each step is enabled when its turn comes.",
     "verify": "Explore the whole state space of a net, and report its properties.",
     "reach": "Map where the bases of arms could stand: what each reaches of all that the net makes it do, and how.",

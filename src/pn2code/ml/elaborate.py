@@ -609,6 +609,20 @@ class Elaborator:
 
         return self._border(text, work)
 
+    def evaluation(
+        self,
+        text: SourceText,
+        prepare: Callable[[s.Exp], tuple[s.Exp, Mapping[str, Symbol]] | None],
+    ) -> tuple[core.Exp, Type] | None:
+        """An expression of any type that does not belong to the net, and its type; otherwise as `condition`."""
+
+        def work() -> tuple[core.Exp, Type] | None:
+            parsed = self._parse(text)
+            prepared = None if parsed is None else prepare(parsed)
+            return None if prepared is None else self._inscriptions.any(*prepared)
+
+        return self._border(text, work)
+
     # --- helpers
 
     def _parse(self, text: SourceText, *, output: bool = False) -> s.Exp | None:

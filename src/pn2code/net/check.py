@@ -306,8 +306,7 @@ class _Checker:
         text = place.initial_marking.text if place.initial_marking else None
         initial: tuple[Exp, Form] | None = None
         if text is not None:
-            forms = _INITIAL_TIMED if colset.timed else _UNTIMED
-            initial = self.inscription(_unit_number(text, colset), colset, forms, False)
+            initial = typed_marking(self.elaborator, text, colset)
         return TypedPlace(
             id=place.id,
             name=place.name,
@@ -323,9 +322,7 @@ class _Checker:
         self, text: SourceText, colset: Colset, forms: tuple[Form, ...], output: bool
     ) -> tuple[Exp, Form] | None:
         """The expression and the first form that fits it; None after an error."""
-        types = [_form_type(f, colset.type) for f in forms]
-        found = self.elaborator.expression(text, types, expected_name=colset.name, output=output)
-        return None if found is None else (found[1], forms[found[0]])
+        return _typed(self.elaborator, text, colset, forms, output)
 
     def transition(
         self, t: Transition, colsets: dict[str, Colset | None], places: dict[str, Place]
@@ -507,6 +504,29 @@ def _declared(net: Net) -> frozenset[str]:
             case _:
                 pass
     return frozenset(names)
+
+
+def typed_marking(
+    elaborator: Elaborator, text: SourceText, colset: Colset
+) -> tuple[Exp, Form] | None:
+    """What a place of this colour set shall hold, and the first form that fits it; None after an error.
+
+    `text.origin.part` must be "initial marking": there the variables of the net are not known.
+    """
+    forms = _INITIAL_TIMED if colset.timed else _UNTIMED
+    return _typed(elaborator, _unit_number(text, colset), colset, forms, False)
+
+
+def _typed(
+    elaborator: Elaborator,
+    text: SourceText,
+    colset: Colset,
+    forms: tuple[Form, ...],
+    output: bool,
+) -> tuple[Exp, Form] | None:
+    types = [_form_type(f, colset.type) for f in forms]
+    found = elaborator.expression(text, types, expected_name=colset.name, output=output)
+    return None if found is None else (found[1], forms[found[0]])
 
 
 def _form_type(form: Form, t: Type) -> Type:

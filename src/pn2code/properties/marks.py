@@ -13,6 +13,7 @@ from typing import Any
 from pn2code.base.frozen import record
 from pn2code.diagnostics import Diagnostics, SourceText
 from pn2code.ml.core.terms import Exp, Symbol, Var
+from pn2code.ml.core.types import Type
 from pn2code.ml.elaborate import Elaborator
 from pn2code.ml.parsing import syntax as s
 from pn2code.net.flat import FlatNet, FlatTransition
@@ -22,6 +23,9 @@ from pn2code.properties import codes
 from pn2code.properties.names import Names
 
 _STRUCTURE = "Mark."
+
+Looks = tuple[tuple[Symbol, int], ...]
+"""The places that an expression looks at, each with what stands for its multi-set."""
 
 
 @record
@@ -47,9 +51,22 @@ class Marks:
             self._symbols[place] = self.elaborator.symbol(name, t)
         return self._symbols[place]
 
-    def condition(self, text: SourceText) -> tuple[Exp, tuple[tuple[Symbol, int], ...]] | None:
+    def condition(self, text: SourceText) -> tuple[Exp, Looks] | None:
         """The typed condition and the places it looks at; None after a diagnostic."""
         used: dict[int, Symbol] = {}
+        exp = self.elaborator.condition(text, self._prepare(used))
+        return None if exp is None else (exp, _looks(used))
+
+    def expression(self, text: SourceText) -> tuple[Exp, Type, Looks] | None:
+        """An expression of any type, its type, and the places it looks at; None after a diagnostic."""
+        used: dict[int, Symbol] = {}
+        found = self.elaborator.evaluation(text, self._prepare(used))
+        return None if found is None else (*found, _looks(used))
+
+    def _prepare(
+        self, used: dict[int, Symbol]
+    ) -> Callable[[s.Exp], tuple[s.Exp, dict[str, Symbol]] | None]:
+        """What puts variables for markings into a syntax tree, and notes them in `used`."""
         failed = False
 
         def prepare(exp: s.Exp) -> tuple[s.Exp, dict[str, Symbol]] | None:
@@ -74,10 +91,7 @@ class Marks:
             used[place] = self.symbol(place)
             return s.NameExp(used[place].name, False, node.span)
 
-        exp = self.elaborator.condition(text, prepare)
-        if exp is None:
-            return None
-        return exp, tuple((used[place], place) for place in sorted(used))
+        return prepare
 
     def of_binding(self, text: SourceText, t: FlatTransition, d: Diagnostics) -> Exp | None:
         """A typed condition on the variables of a transition; None after a diagnostic."""
@@ -96,6 +110,10 @@ class Marks:
                 )
                 return None
         return exp
+
+
+def _looks(used: dict[int, Symbol]) -> Looks:
+    return tuple((used[place], place) for place in sorted(used))
 
 
 def _rewritten(node: Any, change: Callable[[Any], Any]) -> Any:

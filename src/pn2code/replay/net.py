@@ -8,6 +8,8 @@ colours that `style` repeats from there.
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+from pathlib import PurePath
 from typing import Any
 
 from pn2code.drawing import style, svg, text
@@ -60,6 +62,27 @@ def describe(document: Document, net: FlatNet) -> Json:
     }
 
 
+def drawing(document: Document, problems: Mapping[str, Sequence[svg.Problem]]) -> Json:
+    """The pages of a net with errors, which are red; it has no elements that could be played.
+
+    Args:
+        document: as drawn.
+        problems: by element id.
+    """
+    overlay = svg.Overlay(problems=problems)
+    return {
+        "name": PurePath(document.file).stem,
+        "timed": False,
+        "style": _style(),
+        "pages": [_page(document, page, overlay) for page in document.pages],
+        "instances": [
+            {"page": i, "number": 1, "path": p.name} for i, p in enumerate(document.pages)
+        ],
+        "places": [],
+        "transitions": [],
+    }
+
+
 def _style() -> Json:
     return {
         "bubble": svg.BUBBLE,
@@ -74,9 +97,9 @@ def _style() -> Json:
     }
 
 
-def _page(document: Document, page: RawPage) -> Json:
+def _page(document: Document, page: RawPage, overlay: svg.Overlay = svg.Overlay()) -> Json:  # noqa: B008 - frozen
     scene = build(document, page)
-    rows, box = svg.figure(scene, svg.Overlay(), svg.Links())
+    rows, box = svg.figure(scene, overlay, svg.Links())
     box = box.grown(svg.MARGIN)
     return {
         "id": page.id,

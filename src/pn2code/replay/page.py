@@ -42,9 +42,9 @@ def page(
     needs_arms = any(d is not None and d.get("cell") for d in (described, other))
     scripts = []
     if needs_arms and isinstance(library, three.Three):
-        scripts.append(_unified(library.text))
+        scripts.append(unified(library.text))
     scripts.append(bundle(modules(folder), "main.js"))
-    style = _unified((folder / "page.css").read_text(encoding="utf-8"))
+    style = unified((folder / "page.css").read_text(encoding="utf-8"))
     data: dict[str, Any] = {
         "runs": [described] if other is None else [described, other],
         "difference": first_difference(described, other) if other is not None else None,
@@ -75,18 +75,19 @@ def embedded(data: Any) -> str:
 
 
 def _policy(scripts: list[str], style: str) -> str:
-    hashes = " ".join(_hash(script) for script in scripts)
+    hashes = " ".join(hashed(script) for script in scripts)
     return (
-        f"default-src 'none'; script-src {hashes}; style-src {_hash(style)}; img-src data: blob:; "
+        f"default-src 'none'; script-src {hashes}; style-src {hashed(style)}; img-src data: blob:; "
         "base-uri 'none'; form-action 'none'"
     )
 
 
-def _hash(text: str) -> str:
+def hashed(text: str) -> str:
+    """A script or a style in a content security policy."""
     digest = hashlib.sha256(text.encode("utf-8")).digest()
     return f"'sha256-{base64.b64encode(digest).decode('ascii')}'"
 
 
-def _unified(text: str) -> str:
+def unified(text: str) -> str:
     """Line ends as a browser counts them when it checks a hash."""
     return text.replace("\r\n", "\n").replace("\r", "\n")

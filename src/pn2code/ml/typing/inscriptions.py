@@ -39,6 +39,7 @@ from pn2code.ml.typing.inference import (
     from_type,
     i_list,
     prune,
+    to_type,
 )
 from pn2code.ml.typing.mismatches import explain
 from pn2code.ml.typing.patterns import Bindings, Patterns
@@ -356,6 +357,16 @@ class Inscriptions:
             before = self._ctx.errors
             draft = self._expressions.check(exp, I_BOOL, "condition")
             return self._finish(before, draft.build)
+
+    def any(self, exp: s.Exp, declared: Mapping[str, Symbol]) -> tuple[core.Exp, Type] | None:
+        """Of whatever type it has, without the variables of the net."""
+        scope = Scope(self._ctx.top)
+        for name, symbol in declared.items():
+            scope.values[name] = Binding(name, from_type(symbol.type, []), symbol=symbol)
+        with self._scope(scope), self._one_mistake():
+            before = self._ctx.errors
+            draft = self._expressions.infer(exp)
+            return self._finish(before, lambda: (draft.build(), to_type(draft.type)))
 
     # --- delays and priorities
 

@@ -27,6 +27,7 @@ class EnablingCache:
         effects = effects_of(net.program)
         self._places = {t.index: _examined(t, effects) for t in net.transitions}
         self._known: dict[int, tuple[int | float, list[PlaceMarking], list[Binding]]] = {}
+        self._possible: dict[int, tuple[int | float, list[PlaceMarking], bool]] = {}
 
     def enabled(self, t: FlatTransition, marking: Marking) -> list[Binding]:
         """The bindings with which a transition is enabled, as `Enabling.enabled` lists them."""
@@ -44,17 +45,32 @@ class EnablingCache:
         known = self._still(t, marking)
         if known is not None:
             return bool(known)
-        return next(self._enabling.enabled(t, marking), None) is not None
+        places = self._places[t.index]
+        before = self._possible.get(t.index)
+        if before is not None and places is not None and _same(before, marking, places):
+            return before[2]
+        found = next(self._enabling.enabled(t, marking), None) is not None
+        if places is not None:
+            self._possible[t.index] = marking.time, [marking.places[i] for i in places], found
+        return found
 
     def _still(self, t: FlatTransition, marking: Marking) -> list[Binding] | None:
         """What is known, if all it depends on is as it was."""
         known = self._known.get(t.index)
         places = self._places[t.index]
-        if known is None or places is None:
+        if known is None or places is None or not _same(known, marking, places):
             return None
-        time, tokens, found = known
-        same = all(marking.places[i] is then for i, then in zip(places, tokens, strict=True))
-        return found if same and marking.time == time else None
+        return known[2]
+
+
+def _same(
+    known: tuple[int | float, list[PlaceMarking], object], marking: Marking, places: tuple[int, ...]
+) -> bool:
+    """Whether time and places are as they were."""
+    time, tokens, _ = known
+    if time != marking.time:
+        return False
+    return all(marking.places[i] is then for i, then in zip(places, tokens, strict=True))
 
 
 def _examined(t: FlatTransition, effects: Effects) -> tuple[int, ...] | None:

@@ -21,7 +21,7 @@ from typing import Any
 
 from pn2code.diagnostics import NOWHERE, Origin
 from pn2code.ml.core.colsets import Colset
-from pn2code.ml.core.terms import Symbol
+from pn2code.ml.core.terms import Exp, Symbol
 from pn2code.net.flat import ArcKind, FlatArc, FlatNet, FlatPlace, FlatTransition, Form
 from pn2code.semantics.evaluation.evaluate import Evaluator, Limits
 from pn2code.semantics.evaluation.files import Files
@@ -105,9 +105,11 @@ class Game:
             NOTHING  # what the references hold, as far as occurrences are concerned
         )
         self.start: int | float = 0.0 if net.real_time else 0
+        self._has_begun = False
         own = Marking(self.start, tuple(map(self._initial, net.places)))
         self.own_initial_marking = self.with_references(own)
         self.marking = self._with_overrides(self.own_initial_marking, initial or {})
+        self._has_begun = True
         self.evaluator.limits = limits or Limits()
         self.evaluator.random.is_still = still
         self.steps = 0
@@ -379,15 +381,31 @@ class Game:
             return place_of(place.colset, ())
         exp, form = place.initial
         origin = replace(place.origins[0] if place.origins else NOWHERE, part="initial marking")
-        with running(origin, f"the initial marking of `{place.name}`"):
+        return self.marking_of(place, exp, form, origin, f"the initial marking of `{place.name}`")
+
+    def marking_of(
+        self, place: FlatPlace, exp: Exp, form: Form, origin: Origin, doing: str
+    ) -> PlaceMarking:
+        """What a place holds that holds the value of an expression.
+
+        Args:
+            place: the place.
+            exp, form: the expression.
+            origin, doing: where and what it is, for messages.
+
+        Raises:
+            GameError: it raises an exception, or gives a token that is not legal.
+        """
+        with running(origin, doing):
             value = self.evaluator.value(exp)
         return self._stamped(place.colset, self._tokens(value, form, place.colset, origin))
 
     def _stamped(self, c: Colset, tokens: list[Value]) -> PlaceMarking:
-        """The marking of a place; tokens without stamp get the start time if the place is timed."""
+        """The marking of a place; tokens without stamp get the current time if the place is timed."""
         if not c.timed:
             return place_of(c, tokens)
-        return place_of(c, [x if isinstance(x, Timed) else Timed(x, self.start) for x in tokens])
+        now = self.marking.time if self._has_begun else self.start
+        return place_of(c, [x if isinstance(x, Timed) else Timed(x, now) for x in tokens])
 
     def _with_overrides(self, own: Marking, initial: Mapping[str, PlaceMarking]) -> Marking:
         places = list(own.places)

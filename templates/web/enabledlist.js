@@ -1,0 +1,131 @@
+// @ts-check
+/** What is enabled, and the bindings of a transition: choose one, or type a part of it. */
+
+import { el } from "./dom.js";
+import { bound, field, wrong } from "./parts.js";
+
+/** @typedef {import("./link.js").Link} Link */
+/** @typedef {import("./position.js").Position} Position */
+
+/** Transitions that are listed; those of the shown page come first. */
+const MOST = 100;
+
+export class EnabledList {
+  /**
+   * @param {HTMLElement} host
+   * @param {Link} link
+   * @param {Position} position
+   * @param {{fire: (t: number) => void, show: (t: number) => void, said: (answer: any) => void, breakpoints: Set<number>, onBreakpoint: (t: number) => void, instance: () => number}} actions
+   */
+  constructor(host, link, position, actions) {
+    this.link = link;
+    this.position = position;
+    this.actions = actions;
+    this.transition = -1;
+    this.what = el("p", { class: "note", "aria-live": "polite" });
+    this.rows = el("ul", { class: "plain", "aria-label": "Enabled transitions" });
+    this.chosen = el("section", { class: "chosen", hidden: true, "aria-label": "Bindings" });
+    host.append(this.chosen, this.what, this.rows);
+    this.asked = 0;
+    /** Rows that were made, by transition. @type {Map<number, any>} */
+    this.made = new Map();
+    this.shown = "";
+  }
+
+  update() {
+    if (this.rows.closest("[hidden]")) return;
+    const { net, enabled, state } = this.position;
+    const here = this.actions.instance();
+    const isHere = (/** @type {number} */ t) => net.transitions[t].instance === here;
+    const shown = (enabled.length > MOST ? [...enabled.filter(isHere), ...enabled.filter((t) => !isHere(t))] : enabled).slice(0, MOST);
+    this.what.hidden = shown.length > 0;
+    if (state.error) this.what.textContent = `The net cannot go on: ${state.error.message}.`;
+    else if (state.later !== null && state.later !== undefined) this.what.textContent = `Nothing is enabled before time ${state.later}. A step moves the clock on.`;
+    else if (!enabled.length) this.what.textContent = "The marking is dead: nothing is enabled, now or later.";
+    const now = `${shown} ${enabled.length}`;
+    if (now !== this.shown) {
+      this.shown = now;
+      this.rows.replaceChildren(...shown.map((t) => this.row(net, t)));
+      if (enabled.length > MOST) this.rows.append(el("li", { class: "note", text: `and ${enabled.length - MOST} more` }));
+    }
+    if (this.transition >= 0) this.list(this.transition); // an answer to which no state belongs
+  }
+
+  /**
+   * @param {any} net
+   * @param {number} t
+   */
+  row(net, t) {
+    const known = this.made.get(t);
+    if (known) return known;
+    const { name, short, variables } = net.transitions[t];
+    const page = name.split(".").slice(0, -1).join(" › ");
+    const made = el("li", {},
+      el("button", { class: "fire", text: short.replace(/\s+/g, " "), title: "Let it occur, with a binding at random", onclick: () => this.actions.fire(t) }),
+      el("span", { class: "page", text: page }),
+      el("button", {
+        text: variables.length ? "Bindings" : "Show", "aria-label": `Bindings of ${short}`, onclick: () => {
+          this.actions.show(t);
+          this.list(t);
+        },
+      }));
+    this.made.set(t, made);
+    return made;
+  }
+
+  /**
+   * Lists the bindings of a transition.
+   * @param {number} t
+   */
+  async list(t) {
+    if (t !== this.transition) this.open(t);
+    const asked = ++this.asked;
+    const answer = await this.link.ask("bindings", { transition: t, filter: this.filter?.input.value ?? "" });
+    if (asked !== this.asked || t !== this.transition) return;
+    if (!answer.ok) {
+      this.list_?.replaceChildren(wrong(answer));
+      return;
+    }
+    const { rows, cut, seen } = answer.result;
+    const count = `${rows.length} binding${rows.length === 1 ? "" : "s"}`;
+    const said = cut ? `The first ${rows.length} of more; ${seen.toLocaleString("en")} were looked at. Type a part of it.` : rows.length ? count : "No binding is enabled.";
+    this.list_?.replaceChildren(
+      el("p", { class: "note", text: said }),
+      el("ul", { class: "plain bindings", "aria-label": "Enabled bindings" }, ...rows.map((/** @type {any} */ row, /** @type {number} */ i) =>
+        el("li", {}, el("button", { onclick: () => this.choose(i) }, row.length ? bound(row) : "without variables")))));
+  }
+
+  /** @param {number} t */
+  open(t) {
+    this.transition = t;
+    const { short } = this.position.net.transitions[t];
+    this.filter = field({
+      label: "A part of the binding", placeholder: "n = 3, p <> \"x\"", button: "Filter",
+      title: "Conditions in CPN ML on the variables, with commas", work: () => this.list(t),
+    });
+    const isBreak = this.actions.breakpoints.has(t);
+    const stop = el("button", {
+      class: "toggle", "aria-pressed": String(isBreak), text: "Breakpoint", title: "A run ends after it has occurred (B)",
+      onclick: () => {
+        this.actions.onBreakpoint(t);
+        stop.setAttribute("aria-pressed", String(this.actions.breakpoints.has(t)));
+      },
+    });
+    this.list_ = el("div", {});
+    this.chosen.replaceChildren(
+      el("header", {}, el("h3", { text: short.replace(/\s+/g, " ") }), stop,
+        el("button", { text: "×", "aria-label": "Close the bindings", onclick: () => this.close() })),
+      this.filter.root, this.list_);
+    this.chosen.hidden = false;
+  }
+
+  close() {
+    this.transition = -1;
+    this.chosen.hidden = true;
+  }
+
+  /** @param {number} number */
+  async choose(number) {
+    this.actions.said(await this.link.ask("choose", { number }));
+  }
+}

@@ -1,0 +1,109 @@
+// @ts-check
+/** The marking of every place, with all tokens; a place can be changed. */
+
+import { el } from "./dom.js";
+import { field, wrong } from "./parts.js";
+
+/** @typedef {import("./link.js").Link} Link */
+/** @typedef {import("./position.js").Position} Position */
+
+const SHOWN = 600;
+const MOST = 400;
+
+export class MarkingList {
+  /**
+   * @param {HTMLElement} host
+   * @param {Link} link
+   * @param {Position} position
+   * @param {{show: (p: number) => void, said: (answer: any) => void}} actions
+   */
+  constructor(host, link, position, actions) {
+    this.link = link;
+    this.position = position;
+    this.actions = actions;
+    this.chosen = -1;
+    /** The version of the marking that is shown. */
+    this.seen = -1;
+    this.filter = el("input", { type: "search", placeholder: "Place or token", "aria-label": "Places that are shown", oninput: () => this.update() });
+    this.isFull = el("input", { type: "checkbox", onchange: () => this.update() });
+    this.edit = el("section", { class: "chosen", hidden: true, "aria-label": "A place" });
+    this.rows = el("ul", { class: "plain marking", "aria-label": "Marking" });
+    host.append(el("header", {}, this.filter, el("label", {}, this.isFull, " empty places, too")), this.edit, this.rows);
+  }
+
+  update() {
+    if (this.rows.closest("[hidden]")) return;
+    const { net, counts, markings } = this.position;
+    const word = this.filter.value.trim().toLowerCase();
+    const shown = [];
+    let left = 0;
+    for (let p = 0; p < net.places.length; p++) {
+      if (!counts[p] && !this.isFull.checked && !word) continue;
+      if (word && !net.places[p].name.toLowerCase().includes(word) && !markings[p].toLowerCase().includes(word)) continue;
+      if (shown.length < MOST) shown.push(p);
+      else left++;
+    }
+    this.rows.replaceChildren(...shown.map((p) => this.row(p)));
+    if (left) this.rows.append(el("li", { class: "note", text: `and ${left} more: type a part of a name` }));
+    if (!shown.length) this.rows.append(el("li", { class: "note", text: word ? "No place has that name or token." : "All places are empty." }));
+    if (this.chosen >= 0) this.head();
+  }
+
+  /** @param {number} p */
+  row(p) {
+    const place = this.position.net.places[p];
+    const text = this.position.text(p);
+    return el("li", {},
+      el("button", { class: "link", text: place.name, title: `of colour set ${place.colset}`, onclick: () => this.choose(p) }),
+      el("span", { class: "count", text: this.position.counts[p].toLocaleString("en") }),
+      el("pre", { text: text.length > SHOWN ? `${text.slice(0, SHOWN)}…` : text }));
+  }
+
+  /**
+   * A place, with all its tokens, to be changed.
+   * @param {number} p
+   */
+  choose(p) {
+    this.chosen = p;
+    const place = this.position.net.places[p];
+    this.whole = el("pre", { class: "whole", tabindex: "0", "aria-label": `Tokens of ${place.short}` });
+    this.change = field({
+      label: `New marking of ${place.short}`, placeholder: "1`(1, \"a\") ++ 2`(3, \"b\")", button: "Change", rows: 3,
+      title: "Ctrl-Enter. With it a new run begins.", work: (text) => this.set(p, text),
+    });
+    this.told = el("div", {});
+    this.edit.replaceChildren(
+      el("header", {}, el("h3", { text: place.name }), el("span", { class: "page", text: place.colset }),
+        el("button", { text: "×", "aria-label": "Close the place", onclick: () => this.close() })),
+      this.whole, this.change.root, this.told);
+    this.edit.hidden = false;
+    this.change.input.value = this.position.counts[p] && !this.position.lengths.has(p) ? this.position.markings[p] : "";
+    this.seen = -1;
+    this.head();
+    this.actions.show(p);
+  }
+
+  async head() {
+    const p = this.chosen;
+    if (this.seen === this.position.version[p]) return;
+    this.seen = this.position.version[p];
+    this.whole.textContent = this.position.text(p);
+    if (!this.position.lengths.has(p)) return;
+    const answer = await this.link.ask("place", { place: p });
+    if (answer.ok && p === this.chosen) this.whole.textContent = answer.result.text;
+  }
+
+  close() {
+    this.chosen = -1;
+    this.edit.hidden = true;
+  }
+
+  /**
+   * @param {number} p
+   * @param {string} text
+   */
+  async set(p, text) {
+    const answer = await this.link.ask("edit", { place: p, text });
+    this.told?.replaceChildren(answer.ok ? el("p", { class: "note", text: "Changed: a new run begins here." }) : wrong(answer));
+  }
+}
