@@ -173,7 +173,9 @@ class TestPlaying:
         field = browser.page.get_by_label("Expression in CPN ML")
         field.fill("length (Mark.Table'Forks 1)")
         field.press("Control+Enter")
-        browser.page.get_by_text("3 : int", exact=True).wait_for()
+        found = browser.page.get_by_text("3 : int", exact=True)
+        found.wait_for()
+        assert found.count() == 1
 
     def test_the_space_around_leads_to_a_marking(self, browser: Page) -> None:
         browser.page.locator("#net h2").click()
