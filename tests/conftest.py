@@ -85,6 +85,15 @@ def quick_programs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
         yield
 
 
+@pytest.fixture(autouse=True)
+def games_are_closed() -> Iterator[None]:
+    """Those of `helpers.played`, which hold files."""
+    yield
+    played = sys.modules.get("helpers.played")
+    if played is not None:
+        played.close_games()
+
+
 @pytest.fixture
 def as_delivered(monkeypatch: pytest.MonkeyPatch) -> None:
     """Explorers and simulators are compiled as users have them."""

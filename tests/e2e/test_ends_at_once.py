@@ -61,8 +61,11 @@ instance = "Device"
 
 @pytest.mark.cc
 @pytest.mark.usefixtures("quick_build")
-def test_a_cell_that_ends_at_once_has_finished(tmp_path: Path) -> None:
+def test_a_cell_that_ends_at_once_has_finished(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """On the wall clock, too: that the supervisor has gone before the device came is no failure."""
+    monkeypatch.setattr("pn2code.run.cell.ROBOT_START_S", 0.5)  # nobody comes any more
     cell = write(tmp_path / "cell", NET, TOML)
     for k, realtime in enumerate((False, True, True, True)):
         d = Diagnostics()

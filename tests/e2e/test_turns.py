@@ -19,7 +19,7 @@ from pn2code.cli.main import app
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
-CELLS = amount(5, 200)
+CELLS = amount(3, 200)
 FIRST = 700
 """Of the seeds."""
 

@@ -64,7 +64,19 @@ def of(net: Path, folder: Path, *, seed: int = 1, most_bytes: int = MOST_BYTES) 
     typist = Typist(found.opened.flat, found.elaborator)
     own = folder / "session"
     own.mkdir(exist_ok=True)
-    return Session(found, typist, seed=seed, folder=own, most_bytes=most_bytes)
+    game = Session(found, typist, seed=seed, folder=own, most_bytes=most_bytes)
+    _OPEN.append(game)
+    return game
+
+
+_OPEN: list[Session] = []
+"""Games that hold files."""
+
+
+def close_games() -> None:
+    """After each test."""
+    while _OPEN:
+        _OPEN.pop().close()
 
 
 def marking(game: Session) -> dict[str, str]:
