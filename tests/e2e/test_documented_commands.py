@@ -43,6 +43,7 @@ LONG = {
     "pn2code conform examples/sorting": "all states of a larger cell: a minute",
     "pn2code conform examples/shared-zone --most 1500": "the same",
     "pn2code verify examples/handover": CELLS,
+    "pn2code report examples/minimal -o report": "test_report does the same",
     "pn2code verify examples/tending": CELLS,
     "pn2code conform examples/tending": "all states of a larger cell",
     "pn2code run examples/tending --backend fake": CELLS,

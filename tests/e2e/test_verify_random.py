@@ -20,8 +20,8 @@ from helpers.unions import PER_UNION, Outcome, alone, check
 
 pytestmark = pytest.mark.cc
 
-NETS = amount(24, 400)
-UNIONS = amount(12, 600)
+NETS = amount(12, 400)
+UNIONS = amount(6, 600)
 GROUPS = 12
 """As many as there are styles, with and without priorities."""
 SEED = int(os.environ.get("PN2CODE_SEED", "0"))
