@@ -6,6 +6,7 @@ longest_first(asked, known)    # the same tests, files that take long before the
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -30,7 +31,8 @@ class _Purse:
     def price(self, asked: Asked) -> float:
         """What one more test takes."""
         new = set(self.known.fixtures_of(*asked)) - self._made
-        return self.known.of_test(asked.test) + sum(self.known.fixtures[f] for f in new)
+        # Exact, so that the order of a set does not matter: all workers have to choose the same tests.
+        return self.known.of_test(asked.test) + math.fsum(self.known.fixtures[f] for f in new)
 
     def pay(self, asked: Asked) -> None:
         """It is chosen."""
