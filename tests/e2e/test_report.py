@@ -131,6 +131,22 @@ def test_a_net_without_a_cell(tmp_path: Path) -> None:
     assert done.returncode == 2 and "has no layouts" in done.stderr
 
 
+def test_a_net_in_a_folder_below_the_cell(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("pn2code.dossier.steps._carried_out", lambda step, _: Done(step, 3))
+    cell = stock(tmp_path / "cell", "2\n")
+    (cell / "nets").mkdir()
+    (cell / "cell.cpn").rename(cell / "nets/cell.cpn")
+    toml = (cell / "cell.toml").read_text().replace('"cell.cpn"', '"nets/cell.cpn"')
+    (cell / "cell.toml").write_text(toml)
+    done = pn2code("report", cell, "-o", tmp_path / "out")
+    assert done.returncode == 3, done.stderr
+    files = first_page(tmp_path / "out").xpath("//section[@id='files']//table[1]//th[@scope]")
+    names = {f.text_content() for f in files}
+    assert names == {"nets/cell.cpn", "cell.toml", "s.in"}
+    done = pn2code("report", cell, "-o", tmp_path)
+    assert done.returncode == 2 and "the cell is in" in done.stderr and cell.is_dir()
+
+
 def test_folders_that_are_no_reports_are_left_alone(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -143,7 +159,10 @@ def test_folders_that_are_no_reports_are_left_alone(
     done = pn2code("report", net, "-o", out)
     assert done.returncode == 2 and "is not empty, and no report" in done.stderr
     assert (out / "mine.txt").read_text() == "mine"
-    (out / "SHA256SUMS").write_text("")
+    (out / "SHA256SUMS").write_text("")  # others have such files, too
+    done = pn2code("report", net, "-o", out)
+    assert done.returncode == 2 and (out / "mine.txt").is_file()
+    (out / ".pn2code-report").touch()
     done = pn2code("report", net, "-o", out)
     assert done.returncode == 3 and not (out / "mine.txt").exists()
     assert verdict(out).startswith("Nothing is known to be wrong, but not everything is known.")

@@ -39,6 +39,8 @@ EPILOG = """Examples:
   cd report && sha256sum --check SHA256SUMS
 """
 INDEX, SUMS, TABLE = "index.html", "SHA256SUMS", "traceability.csv"
+MARK = ".pn2code-report"
+"""A file by which an older report is known, which may be replaced; a folder of somebody else is never."""
 
 
 class BackendChoice(StrEnum):
@@ -96,6 +98,8 @@ def report(
         stop(d, form)
     path, config = found
     console = Console(highlight=False)
+    if config is not None and config.folder.resolve().is_relative_to(out.resolve()):
+        _refuse(f"the cell is in `{out}`: give another folder with -o")
     _prepare(out)
     wanted = steps.steps(
         _seen_from(out, net),
@@ -118,7 +122,7 @@ def report(
     try:
         carried = steps.carry_out(wanted, out, told)
         chapters = [findings.read(done, out) for done in carried]
-        _write(chapters, path, config, net, out)
+        _write(chapters, _subject(path, config, inputs), net, out)
     except OSError as problem:
         _refuse(f"cannot work in `{out}`: {os_reason(problem)}")
     verdict = findings.worst([c.answer for c in chapters])
@@ -169,18 +173,28 @@ def _prepare(out: Path) -> None:
         _refuse(f"cannot write `{out}`: {why}")
     try:
         if out.is_dir() and any(out.iterdir()):
-            if not (out / SUMS).is_file():
+            if not (out / MARK).is_file():
                 _refuse(f"`{out}` is not empty, and no report: give a new folder with -o")
             shutil.rmtree(out)
         out.mkdir(parents=True, exist_ok=True)
-        (out / SUMS).touch()  # from now on it is a report, if an unfinished one
+        (out / MARK).touch()  # from now on it is a report, if an unfinished one
     except OSError as problem:
         _refuse(f"cannot write `{out}`: {os_reason(problem)}")
 
 
-def _write(
-    chapters: list[Chapter], path: Path, config: CellConfig | None, net: Path, out: Path
-) -> None:
+def _subject(path: Path, config: CellConfig | None, inputs: Path | None) -> list[tuple[str, str]]:
+    """Names and hashes of the net, of what stands beside it as TOML, and of the data with which the cell begins."""
+    from pn2code.dossier import hashes
+
+    folder = path.parent if config is None else config.folder
+    found = [path, *path.parent.glob("*.toml")]
+    if config is not None:
+        found += [config.path, *(config.input_path(i, inputs) for i in config.inputs)]
+        found += [config.folder / s.file for s in config.sensors if s.file]
+    return hashes.of_files(folder, found)
+
+
+def _write(chapters: list[Chapter], subject: list[tuple[str, str]], net: Path, out: Path) -> None:
     """The first page, the table of traceability and the hashes."""
     from pn2code.base.whole_file import whole_file
     from pn2code.dossier import hashes, origin, traceability
@@ -200,18 +214,13 @@ def _write(
     )
     if elements:
         (out / TABLE).write_text(traceability.table(elements, runs), encoding="utf-8")
-    folder = path.parent
-    subject = [path, *folder.glob("*.toml")]
-    if config is not None:
-        subject += [config.path, *(config.input_path(i) for i in config.inputs)]
-        subject += [config.folder / s.file for s in config.sensors if s.file]
     results = [p for p in out.rglob("*") if p.name not in (INDEX, SUMS)]
     rows = hashes.of_files(out, results)
     facts = Facts(
         title=net.resolve().name,
         written=origin.date(),
         versions=origin.versions(),
-        subject=hashes.of_files(folder, subject),
+        subject=subject,
         results=rows,
         runs=runs,
         elements=elements,

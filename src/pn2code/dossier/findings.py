@@ -145,7 +145,7 @@ def _compared(said: Json) -> tuple[str, list[Finding]]:
             "net.c",
             core["deviation"] is None,
             core["deviation"] or f"{core['nodes']:,} markings, {core['arcs']:,} occurrences",
-            core["complete"] or bool(core["walks"]),
+            core["complete"],
         ),
     ]
     rows = [("supervisor", supervisor)] if supervisor else []

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import hashlib
+import os
 from collections.abc import Iterable
 from pathlib import Path
-
-CHUNK = 1 << 20
 
 
 def sha256(path: Path) -> str:
@@ -15,17 +14,14 @@ def sha256(path: Path) -> str:
     Raises:
         OSError: it cannot be read.
     """
-    found = hashlib.sha256()
     with path.open("rb") as file:
-        while chunk := file.read(CHUNK):
-            found.update(chunk)
-    return found.hexdigest()
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def of_files(folder: Path, paths: Iterable[Path]) -> list[tuple[str, str]]:
-    """Names relative to a folder, sorted, with hashes; what is no file is passed over."""
-    files = sorted({p.relative_to(folder).as_posix() for p in paths if p.is_file()})
-    return [(name, sha256(folder / name)) for name in files]
+    """Names as seen from a folder, sorted, with hashes; what is no file is passed over."""
+    files = {Path(os.path.relpath(p, folder)).as_posix(): p for p in paths if p.is_file()}
+    return [(name, sha256(files[name])) for name in sorted(files)]
 
 
 def listing(rows: Iterable[tuple[str, str]]) -> str:

@@ -54,6 +54,12 @@ def test_a_comparison_that_was_not_made_to_the_end_is_no_yes(tmp_path: Path) -> 
     said = {"files": {"files": 3}, "core": core, "supervisor": None, "robots": [robot]}
     c = chapter(tmp_path, "conform", said)
     assert [f.answer for f in c.findings] == [YES, YES, OPEN] and c.answer == OPEN
+    assert (
+        chapter(tmp_path, "conform", {**said, "core": {**core, "complete": False, "walks": 9}})
+        .findings[1]
+        .answer
+        == OPEN
+    )
     said["files"] = {"files": 3, "foreign": ["evil.c"]}
     assert chapter(tmp_path, "conform", said).findings[0].answer == NO
 
