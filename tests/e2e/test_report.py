@@ -140,7 +140,7 @@ def test_a_net_in_a_folder_below_the_cell(tmp_path: Path, monkeypatch: pytest.Mo
     (cell / "cell.toml").write_text(toml)
     done = pn2code("report", cell, "-o", tmp_path / "out")
     assert done.returncode == 3, done.stderr
-    files = first_page(tmp_path / "out").xpath("//section[@id='files']//table[1]//th[@scope]")
+    files = first_page(tmp_path / "out").xpath("(//section[@id='files']//table)[1]//th[@scope]")
     names = {f.text_content() for f in files}
     assert names == {"nets/cell.cpn", "cell.toml", "s.in"}
     done = pn2code("report", cell, "-o", tmp_path)
