@@ -34,6 +34,13 @@ class Exit:
     """the reader of the output went before the end, as for a program that SIGPIPE ends"""
 
 
+class BackendChoice(StrEnum):
+    """What carries the arms."""
+
+    BULLET = "bullet"
+    FAKE = "fake"
+
+
 class Format(StrEnum):
     """How diagnostics are printed."""
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import shutil
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, NoReturn
 
@@ -14,6 +13,7 @@ from pn2code.base.os_reason import os_reason
 from pn2code.base.writable import why_folder_unwritable
 from pn2code.cli.options import (
     OUTPUT_FLAGS,
+    BackendChoice,
     Exit,
     Format,
     FormatOption,
@@ -41,13 +41,6 @@ EPILOG = """Examples:
 INDEX, SUMS, TABLE = "index.html", "SHA256SUMS", "traceability.csv"
 MARK = ".pn2code-report"
 """A file by which an older report is known, which may be replaced; a folder of somebody else is never."""
-
-
-class BackendChoice(StrEnum):
-    """What carries the arms."""
-
-    BULLET = "bullet"
-    FAKE = "fake"
 
 
 def report(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -11,6 +10,7 @@ import typer
 from pn2code.base.os_reason import os_reason
 from pn2code.cli.options import (
     OUTPUT_FLAGS,
+    BackendChoice,
     Exit,
     Format,
     FormatOption,
@@ -37,13 +37,6 @@ EPILOG = """Examples:
 
   pn2code run examples/riveting --unchecked
 """
-
-
-class BackendChoice(StrEnum):
-    """What carries the arms."""
-
-    BULLET = "bullet"
-    FAKE = "fake"
 
 
 def run(
