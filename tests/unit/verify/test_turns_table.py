@@ -90,3 +90,7 @@ def test_what_others_see_is_refused(old: str, new: str, why: str) -> None:
         )
     with pytest.raises(NotPossibleError, match=why):
         turns(flat(text), OWNERS)
+
+
+def test_a_table_has_an_end() -> None:
+    assert table().text().endswith("\nend\n")

@@ -68,10 +68,11 @@ typedef struct reader {
     bool is_wrong;
 } reader_t;
 
-/* All numbers of the file after its first line. False: it cannot be read. */
+/* All numbers of the file between its first line and its last. False: it cannot be read, or has no end. */
 static bool read_numbers(ex_run_t *run, table_t *table, FILE *file)
 {
     char magic[sizeof MAGIC + 1U] = "";
+    char last[8] = "";
     uint64_t room = 0U;
     unsigned long value = 0U;
     bool is_fine = (fgets(magic, (int)sizeof magic, file) != NULL) && (strcmp(magic, MAGIC "\n") == 0);
@@ -92,7 +93,7 @@ static bool read_numbers(ex_run_t *run, table_t *table, FILE *file)
             table->numbers += 1U;
         }
     }
-    return is_fine && (feof(file) != 0);
+    return is_fine && (fscanf(file, " %7s", last) == 1) && (strcmp(last, "end") == 0);
 }
 
 static uint32_t next(reader_t *r, uint32_t end)

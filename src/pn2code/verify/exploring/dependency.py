@@ -74,6 +74,7 @@ from pn2code.semantics.evaluation.references import occurring
 from pn2code.structure.relations import Relations, relations
 from pn2code.verify.controller.unsure import is_total
 from pn2code.verify.exploring.elements import NotPossibleError, colours
+from pn2code.verify.exploring.table_rows import END, Reason, listed, reason_rows, row
 from pn2code.verify.exploring.updates import Accesses, accesses, commute, is_moved_by
 
 MAGIC = "pn2code-dependency 1"
@@ -168,15 +169,6 @@ def _count(arc: FlatArc, index: int) -> int | None:
 
 
 @frozen
-class Reason:
-    """A transition is disabled as long as the place has fewer than `least` tokens; `least` 0: as long as it has any."""
-
-    place: int
-    least: int
-    helpers: tuple[int, ...]
-
-
-@frozen
 class Member:
     """A transition in a stubborn set, and what belongs to the set with it.
 
@@ -211,22 +203,12 @@ class Dependency:
 
     def _lines(self) -> Iterator[str]:
         yield MAGIC
-        yield f"{self.places} {len(self.members)}"
+        yield row(self.places, len(self.members))
         for m in self.members:
-            yield _row(int(m.is_spoiling), *_listed(m.rivals))
-            yield _row(*_listed(m.helpers))
-            yield _row(len(m.reasons))
-            for r in m.reasons:
-                yield _row(r.place, r.least, *_listed(r.helpers))
-        yield "end"
-
-
-def _row(*numbers: int) -> str:
-    return " ".join(map(str, numbers))
-
-
-def _listed(numbers: tuple[int, ...]) -> tuple[int, ...]:
-    return len(numbers), *numbers
+            yield row(int(m.is_spoiling), *listed(m.rivals))
+            yield row(*listed(m.helpers))
+            yield from reason_rows(m.reasons)
+        yield END
 
 
 def dependency(net: FlatNet) -> Dependency:

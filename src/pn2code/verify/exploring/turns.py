@@ -61,17 +61,9 @@ from pn2code.semantics.evaluation.references import occurring
 from pn2code.structure.relations import Relations, relations
 from pn2code.verify.exploring.dependency import MOST_TRANSITIONS, OUTSIDE, Use, raises_nothing
 from pn2code.verify.exploring.elements import NotPossibleError
+from pn2code.verify.exploring.table_rows import END, Reason, listed, reason_rows, row
 
 MAGIC = "pn2code-turns 1"
-
-
-@frozen
-class Reason:
-    """A transition is disabled as long as the place has fewer than `least` tokens; `least` 0: as long as it has any."""
-
-    place: int
-    least: int
-    helpers: tuple[int, ...]
 
 
 @frozen
@@ -112,25 +104,15 @@ class Turns:
 
     def _lines(self) -> Iterator[str]:
         yield MAGIC
-        yield _row(
-            [self.places, len(self.members), 0 if self.leading is None else self.leading + 1]
-        )
+        leading = 0 if self.leading is None else self.leading + 1
+        yield row(self.places, len(self.members), leading)
         for m in self.members:
-            yield _row(_listed(m.rivals))
-            yield _row(_listed(m.enables))
-            yield _row([len(m.taken), *(n for pair in m.taken for n in pair)])
-            yield _row(_listed(m.helpers))
-            yield _row([len(m.reasons)])
-            for r in m.reasons:
-                yield _row([r.place, r.least, *_listed(r.helpers)])
-
-
-def _row(numbers: Iterable[int]) -> str:
-    return " ".join(map(str, numbers))
-
-
-def _listed(numbers: tuple[int, ...]) -> tuple[int, ...]:
-    return len(numbers), *numbers
+            yield row(*listed(m.rivals))
+            yield row(*listed(m.enables))
+            yield row(len(m.taken), *(n for pair in m.taken for n in pair))
+            yield row(*listed(m.helpers))
+            yield from reason_rows(m.reasons)
+        yield END
 
 
 def turns(
