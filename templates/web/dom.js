@@ -79,3 +79,18 @@ export function isStill() {
 export function colour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 }
+
+/**
+ * A canvas of the size that it has on the page, empty and sharp: what to draw with, and its size in CSS pixels.
+ * @param {HTMLCanvasElement} canvas
+ * @returns {[CanvasRenderingContext2D, number, number]}
+ */
+export function sketch(canvas) {
+  const ratio = Math.min(devicePixelRatio, 2);
+  const [w, h] = [canvas.clientWidth, canvas.clientHeight];
+  canvas.width = w * ratio;
+  canvas.height = h * ratio;
+  const c = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  c.scale(ratio, ratio);
+  return [c, w, h];
+}

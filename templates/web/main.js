@@ -7,6 +7,7 @@ import { Code } from "./code.js";
 import { Course } from "./course.js";
 import { load } from "./data.js";
 import { byId, el } from "./dom.js";
+import { Frame } from "./frame.js";
 import { frames } from "./kinematics.js";
 import { Messages, Steps } from "./messages.js";
 import { NetView } from "./netview.js";
@@ -26,6 +27,9 @@ class Page {
     this.place = -1;
     document.body.dataset.kind = data.runs.length > 1 ? "compare" : this.run.cell ? "cell" : "net";
     this.head();
+    this.frame = new Frame({
+      help, onTheme: () => (this.cell?.theme(), this.update()), onPane: () => this.update(),
+    });
     const actions = {
       onTransition: (/** @type {number} */ t) => this.selectTransition(t, true),
       onPlace: (/** @type {number} */ p) => this.selectPlace(p),
@@ -60,34 +64,6 @@ class Page {
       const text = places ? `${word} in ${places}` : word;
       byId("verdict").replaceChildren(el("span", { class: isGood ? "chip good" : "chip bad", text, title: verdict.reason }));
     }
-    byId("theme").addEventListener("click", () => this.dark());
-    byId("help").addEventListener("click", help);
-    const dark = matchMedia("(prefers-color-scheme: dark)");
-    document.documentElement.dataset.theme = dark.matches ? "dark" : "light";
-    dark.addEventListener("change", () => this.dark(dark.matches));
-    for (const tab of document.querySelectorAll("#panes [data-pane]")) {
-      tab.addEventListener("click", () => this.pane(/** @type {HTMLElement} */ (tab).dataset.pane ?? ""));
-    }
-  }
-
-  /** @param {boolean} [on] */
-  dark(on = document.documentElement.dataset.theme !== "dark") {
-    document.documentElement.dataset.theme = on ? "dark" : "light";
-    this.cell?.theme();
-    this.update();
-  }
-
-  /**
-   * On a narrow screen one pane is shown at a time.
-   * @param {string} name
-   */
-  pane(name) {
-    document.body.dataset.pane = name;
-    for (const tab of document.querySelectorAll("#panes [data-pane]")) {
-      tab.setAttribute("aria-pressed", String(/** @type {HTMLElement} */ (tab).dataset.pane === name));
-    }
-    dispatchEvent(new Event("resize"));
-    this.update();
   }
 
   /** @param {{onTransition: (t: number) => void, onPlace: (p: number) => void}} actions */
@@ -259,7 +235,7 @@ class Page {
       " ": () => clock.toggle(), Home: () => clock.seek(0), End: () => clock.seek(clock.end),
       ",": () => clock.setSpeed(clock.speed / 1.25), ".": () => clock.setSpeed(clock.speed * 1.25),
       "[": () => this.toMark(-1), "]": () => this.toMark(1), "/": () => this.search.focus(), "?": help,
-      f: () => this.net.setFollowing(!this.net.isFollowing), d: () => this.dark(),
+      f: () => this.net.setFollowing(!this.net.isFollowing), d: () => this.frame.dark(),
       p: () => this.cell?.showPaths(!this.cell.hasPaths),
       w: () => this.place >= 0 && (this.watch?.add(this.place), this.tab("Watch")),
       n: () => this.transition >= 0 && this.selectTransition(this.transition, true),

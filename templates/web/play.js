@@ -4,6 +4,7 @@
 import { Declarations, GameFile, Problems } from "./about.js";
 import { Asking } from "./asking.js";
 import { byId, el } from "./dom.js";
+import { Frame } from "./frame.js";
 import { EnabledList } from "./enabledlist.js";
 import { Evaluate } from "./evaluate.js";
 import { Link } from "./link.js";
@@ -42,14 +43,7 @@ class Page {
     this.breakpoints = new Set();
     this.transition = -1;
     byId("title").textContent = data.title;
-    byId("theme").addEventListener("click", () => this.dark());
-    byId("help").addEventListener("click", help);
-    const dark = matchMedia("(prefers-color-scheme: dark)");
-    document.documentElement.dataset.theme = dark.matches ? "dark" : "light";
-    dark.addEventListener("change", () => this.dark(dark.matches));
-    for (const tab of document.querySelectorAll("#panes [data-pane]")) {
-      tab.addEventListener("click", () => this.pane(/** @type {HTMLElement} */ (tab).dataset.pane ?? ""));
-    }
+    this.frame = new Frame({ help, onTheme: () => this.plots?.draw(), onPane: () => {} });
     const actions = {
       onTransition: (/** @type {number} */ t) => this.fire(t), onPlace: (/** @type {number} */ p) => this.place(p),
       onList: (/** @type {number} */ t) => this.list(t),
@@ -115,21 +109,6 @@ class Page {
     this.marking?.update();
     this.plots?.draw();
     this.past?.update();
-  }
-
-  /** @param {string} name */
-  pane(name) {
-    document.body.dataset.pane = name;
-    for (const tab of document.querySelectorAll("#panes [data-pane]")) {
-      tab.setAttribute("aria-pressed", String(/** @type {HTMLElement} */ (tab).dataset.pane === name));
-    }
-    dispatchEvent(new Event("resize"));
-  }
-
-  /** @param {boolean} [on] */
-  dark(on = document.documentElement.dataset.theme !== "dark") {
-    document.documentElement.dataset.theme = on ? "dark" : "light";
-    this.plots?.draw();
   }
 
   // --- what the server says ------------------------------------------------------------------
@@ -226,14 +205,14 @@ class Page {
     this.net.reveal([this.position.net.transitions[t].instance]);
     this.net.mark(t, -1);
     this.tab("Enabled");
-    this.pane("panels");
+    this.frame.pane("panels");
     this.enabled?.list(t);
   }
 
   /** @param {number} p */
   place(p) {
     this.tab("Marking");
-    this.pane("panels");
+    this.frame.pane("panels");
     this.marking?.choose(p);
   }
 
@@ -254,7 +233,7 @@ class Page {
     const { elements, root } = this.net.draw(this.position.net.instances[instance].page);
     for (const node of root.querySelectorAll(".selected")) node.classList.remove("selected");
     elements.get(id)?.[0].classList.add("selected");
-    this.pane("net");
+    this.frame.pane("net");
   }
 
   /** @param {number} t */
@@ -287,7 +266,7 @@ class Page {
         this.tab("Space");
         this.space?.draw();
       },
-      f: () => this.net.setFollowing(!this.net.isFollowing), "/": () => this.search.focus(), d: () => this.dark(), "?": help,
+      f: () => this.net.setFollowing(!this.net.isFollowing), "/": () => this.search.focus(), d: () => this.frame.dark(), "?": help,
     };
     if (/^[1-9]$/.test(e.key)) {
       const wanted = this.tabs?.[Number(e.key) - 1];

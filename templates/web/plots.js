@@ -1,7 +1,7 @@
 // @ts-check
 /** Monitors: what each has collected, and its values as a plot. */
 
-import { colour, el } from "./dom.js";
+import { colour, el, sketch } from "./dom.js";
 
 /** @typedef {import("./position.js").Position} Position */
 
@@ -68,12 +68,7 @@ export class Plots {
    * @param {number[][]} points [entry, time, value]
    */
   plot(canvas, points) {
-    const ratio = Math.min(devicePixelRatio, 2);
-    const [w, h] = [canvas.clientWidth, canvas.clientHeight];
-    canvas.width = w * ratio;
-    canvas.height = h * ratio;
-    const c = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-    c.scale(ratio, ratio);
+    const [c, w, h] = sketch(canvas);
     if (!points.length) return;
     const by = this.position.net.timed ? 1 : 0;
     const values = points.map((p) => p[2]);

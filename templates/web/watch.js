@@ -1,7 +1,7 @@
 // @ts-check
 /** Watched places: how many tokens each has held over the time, and what it holds now. */
 
-import { colour, el, shorten } from "./dom.js";
+import { colour, el, shorten, sketch } from "./dom.js";
 
 /** @typedef {import("./clock.js").Clock} Clock */
 
@@ -74,12 +74,7 @@ export class Watch {
 
   /** @param {{history: any[], canvas: HTMLCanvasElement}} row */
   draw({ history, canvas }) {
-    const ratio = Math.min(devicePixelRatio, 2);
-    const [w, h] = [canvas.clientWidth, canvas.clientHeight];
-    canvas.width = w * ratio;
-    canvas.height = h * ratio;
-    const c = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
-    c.scale(ratio, ratio);
+    const [c, w, h] = sketch(canvas);
     const most = history.reduce((n, r) => Math.max(n, r.count), 1);
     const x = (/** @type {number} */ k) => ((k ? this.clock.course.time[k - 1] : 0) / this.clock.end) * w;
     const y = (/** @type {number} */ n) => h - 3 - (n / most) * (h - 6);
