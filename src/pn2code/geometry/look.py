@@ -195,24 +195,11 @@ class Look:
             self.nearest = gap if gap.distance < least else self.nearest
 
     def _pair(self, found: Situations, leg: Leg, other: Leg, apart: Apart, met: Met) -> Pair:
-        names = [_who(found, e)[0] for e in met.elements]
+        first, second = (_who(found, e)[0] for e in met.elements)
         does = (words(leg.command), words(other.command))
-        joints = tuple(
-            (x.robot, tuple(map(float, q)))
-            for x, q in zip((leg, other), apart.joints, strict=False)
-        )
-        is_touch = apart.outcome == "touch"
-        return Pair(
-            (leg.robot, other.robot),
-            (names[0], names[1]),
-            does,
-            "no" if is_touch else "unknown",
-            _touch(apart) if is_touch else apart.why,
-            apart.where,
-            apart.where.distance if apart.where else 0.0,
-            joints,
-            self._run(found, met),
-        )
+        run = self._run(found, met)
+        robots = (leg.robot, other.robot)
+        return _met(robots, (first, second), does, apart, run)
 
     def _parts(self, found: Situations) -> list[Pair]:
         """Arms, with what they carry, and parts that stand."""
@@ -228,19 +215,9 @@ class Look:
             apart = self.comparison.beside((leg, contents.held_by(leg.robot)), part)
             if apart.outcome == "clear" or (key in bad and apart.outcome == "open"):
                 continue
-            is_touch = apart.outcome == "touch"
-            joints = ((leg.robot, tuple(map(float, apart.joints[0]))),) if apart.joints else ()
-            bad[key] = Pair(
-                (leg.robot, ""),
-                (t, ""),
-                (words(leg.command), f"{part.kind.name} stands at {numbers(pose_of(part.frame))}"),
-                "no" if is_touch else "unknown",
-                _touch(apart) if is_touch else apart.why,
-                apart.where,
-                apart.where.distance if apart.where else 0.0,
-                joints,
-                self._run(found, met),
-            )
+            stands = f"{part.kind.name} stands at {numbers(pose_of(part.frame))}"
+            does = (words(leg.command), stands)
+            bad[key] = _met((leg.robot, ""), (t, ""), does, apart, self._run(found, met))
         return list(bad.values())
 
     # --- words and runs --------------------------------------------------------------------------
@@ -269,6 +246,28 @@ def _who(found: Situations, element: int) -> tuple[str, str]:
     e = found.graph.elements[element]
     partition = found.graph.partition
     return partition.net.transitions[e.transition].name, partition.owners[e.owner].name
+
+
+def _met(
+    robots: tuple[str, str],
+    transitions: tuple[str, str],
+    doing: tuple[str, str],
+    apart: Apart,
+    run: Run | None,
+) -> Pair:
+    """Two things that do not surely keep apart; a part has no robot, and no joints."""
+    is_touch = apart.outcome == "touch"
+    return Pair(
+        robots,
+        transitions,
+        doing,
+        "no" if is_touch else "unknown",
+        _touch(apart) if is_touch else apart.why,
+        apart.where,
+        apart.where.distance if apart.where else 0.0,
+        tuple((r, tuple(map(float, q))) for r, q in zip(robots, apart.joints, strict=False) if r),
+        run,
+    )
 
 
 def _least(apart: Apart) -> float | None:
