@@ -167,9 +167,9 @@ def _equal(about: str, is_equal: bool, says: str, is_whole: bool) -> Finding:
 
 def _ran(said: Json) -> tuple[str, list[Finding]]:
     ended = said["verdict"]
-    found = [
-        Finding("end", YES if ended == "finished" else NO, f"{ended} {said['reason']}".strip())
-    ]
+    places = ", ".join(said.get("final") or ())  # a cell may also finish where it has failed
+    text = " ".join(x for x in (ended, places and f"in {places}", said["reason"]) if x)
+    found = [Finding("end", YES if ended == "finished" else NO, text)]
     cycle = said.get("cycle_seconds")
     says = f"It has {ended}" + (f" after {cycle:.2f} s of its time" if cycle else "") + "."
     found += [

@@ -69,6 +69,7 @@ def test_a_run_with_figures_and_warnings(tmp_path: Path) -> None:
     said = {
         "verdict": "finished",
         "reason": "",
+        "final": ["Cell.Supervisor.Failed"],
         "cycle_seconds": 7.0,
         "clearances": {"robots": {"m": 0.0123, "t": 1.5}},
         "conditioning": {"r": {"worst": 102.1, "t": 2.0}},
@@ -78,7 +79,7 @@ def test_a_run_with_figures_and_warnings(tmp_path: Path) -> None:
     c = chapter(tmp_path, "run", None)
     assert c.answer == YES
     assert [(f.answer, f.says) for f in c.findings] == [
-        (YES, "finished"),
+        (YES, "finished in Cell.Supervisor.Failed"),
         (NOTED, "12.3 mm at 1.50 s"),
         (NOTED, "102.1 at 2.00 s"),
         (NOTED, "r comes close to a singularity"),
