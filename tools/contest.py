@@ -1,11 +1,11 @@
 """`./dev contest`: the inputs of the Model Checking Contest beside the repository, one examination after the other.
 
-    ./dev contest [--seconds 60] [--models TEXT] [--examinations NAME ...] [--log FILE] [--table]
+    ./dev contest [--seconds 60] [--models TEXT] [--sample] [--examinations NAME ...] [--log FILE] [--table]
 
 Each examination of each input is asked by `pn2code contest` with that time, and compared with the verdicts on which the
 contest's tools agreed. What has been asked with the same time is in the log, and not asked again: the run may be
-interrupted and resumed. `--table` only prints the table of the log, as in docs/contest.md. Exit code 1 if an answer is
-wrong.
+interrupted and resumed. `--sample` takes one input of each family, the one in the middle by name. `--table` only prints
+the table of the log, as in docs/contest.md. Exit code 1 if an answer is wrong.
 """
 
 from __future__ import annotations
@@ -38,6 +38,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="./dev contest", description=__doc__)
     parser.add_argument("--seconds", type=float, default=60.0, help="for each examination")
     parser.add_argument("--models", default="", help="only inputs with this in their names")
+    parser.add_argument("--sample", action="store_true", help="one input of each family")
     parser.add_argument("--examinations", nargs="*", default=list(ALL), choices=ALL)
     parser.add_argument("--log", type=Path, default=Path("contest.jsonl"))
     parser.add_argument("--table", action="store_true", help="ask nothing, print the table")
@@ -46,7 +47,9 @@ def main() -> int:
     if not a.table:
         if not folder.is_dir():
             parser.error(f"no inputs at {folder} (set PN2CODE_SHARED)")
-        _ask_all(folder, a.models, a.examinations, a.seconds, a.log)
+        found = sorted((folder / "inputs").glob("*.tgz"))
+        archives = [p for p in (_sample(found) if a.sample else found) if a.models in p.stem]
+        _ask_all(archives, _verdicts(folder / "verdicts.tsv"), a.examinations, a.seconds, a.log)
     rows = [r for r in _logged(a.log) if r["seconds"] == a.seconds]
     print("\n".join(_table(rows)))
     wrong = [r for r in rows if r["wrong"]]
@@ -55,13 +58,22 @@ def main() -> int:
     return 1 if wrong else 0
 
 
-def _ask_all(folder: Path, models: str, wanted: list[str], seconds: float, log: Path) -> None:
-    verdicts = _verdicts(folder / "verdicts.tsv")
+def _sample(archives: list[Path]) -> list[Path]:
+    """One input of each family, the one in the middle."""
+    families: dict[str, list[Path]] = defaultdict(list)
+    for archive in archives:
+        families[archive.stem.split("-")[0]].append(archive)
+    return [found[len(found) // 2] for found in families.values()]
+
+
+def _ask_all(
+    archives: list[Path], verdicts: Verdicts, wanted: list[str], seconds: float, log: Path
+) -> None:
     done = {(r["model"], r["examination"]) for r in _logged(log) if r["seconds"] == seconds}
-    for archive in sorted((folder / "inputs").glob("*.tgz")):
+    for archive in archives:
         model = archive.stem
         open_ = [e for e in wanted if (model, e) in verdicts and (model, e) not in done]
-        if models not in model or not open_:
+        if not open_:
             continue
         with tempfile.TemporaryDirectory() as name:
             with tarfile.open(archive) as tar:

@@ -90,7 +90,11 @@ def test_diagrams_alone(folder: Path) -> None:
     assert said(folder, "Liveness", "--only", "diagrams") == [
         "FORMULA Liveness FALSE TECHNIQUES DECISION_DIAGRAMS"
     ]
-    write(folder, "LTLCardinality", f"<all-paths><globally>{ONE_IN_Q}</globally></all-paths>")
+    write(
+        folder,
+        "LTLCardinality",
+        f"<all-paths><finally><globally>{ONE_IN_Q}</globally></finally></all-paths>",
+    )
     assert said(folder, "LTLCardinality", "--only", "diagrams") == ["FORMULA a CANNOT_COMPUTE"]
 
 

@@ -6,7 +6,7 @@ import random
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from pn2code.contest.formulas import AtMost, Constant, Fireable, Formula, Op, Tokens
+from pn2code.contest.formulas import AtMost, Constant, Fireable, Formula, Op, Tokens, Truth
 from pn2code.contest.tables import Tables
 
 Marking = tuple[int, ...]
@@ -54,6 +54,30 @@ def restless_tables(draw: random.Random) -> Tables:
         post.append(put)
     return Tables(
         tuple(draw.choice((0, 0, 0, 1, 2, 3, 5)) for _ in range(places)),
+        tuple(pre),
+        tuple(post),
+        {f"p{p}": (p,) for p in range(places)},
+        {f"t{t}": (t,) for t in range(len(pre))},
+    )
+
+
+def sparse_tables(draw: random.Random) -> Tables:
+    """Places in a row with some cross connections: much is there for the rules to do."""
+    places = draw.randint(2, 7)
+    pre, post = [], []
+    for _ in range(draw.randint(2, 8)):
+        weight = draw.choice((1, 1, 1, 1, 2))
+        taken = {draw.randrange(places): weight for _ in range(draw.choice((0, 1, 1, 1, 1, 2, 2)))}
+        put = {draw.randrange(places): weight for _ in range(draw.choice((0, 1, 1, 1, 2)))}
+        if draw.random() < 0.2 and taken:
+            put |= taken
+        if sum(put.values()) > sum(taken.values()) and draw.random() < 0.8:
+            put = {}
+        pre.append(taken)
+        post.append(put)
+    initial = tuple(draw.choice((0, 0, 0, 1, 2)) for _ in range(places))
+    return Tables(
+        initial,
         tuple(pre),
         tuple(post),
         {f"p{p}": (p,) for p in range(places)},
@@ -139,6 +163,8 @@ class Graph:
         """The markings in which a formula of CTL holds. A path that ends in a dead marking is a path."""
         everywhere = set(range(len(self.markings)))
         match f:
+            case Truth(value):
+                return everywhere if value else set()
             case AtMost(left, right):
                 return {
                     i

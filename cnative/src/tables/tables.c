@@ -22,19 +22,20 @@ int main(int count, char **argument)
     }
     const char *method = argument[2];
     const double seconds = strtod(argument[3], NULL);
+    const uint64_t seed = strtoull(argument[5], NULL, 10);
     tb_start_clock(seconds);
     tb_limit_memory(strtoull(argument[4], NULL, 10) << 20U);
     tb_read(&job, argument[1]);
     if (strcmp(method, "walk") == 0) {
-        tb_walk(&job, strtoull(argument[5], NULL, 10), seconds);
+        tb_walk(&job, seed, seconds);
     } else if ((strcmp(method, "explore") == 0) || (strcmp(method, "count") == 0)) {
         tb_explore(&job, strcmp(method, "count") == 0);
     } else if (strcmp(method, "reach") == 0) {
         tb_reach(&job, seconds);
     } else if (strcmp(method, "ctl") == 0) {
-        tb_ctl(&job, seconds);
+        tb_ctl(&job, seed, seconds);
     } else if (strcmp(method, "ltl") == 0) {
-        tb_ltl(&job, seconds);
+        tb_ltl(&job, seed, seconds);
     } else if ((strcmp(method, "diagrams") == 0) || (strcmp(method, "sizes") == 0)) {
         tb_diagrams(&job, strcmp(method, "sizes") == 0, seconds);
     } else {

@@ -217,10 +217,12 @@ typedef struct tb_graph {
     uint32_t at; /* the marking at the cursor */
     tb_count_t *marking;
     uint32_t *fire;
-    bool is_full; /* memory is exhausted, a place is, or the time is over: successors are missing */
+    uint64_t random; /* state of the numbers drawn for the order of successors; 0: as they come */
+    bool is_full;    /* memory is exhausted, a place is, or the time is over: successors are missing */
 } tb_graph_t;
 
-void tb_graph_init(tb_graph_t *g, const tb_net_t *net);
+/* `seed`: from 1 on another order of the successors each; the first two are as they come. */
+void tb_graph_init(tb_graph_t *g, const tb_net_t *net, uint64_t seed);
 void tb_graph_free(tb_graph_t *g);
 
 /* Look up the successors of a marking; false: not all of them can be had (g->is_full from then on). */
@@ -265,8 +267,8 @@ void tb_say_bound(tb_question_t *q, int64_t bound, bool is_exact, const char *me
 void tb_walk(tb_job_t *job, uint64_t seed, double seconds);
 void tb_explore(tb_job_t *job, bool count);
 void tb_reach(tb_job_t *job, double each);
-void tb_ctl(tb_job_t *job, double each);
-void tb_ltl(tb_job_t *job, double each);
+void tb_ctl(tb_job_t *job, uint64_t seed, double seconds);
+void tb_ltl(tb_job_t *job, uint64_t seed, double seconds);
 void tb_diagrams(tb_job_t *job, bool is_sizes, double seconds); /* symbolic/ */
 
 #endif

@@ -331,7 +331,7 @@ static tb_answer_t evaluate(checker_t *c, uint32_t marking, const tb_formula_t *
     return a;
 }
 
-void tb_ctl(tb_job_t *job, double seconds)
+void tb_ctl(tb_job_t *job, uint64_t seed, double seconds)
 {
     uint32_t open = 0U;
     for (uint32_t i = 0U; i < job->questions; i++) {
@@ -339,7 +339,7 @@ void tb_ctl(tb_job_t *job, double seconds)
     }
     checker_t c;
     (void)memset(&c, 0, sizeof c);
-    tb_graph_init(&c.graph, &job->net);
+    tb_graph_init(&c.graph, &job->net, seed);
     for (uint32_t i = 0U; i < job->questions; i++) {
         tb_question_t *q = &job->question[i];
         if (q->kind != TB_CTL) {

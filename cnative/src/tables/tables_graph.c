@@ -9,13 +9,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FIRST_ROOM = 1 << 10 };
+enum { FIRST_ROOM = 1 << 10, AS_THEY_COME = 2 /* seeds */ };
 
-void tb_graph_init(tb_graph_t *g, const tb_net_t *net)
+void tb_graph_init(tb_graph_t *g, const tb_net_t *net, uint64_t seed)
 {
     (void)memset(g, 0, sizeof *g);
     uint32_t number = 0U;
     g->net = net;
+    g->random = (seed > (uint64_t)AS_THEY_COME) ? ((seed * 0x9e3779b97f4a7c15U) | 1U) : 0U;
     tb_store_init(&g->store, net, NULL);
     tb_cursor_init(&g->cursor, net);
     (void)tb_store_add(&g->store, g->cursor.marking, &number);
@@ -94,6 +95,26 @@ static uint32_t without_repeats(uint32_t *number, uint32_t count)
     return kept;
 }
 
+/* A number below `count` (Marsaglia 2003). */
+static uint32_t drawn(tb_graph_t *g, uint32_t count)
+{
+    g->random ^= g->random << 13U;
+    g->random ^= g->random >> 7U;
+    g->random ^= g->random << 17U;
+    return (uint32_t)((g->random >> 11U) % count);
+}
+
+/* What is found first is looked at first, so that the order decides where a search goes. */
+static void shuffle(tb_graph_t *g, uint32_t count)
+{
+    for (uint32_t i = count; (g->random != 0U) && (i > 1U); i--) {
+        const uint32_t other = drawn(g, i);
+        const uint32_t t = g->fire[i - 1U];
+        g->fire[i - 1U] = g->fire[other];
+        g->fire[other] = t;
+    }
+}
+
 bool tb_expand(tb_graph_t *g, uint32_t marking)
 {
     if (g->first[marking] != 0U) {
@@ -108,6 +129,7 @@ bool tb_expand(tb_graph_t *g, uint32_t marking)
     for (uint32_t i = 0U; i < enabled; i++) {
         g->fire[i] = g->cursor.enabled[i];
     }
+    shuffle(g, enabled);
     uint32_t *found = &g->successor[g->successors];
     for (uint32_t i = 0U; i < enabled; i++) {
         if (!tb_fire(&g->cursor, g->fire[i])) {

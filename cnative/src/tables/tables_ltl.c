@@ -239,14 +239,14 @@ static void answer(tb_graph_t *graph, tb_question_t *q)
     tb_free(p.active, p.active_room, sizeof *p.active);
 }
 
-void tb_ltl(tb_job_t *job, double seconds)
+void tb_ltl(tb_job_t *job, uint64_t seed, double seconds)
 {
     uint32_t open = 0U;
     for (uint32_t i = 0U; i < job->questions; i++) {
         open += (job->question[i].kind == TB_LTL) ? 1U : 0U;
     }
     tb_graph_t graph;
-    tb_graph_init(&graph, &job->net);
+    tb_graph_init(&graph, &job->net, seed);
     for (uint32_t i = 0U; i < job->questions; i++) {
         tb_question_t *q = &job->question[i];
         if (q->kind == TB_LTL) {

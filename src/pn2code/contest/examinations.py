@@ -12,10 +12,9 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
-from pn2code.contest import linear
-from pn2code.contest.formulas import Formula, FormulaError, Op, Tokens, read
+from pn2code.contest.formulas import Formula, FormulaError, Tokens, read
 from pn2code.contest.tables import Tables
-from pn2code.properties.ltl import TooLargeError
+from pn2code.contest.temporal import check
 
 FORMULAS = (
     "ReachabilityCardinality", "ReachabilityFireability", "UpperBounds", "CTLCardinality", "CTLFireability",
@@ -50,6 +49,8 @@ class Asked:
         value: the value of the whole when a part decides; else it is the opposite.
         is_turned: with one part: whether the whole is the opposite of it.
         hints: questions with an answer each that decides at once, as `decides` does; another answer says nothing.
+        formula: of time, of the kind `kind`; then there are no parts.
+        kind: "ctl" or "ltl".
         why_not: it cannot be asked; why.
     """
 
@@ -59,6 +60,8 @@ class Asked:
     value: bool = True
     is_turned: bool = False
     hints: tuple[tuple[Part, bool], ...] = ()
+    formula: Formula | None = None
+    kind: str = ""
     why_not: str = ""
 
 
@@ -82,34 +85,17 @@ def asked(tables: Tables, examination: str, folder: Path) -> list[Asked]:
     for question in read(folder / f"{examination}.xml"):
         try:
             found.append(_of_formula(tables, examination, question.name, question.formula))
-        except (FormulaError, TooLargeError) as error:
-            found.append(Asked(question.name, why_not=str(error) or "its automaton is too large"))
+        except FormulaError as error:
+            found.append(Asked(question.name, why_not=str(error)))
     return found
 
 
 def _of_formula(tables: Tables, examination: str, name: str, f: Formula) -> Asked:
     if isinstance(f, Tokens):
         return Asked(name, (_part("bound", tables.bound(0, f)),))
-    if examination.startswith("LTL"):
-        return Asked(name, (_part("ltl", linear.question(tables, 0, f)),), is_turned=True)
-    return _branching(tables, name, f)
-
-
-def _branching(tables: Tables, name: str, f: Formula) -> Asked:
-    """EF p and AG p with p about one marking are questions of reachability, whatever file they are in."""
-    match f:
-        case Op("not", (part,)):
-            inner = _branching(tables, name, part)
-            return Asked(name, inner.parts, is_turned=not inner.is_turned)
-        case Op("E", (Op("F", (p,)),)) if _is_plain(p):
-            return Asked(name, (_part("reach", tables.reach(0, p)),))
-        case Op("A", (Op("G", (p,)),)) if _is_plain(p):
-            return Asked(name, (_part("reach", tables.reach(0, Op("not", (p,)))),), is_turned=True)
-    return Asked(name, (_part("ctl", tables.ctl(0, f)),))
-
-
-def _is_plain(f: Formula) -> bool:
-    return not isinstance(f, Op) or (f.operator not in "AEXFGU" and all(map(_is_plain, f.parts)))
+    kind = "ltl" if examination.startswith("LTL") else "ctl"
+    check(tables, kind, f)
+    return Asked(name, formula=f, kind=kind)
 
 
 def _part(kind: str, question: str) -> Part:

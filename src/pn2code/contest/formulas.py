@@ -16,6 +16,8 @@ from pn2code.base.frozen import frozen
 
 _NAMESPACE = "{http://mcc.lip6.fr/}"
 _LARGEST = 64 << 20
+_DIGITS = 16
+"""Of a number; no place of the contest holds that many tokens."""
 
 
 class FormulaError(Exception):
@@ -52,6 +54,13 @@ class Fireable:
 
 
 @frozen
+class Truth:
+    """True, or false, in all markings."""
+
+    value: bool
+
+
+@frozen
 class Op:
     """An operator: `not`, `and`, `or`; `A`, `E` (paths); `X`, `F`, `G`, `U` (time)."""
 
@@ -59,7 +68,7 @@ class Op:
     parts: tuple[Formula, ...]
 
 
-Formula = AtMost | Fireable | Op | Tokens
+Formula = AtMost | Fireable | Truth | Op | Tokens
 """`Tokens` alone asks for a bound."""
 
 
@@ -123,6 +132,15 @@ def _only(node: etree._Element) -> etree._Element:
     return children[0]
 
 
+def _two(node: etree._Element) -> list[etree._Element]:
+    children = _children(node)
+    if len(children) != 2:
+        raise FormulaError(
+            f"line {node.sourceline}: `{_tag(node)}` has {len(children)} elements, not two"
+        )
+    return children
+
+
 def _names(node: etree._Element) -> tuple[str, ...]:
     return tuple((c.text or "").strip() for c in _children(node))
 
@@ -134,10 +152,12 @@ def _formula(node: etree._Element) -> Formula:
     if tag == "is-fireable":
         return Fireable(_names(node))
     if tag == "integer-le":
-        left, right = (_number(c) for c in _children(node))
+        left, right = map(_number, _two(node))
         return AtMost(left, right)
     if tag == "until":
-        before, reach = _children(node)
+        before, reach = _two(node)
+        if (_tag(before), _tag(reach)) != ("before", "reach"):
+            raise FormulaError(f"line {node.sourceline}: `until` needs `before` and `reach`")
         return Op("U", (_formula(_only(before)), _formula(_only(reach))))
     if tag not in _OPERATORS:
         raise FormulaError(f"line {node.sourceline}: `{tag}` is not known")
@@ -151,7 +171,10 @@ def _formula(node: etree._Element) -> Formula:
 def _number(node: etree._Element) -> Constant | Tokens:
     tag = _tag(node)
     if tag == "integer-constant":
-        return Constant(int((node.text or "").strip()))
+        text = (node.text or "").strip()
+        if not text.removeprefix("-").isdecimal() or len(text) > _DIGITS:
+            raise FormulaError(f"line {node.sourceline}: `{text[:_DIGITS]}` is no number")
+        return Constant(int(text))
     if tag == "tokens-count":
         return Tokens(_names(node))
     raise FormulaError(f"line {node.sourceline}: `{tag}` is no number")

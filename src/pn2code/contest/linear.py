@@ -7,7 +7,10 @@ The engine is asked whether a run is accepted by the automaton of the negation: 
 
 from __future__ import annotations
 
-from pn2code.contest.formulas import Formula, FormulaError, Op
+from collections.abc import Mapping
+from types import MappingProxyType
+
+from pn2code.contest.formulas import Formula, FormulaError, Op, Truth
 from pn2code.contest.tables import Tables
 from pn2code.properties import meaning
 from pn2code.properties.ltl import Automaton, Literal, automaton
@@ -16,8 +19,19 @@ MOST_ATOMS = 63
 """What a word of the engine has room for."""
 
 
-def question(tables: Tables, number: int, formula: Formula) -> str:
+def question(
+    tables: Tables,
+    number: int,
+    formula: Formula,
+    leaves: Mapping[Formula, str] = MappingProxyType({}),
+) -> str:
     """The question whether a run does not satisfy a formula, which is one of all paths.
+
+    Args:
+        tables: the net.
+        number: of the question.
+        formula: of all paths.
+        leaves: parts about one marking for which there are words.
 
     Raises:
         FormulaError: it is none, or it looks at too much.
@@ -25,7 +39,7 @@ def question(tables: Tables, number: int, formula: Formula) -> str:
     """
     if not isinstance(formula, Op) or formula.operator != "A":
         raise FormulaError("a formula of LTL speaks of all paths")
-    written = _Written(tables)
+    written = _Written(tables, leaves)
     made = automaton(written.of(formula.parts[0]), negated=True)
     states = written.states(made)
     if len(written.looked_at) > MOST_ATOMS:
@@ -40,17 +54,19 @@ class _Written:
         looked_at: what the automaton looks at, in the engine's own words: its number.
     """
 
-    def __init__(self, tables: Tables) -> None:
+    def __init__(self, tables: Tables, leaves: Mapping[Formula, str]) -> None:
         self.tables = tables
+        self.leaves = leaves
         self.texts: dict[str, int] = {}
         self.looked_at: dict[str, int] = {}
 
     def of(self, f: Formula) -> meaning.Formula:
         """The formula, in which everything without operators of time is an atom."""
         if not _is_temporal(f):
-            return meaning.Atom(
-                "pred", self.texts.setdefault(self.tables.formula(f), len(self.texts))
-            )
+            if isinstance(f, Truth):
+                return meaning.TRUE if f.value else meaning.negation(meaning.TRUE)
+            text = self.tables.formula(f, self.leaves)
+            return meaning.Atom("pred", self.texts.setdefault(text, len(self.texts)))
         assert isinstance(f, Op)
         parts = tuple(map(self.of, f.parts))
         match f.operator:

@@ -15,11 +15,15 @@ from pathlib import Path
 from queue import Empty, SimpleQueue
 
 from pn2code.base.frozen import frozen, record
+from pn2code.contest.conditions import TRUE
 from pn2code.contest.diagrams import KINDS, METHOD, Diagrams
 from pn2code.contest.engine import Answer, Said, Space, Task, ask
 from pn2code.contest.examinations import Asked, Part
+from pn2code.contest.formulas import FormulaError
 from pn2code.contest.structural import REDUCTION, Question, Structural, question
 from pn2code.contest.tables import Tables
+from pn2code.contest.temporal import Reach, Temporal, Wanted, Whole
+from pn2code.properties.ltl import TooLargeError
 
 METHODS = {
     "structure": ("reach", "bound"),
@@ -34,9 +38,13 @@ METHODS = {
 _PAIRS = (("walk", "reach"), ("walk", "reach"), ("explore", "reach"), ("walk", "reach"))
 """For reachability and bounds the methods of the two lanes, by round; the last but one is repeated at the end."""
 _ROUNDS_S = (1.0, 3.0, 8.0, 20.0)
+REWRITING = "REWRITING"
+"""What the initial marking and the formula alone decide."""
 _LEAST_S = 0.2
 """With less time left nothing is begun."""
 _POLL_S = 0.05
+_WEIGHT = 4.0
+"""So much more time have questions that are asked for themselves than those that only help."""
 _LEAST_SLICE_S = 0.25
 """With less for each of the questions they are asked together."""
 
@@ -59,12 +67,22 @@ class _Line:
     techniques: set[str] = field(default_factory=set)
     hinted: bool = False
     is_done: bool = False
+    temporal: Temporal | None = None
+    asked_for: set[Wanted] = field(default_factory=set)
+    why_not: str = ""
 
     def result(self) -> Result | None:
         """The answer, once it is known."""
         a = self.asked
         value: bool | int
-        if self.hinted:
+        if self.temporal is not None:
+            known = self.temporal.value
+            if known is None:
+                return None
+            value = known
+        elif a.formula is not None:
+            return None
+        elif self.hinted:
             value = a.value
         elif a.decides is None:
             if not self.known:
@@ -77,12 +95,12 @@ class _Line:
             value = not a.value
         else:
             return None
-        return Result(a.name, value, " ".join(sorted(self.techniques)))
+        return Result(a.name, value, " ".join(sorted(self.techniques)) or REWRITING)
 
 
 @record
 class _Place:
-    """Where a question belongs: the part of a line, or a hint with the answer that decides."""
+    """Where a question belongs: the part of a line, a hint with the answer that decides, or what a formula wants."""
 
     line: _Line
     part: Part
@@ -90,10 +108,15 @@ class _Place:
     hint: bool | None = None
     question: Question | None = None
     value: bool | int | None = None
+    wanted: Wanted | None = None
 
     @property
     def is_open(self) -> bool:
         """Whether an answer would still be of use."""
+        if self.wanted is not None:
+            temporal = self.line.temporal
+            if temporal is None or self.wanted not in temporal.wanted:
+                return False
         return self.value is None and not self.line.is_done
 
 
@@ -151,15 +174,54 @@ class _Portfolio:
                 self.places.append(_Place(line, part, which, hint))
         self.diagrams: dict[int, Diagrams] = {}
         self.structural: Structural | None = None
+        for line in self.lines:
+            if line.asked.formula is not None:
+                is_whole = only in ("ctl", "ltl")
+                line.temporal = Temporal(
+                    tables, line.asked.kind, line.asked.formula, is_whole=is_whole
+                )
+                self._ask_for(line)
         if only in ("", "structure"):
             self._start_structural()
 
+    def _ask_for(self, line: _Line) -> None:
+        """What a formula wants to know, as far as it was not asked before."""
+        assert line.temporal is not None
+        for wanted in line.temporal.wanted:
+            if wanted not in line.asked_for:
+                line.asked_for.add(wanted)
+                self._add(line, line.temporal, wanted)
+        for place in self.places:
+            if place.line is line and place.question is not None and not place.is_open:
+                place.question.is_done = True
+
+    def _add(self, line: _Line, temporal: Temporal, wanted: Wanted) -> None:
+        try:
+            kind = "reach" if isinstance(wanted, Reach) else temporal.kind
+            part = Part(kind, temporal.text(wanted))
+        except (FormulaError, TooLargeError) as error:
+            line.why_not = str(error) or "its automaton is too large"
+            return
+        place = _Place(line, part, 0, wanted=wanted)
+        self.places.append(place)
+        if self.structural is not None:
+            place.question = self._question(len(self.places) - 1)
+            if place.question is not None:
+                self.structural.add(place.question)
+
+    def _question(self, number: int) -> Question | None:
+        place = self.places[number]
+        if isinstance(place.wanted, Whole):
+            return Question(number, place.part.kind, TRUE, formula=place.wanted.formula)
+        return question(number, place.part, self.tables)
+
     def _start_structural(self) -> None:
         for number, place in enumerate(self.places):
-            place.question = question(number, place.part, self.tables)
+            place.question = self._question(number)
         found = [p.question for p in self.places if p.question is not None]
         if found:
-            self.structural = Structural(self.tables, found, self.said, self.ends)
+            waits = not self.only and any(line.temporal for line in self.lines)
+            self.structural = Structural(self.tables, found, self.said, self.ends, waits=waits)
             self.structural.start()
 
     def end(self) -> None:
@@ -223,13 +285,16 @@ class _Portfolio:
         place.value = value
         if place.question is not None:
             place.question.is_done = True
-        if place.hint is None:
+        if place.wanted is not None:
+            self._learn(line, place.wanted, bool(value), answer.method)
+        elif place.hint is None:
             line.known[place.which] = value
         elif place.hint == value:
             line.hinted = True
         else:
             return
-        line.techniques.update(answer.method.split())
+        if place.wanted is None:
+            line.techniques.update(answer.method.split())
         result = None if line.is_done else line.result()
         if result is not None:
             line.is_done = True
@@ -237,6 +302,16 @@ class _Portfolio:
                 if p.line is line and p.question is not None:
                     p.question.is_done = True
             yield result
+
+    def _learn(self, line: _Line, wanted: Wanted, value: bool, method: str) -> None:
+        """Put an answer into a formula."""
+        assert line.temporal is not None
+        before = line.temporal.formula
+        is_turned = isinstance(wanted, Whole) and line.temporal.kind == "ltl"
+        line.temporal.learn(wanted, value != is_turned)
+        if line.temporal.formula != before:
+            line.techniques.update(method.split())
+        self._ask_for(line)
 
     # --- what the engine is asked ----------------------------------------------------------------
 
@@ -287,9 +362,11 @@ class _Portfolio:
             ends: when it is over.
             lanes: that share the memory.
         """
+        weights = [1.0 if all(map(self._is_side, numbers)) else _WEIGHT for _, numbers in tasks]
         for i, (method, numbers) in enumerate(tasks):
             now = time.monotonic()
-            until = now + (ends - now) / (len(tasks) - i)
+            until = now + (ends - now) * weights[i] / sum(weights[i:])
+            kinds = {self.places[n].part.kind for n in numbers}
             groups = self._groups([n for n in numbers if self.places[n].is_open])
             if number == 0 or (until - now) < _LEAST_SLICE_S * len(groups):
                 groups = [numbers]
@@ -297,13 +374,22 @@ class _Portfolio:
                 left = (until - time.monotonic()) / (len(groups) - k)
                 still = [n for n in group if self.places[n].is_open]
                 if still and left >= _LEAST_SLICE_S / 5:
-                    task = self._task(method, still, which, is_first=number == 0)
+                    # A diagram of the net as it is is one for all formulas.
+                    is_whole = number == 0 or (
+                        method == METHOD and number % 2 == 1 and kinds == {"ctl"}
+                    )
+                    task = self._task(method, still, which, is_first=is_whole)
                     yield replace(
                         task,
                         seconds=min(left, max(0.0, self.ends - time.monotonic())),
                         mebibytes=self.mebibytes // lanes,
                         seed=2 * number + which + 1,
                     )
+
+    def _is_side(self, number: int) -> bool:
+        """Whether a question is only asked since its answer would help with another one."""
+        wanted = self.places[number].wanted
+        return isinstance(wanted, Reach) and wanted.is_side
 
     def _groups(self, numbers: list[int]) -> list[list[int]]:
         """The questions that have the same net."""

@@ -21,7 +21,9 @@ from pn2code.contest.conditions import FALSE, TRUE, AtMost, Condition, Dead, Too
 from pn2code.contest.engine import Answer, Said
 from pn2code.contest.equation import StateEquation, wait_for_solver
 from pn2code.contest.examinations import Part
+from pn2code.contest.formulas import Formula
 from pn2code.contest.reduction.reduce import Reduced, reduced_for
+from pn2code.contest.stepwise import smaller_for
 from pn2code.contest.tables import Tables
 
 REDUCTION = "STRUCTURAL_REDUCTION"
@@ -31,6 +33,9 @@ _PASSES_S = (0.3, 1.0, 4.0, 15.0, 60.0, 600.0)
 _FEW = 40
 """So many questions are reduced one by one even if that takes long."""
 _LEAST_S = 0.1
+_PAUSE_S = 0.1
+_LOOKS = 3
+"""Between two looks for questions that have come later, and how many there are if nobody else answers any."""
 
 
 @record
@@ -44,6 +49,7 @@ class Smaller:
         equation: of the net, once it was asked.
         guide: how often transitions may occur on the way to the condition; {}: there is no guess.
         tried: of a bound: the number that the equation could not prove.
+        words: a formula of time as a question about the net; the condition is of no use then.
     """
 
     tables: Tables
@@ -52,9 +58,12 @@ class Smaller:
     equation: StateEquation | None = None
     guide: dict[int, int] = field(default_factory=dict)
     tried: int | None = None
+    words: str = ""
 
     def text(self, kind: str) -> str:
         """The question in the engine's own words, without its number."""
+        if self.words:
+            return self.words
         text = f"{kind} {conditions.text(self.condition)}"
         if not self.guide:
             return text
@@ -64,12 +73,13 @@ class Smaller:
 
 @record
 class Question:
-    """A question about reachability or about a bound, with what is known.
+    """A question about reachability, a bound or a formula of time, with what is known.
 
     Args:
         number: of the question.
-        kind: "reach" or "bound".
+        kind: "reach", "bound", "ctl" or "ltl".
         condition: what is to be reached; of a bound its sum.
+        formula: of time; the condition is of no use then.
         least: a number that the sum reaches.
         most: one that it never exceeds.
         smaller: the question about a reduced net, once there is one.
@@ -83,6 +93,7 @@ class Question:
     is_done: bool = False
     smaller: Smaller | None = None
     lock: threading.Lock = field(default_factory=threading.Lock)
+    formula: Formula | None = None
 
     def learn(self, least: int | None = None, most: int | None = None) -> int | None:
         """A bound is at least or at most that; the bound, if it is known now."""
@@ -128,24 +139,37 @@ class Structural(threading.Thread):
         questions: that are asked.
         said: where the answers go.
         ends: when to stop, on the monotonic clock.
+        waits: whether questions may come at any time.
     """
 
     def __init__(
-        self, tables: Tables, questions: Sequence[Question], said: Said, ends: float
+        self,
+        tables: Tables,
+        questions: Sequence[Question],
+        said: Said,
+        ends: float,
+        *,
+        waits: bool = False,
     ) -> None:
         super().__init__(daemon=True)
         self.tables = tables
-        self.questions = questions
+        self.questions = list(questions)
         self.said = said
         self.ends = ends
+        self.waits = waits
         self.is_over = threading.Event()
         self.equations: dict[int, StateEquation] = {}
+        self.seen: set[int] = set()
+        self.exhausted: set[int] = set()
+        self.later = 1 + max((q.number for q in questions), default=-1)
 
     def run(self) -> None:
         """All steps, until the time is over."""
         try:
+            self._reduce_temporal()
             self._reduce_all()
             self._equations()
+            self._later()
         except _OverError:
             return
         except Exception as error:  # it belongs to the one who waits
@@ -162,15 +186,36 @@ class Structural(threading.Thread):
             raise _OverError
         return left
 
+    def add(self, q: Question) -> None:
+        """One more question."""
+        self.questions.append(q)
+
     def _open(self) -> list[Question]:
         self._left()
-        return [q for q in self.questions if not q.is_done]
+        return [q for q in self.questions if not q.is_done and q.formula is None]
 
     def _say(self, q: Question, value: bool | int, method: str) -> None:
         q.is_done = True
         self.said.put(Answer(q.number, value, True, method))
 
     # --- reductions ------------------------------------------------------------------------------
+
+    def _reduce_temporal(self) -> None:
+        """The net for each formula of time, in a third of the time."""
+        new = [q for q in list(self.questions) if q.number not in self.seen]
+        self.seen.update(q.number for q in new if q.is_done)
+        still = [q for q in new if not q.is_done and q.formula is not None]
+        ends = time.monotonic() + self._left() / 3
+        for i, q in enumerate(still):
+            self._left()
+            now = time.monotonic()
+            self.seen.add(q.number)
+            if q.is_done or now > ends or q.formula is None:
+                continue
+            until = now + (ends - now) / (len(still) - i)
+            found = smaller_for(self.tables, q.kind, q.formula, until=until)
+            if found is not None:
+                q.smaller = Smaller(found[0], TRUE, words=found[1])
 
     def _reduce_all(self) -> None:
         """The net for all questions, then for each of them."""
@@ -189,7 +234,7 @@ class Structural(threading.Thread):
             self._note(q, shared, q.condition)
         still = [q for q in self._open() if not isinstance(q.condition, Dead)]
         if took * len(still) > 1.0:
-            self._pass(_PASSES_S[0], set())
+            self._pass(_PASSES_S[0])
         if len(still) > _FEW and took * len(still) > self._left() / 3:
             return
         for i, q in enumerate(still):
@@ -226,17 +271,33 @@ class Structural(threading.Thread):
     # --- the state equation ----------------------------------------------------------------------
 
     def _equations(self) -> None:
-        exhausted: set[int] = set()
         for seconds in _PASSES_S:
-            self._pass(seconds, exhausted)
+            self._pass(seconds)
 
-    def _pass(self, seconds: float, exhausted: set[int]) -> None:
+    def _later(self) -> None:
+        """Questions that come when others are answered."""
+        looks = 0
+        while self.waits or looks < _LOOKS:
+            looks += 1
+            if any(q.number not in self.seen for q in self.questions if q.number >= self.later):
+                looks = 0
+                self._reduce_temporal()
+                self._equations()
+            self._left()
+            self.is_over.wait(_PAUSE_S)
+
+    def _pass(self, seconds: float) -> None:
         for q in self._open():
-            if q.is_done or q.number in exhausted or q.smaller is None:
+            if q.is_done or q.number in self.exhausted:
+                continue
+            if q.number >= self.later and q.number not in self.seen:
+                self.seen.add(q.number)
+                self._reduce(q, self.tables, q.condition, self._left() / 8)
+            if q.is_done or q.smaller is None:
                 continue
             until = time.monotonic() + min(seconds, self._left())
             if self._is_exhausted(q, q.smaller, until):
-                exhausted.add(q.number)
+                self.exhausted.add(q.number)
 
     def _is_exhausted(self, q: Question, smaller: Smaller, until: float) -> bool:
         """Ask the state equation; whether more time would not help."""

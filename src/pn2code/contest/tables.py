@@ -10,9 +10,19 @@ place is the sum of its colours, a coloured transition is enabled if one of its 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from types import MappingProxyType
 
 from pn2code.base.frozen import frozen
-from pn2code.contest.formulas import AtMost, Constant, Fireable, Formula, FormulaError, Op, Tokens
+from pn2code.contest.formulas import (
+    AtMost,
+    Constant,
+    Fireable,
+    Formula,
+    FormulaError,
+    Op,
+    Tokens,
+    Truth,
+)
 from pn2code.unfold.net import Unfolding
 
 
@@ -82,25 +92,36 @@ class Tables:
         """The question for the most tokens that places hold together."""
         return f"{number} bound {self.sum(dict.fromkeys(self._places(tokens), 1), 0)}"
 
-    def formula(self, f: Formula) -> str:
+    def formula(self, f: Formula, written: Mapping[Formula, str] = MappingProxyType({})) -> str:
         """A formula of CTL in the engine's own words.
+
+        Args:
+            f: the formula.
+            written: parts of it for which there are words.
 
         Raises:
             FormulaError: it is of another kind, or names a place or transition that the net does not have.
         """
+        if f in written:
+            return written[f]
         match f:
+            case Truth(value):
+                return "true" if value else "false"
             case AtMost(left, right):
                 return self._comparison(left, right)
             case Fireable(names):
                 found = sorted({t for name in names for t in self._of(self.transitions, name)})
                 return f"enabled {len(found)} {' '.join(map(str, found))}".rstrip()
             case Op("not", (part,)):
-                return f"not {self.formula(part)}"
+                return f"not {self.formula(part, written)}"
             case Op("and" | "or" as operator, parts):
-                return f"{operator} {len(parts)} {' '.join(map(self.formula, parts))}"
+                return f"{operator} {len(parts)} {self._all(parts, written)}"
             case Op("A" | "E" as path, (Op("X" | "F" | "G" | "U" as operator, parts),)):
-                return f"{path}{operator} {' '.join(map(self.formula, parts))}"
+                return f"{path}{operator} {self._all(parts, written)}"
         raise FormulaError(f"{f} is not a formula of CTL")
+
+    def _all(self, parts: Sequence[Formula], written: Mapping[Formula, str]) -> str:
+        return " ".join(self.formula(p, written) for p in parts)
 
     def _comparison(self, left: Constant | Tokens, right: Constant | Tokens) -> str:
         factors: dict[int, int] = {}

@@ -20,6 +20,8 @@ def post_agglomeration(net: Net) -> int:
 
     Waiting in p is of no use: whatever else occurs finds the same tokens or more. With several transitions after p all
     arcs at p have the same weight, so that each filling is for one of them; the rest that p holds is less than that.
+    On a path that waits in p for ever other transitions go on for ever, as they do without waiting. For branching time
+    there is only one transition after p, since with several the choice would be made earlier.
     """
     done = 0
     for p in list(net.marking):
@@ -43,6 +45,8 @@ def _can_follow(net: Net, p: int) -> bool:
     if len(weights) != 1:
         return False
     weight = weights.pop()
+    if net.goal is Goal.BRANCHING and len(after) > 1:
+        return False
     if len(after) == 1:
         return all(net.post[h][p] % weight == 0 for h in net.putters[p])
     return net.marking[p] < weight and all(net.post[h][p] == weight for h in net.putters[p])
@@ -60,7 +64,9 @@ def pre_agglomeration(net: Net) -> int:
     """What fills p fills nothing else, and nobody looks at it: it can wait until what comes after p needs it.
 
     Waiting leaves tokens where they are, which hinders nobody. For deadlocks no other transition may take them
-    meanwhile: only what fills p takes from its inputs, and it has inputs.
+    meanwhile: only what fills p takes from its inputs, and it has inputs. So it is for linear time: what fills p cannot
+    go on for ever by itself. For branching time each transition before p has inputs of its own, so that it hinders none
+    of the others.
     """
     done = 0
     for p in list(net.marking):
@@ -85,7 +91,9 @@ def _can_wait(net: Net, p: int) -> bool:
         return False
     if len(before) > 1 and any(net.pre[f][p] != weight for f in after):
         return False
-    if net.goal is Goal.DEADLOCK:
+    if net.goal is Goal.BRANCHING:
+        return all(net.pre[h] and all(net.takers[q] == {h} for q in net.pre[h]) for h in before)
+    if net.goal is not Goal.REACHABILITY:
         return all(net.pre[h] and all(net.takers[q] <= before for q in net.pre[h]) for h in before)
     return True
 
@@ -120,7 +128,8 @@ def _sum(
 def free_moves(net: Net) -> int:
     """Places between which a token can go round without anything else are one place.
 
-    For deadlocks a step that changes nothing stays: where a token can go round, nothing is dead.
+    But for reachability a step that changes nothing stays: where a token can go round, nothing is dead, and a path may
+    do nothing else for ever.
     """
     moves: dict[int, list[int]] = {}
     for t, pre in net.pre.items():
@@ -183,7 +192,7 @@ def _merge(net: Net, ring: list[int]) -> None:
     for t in touched:
         pre, post = _moved(net.pre[t], kept, members), _moved(net.post[t], kept, members)
         net.remove_transition(t)
-        if pre != post or net.goal is Goal.DEADLOCK:
+        if pre != post or net.goal is not Goal.REACHABILITY:
             net.add_transition(pre, post)
     for p in ring[1:]:
         net.remove_place(p)

@@ -20,6 +20,9 @@ class Goal(Enum):
 
     REACHABILITY = "the markings of the visible places that are reachable"
     DEADLOCK = "whether a dead marking is reachable; no place is visible"
+    LINEAR = "what maximal paths see of the visible places, however often"
+    BRANCHING = "what can be said of the visible places in CTL* without next"
+    STEPS = "the graph of all markings, but for what is invisible in them"
 
 
 @frozen
@@ -51,7 +54,7 @@ class Net:
     def __init__(self, tables: Tables, visible: Iterable[int], goal: Goal) -> None:
         self.goal = goal
         self.visible = set(visible)
-        assert goal is Goal.REACHABILITY or not self.visible
+        assert goal is not Goal.DEADLOCK or not self.visible
         self.marking = dict(enumerate(tables.initial))
         self.pre = {t: dict(arcs) for t, arcs in enumerate(tables.pre)}
         self.post = {t: dict(arcs) for t, arcs in enumerate(tables.post)}

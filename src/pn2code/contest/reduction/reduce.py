@@ -19,7 +19,8 @@ from pn2code.contest.reduction import agglomerations, places, transitions
 from pn2code.contest.reduction.net import Goal, Net
 from pn2code.contest.tables import Tables
 
-BOTH = (Goal.REACHABILITY, Goal.DEADLOCK)
+ALL = tuple(Goal)
+STUTTERING = (Goal.REACHABILITY, Goal.DEADLOCK, Goal.LINEAR, Goal.BRANCHING)
 REACHABILITY = (Goal.REACHABILITY,)
 BERTHELOT = "Berthelot 1987, Transformations and decompositions of nets"
 THIERRY_MIEG = "Thierry-Mieg 2020, Structural reductions revisited"
@@ -49,19 +50,19 @@ class Rule:
 
 
 RULES = (
-    Rule(transitions.dead_transitions, BOTH, MURATA),
-    Rule(places.constant_places, BOTH, THIERRY_MIEG),
+    Rule(transitions.dead_transitions, ALL, MURATA),
+    Rule(places.constant_places, ALL, THIERRY_MIEG),
     Rule(transitions.irrelevant_parts, REACHABILITY, SLICING),
-    Rule(places.sink_places, BOTH, THIERRY_MIEG),
+    Rule(places.sink_places, ALL, THIERRY_MIEG),
     Rule(transitions.idle_transitions, REACHABILITY, BERTHELOT),
     Rule(transitions.losing_transitions, REACHABILITY, THIERRY_MIEG),
-    Rule(transitions.identical_transitions, BOTH, BERTHELOT),
-    Rule(places.proportional_places, BOTH, COLOM_SILVA),
-    Rule(places.implied_places, BOTH, COLOM_SILVA),
-    Rule(places.common_weights, BOTH, THIERRY_MIEG),
-    Rule(agglomerations.free_moves, BOTH, THIERRY_MIEG),
-    Rule(agglomerations.post_agglomeration, BOTH, BERTHELOT),
-    Rule(agglomerations.pre_agglomeration, BOTH, BERTHELOT),
+    Rule(transitions.identical_transitions, ALL, BERTHELOT),
+    Rule(places.proportional_places, ALL, COLOM_SILVA),
+    Rule(places.implied_places, ALL, COLOM_SILVA),
+    Rule(places.common_weights, ALL, THIERRY_MIEG),
+    Rule(agglomerations.free_moves, STUTTERING, THIERRY_MIEG),
+    Rule(agglomerations.post_agglomeration, STUTTERING, BERTHELOT),
+    Rule(agglomerations.pre_agglomeration, STUTTERING, BERTHELOT),
 )
 
 
@@ -102,7 +103,12 @@ class Reduced:
 
 
 def reduced_for(
-    tables: Tables, asked: Sequence[Condition], *, until: float, rules: Sequence[Rule] = RULES
+    tables: Tables,
+    asked: Sequence[Condition],
+    *,
+    until: float,
+    rules: Sequence[Rule] = RULES,
+    goal: Goal = Goal.REACHABILITY,
 ) -> Reduced:
     """The net reduced for some questions together.
 
@@ -111,10 +117,11 @@ def reduced_for(
         asked: conditions whose reachability is asked, sums that are to be largest; or `Dead` alone.
         until: when to stop, on the monotonic clock.
         rules: to be used.
+        goal: what has to be kept of the conditions; for `Dead` there is only one.
     """
     is_dead = any(isinstance(c, Dead) for c in asked)
     assert not is_dead or len(asked) == 1
-    goal = Goal.DEADLOCK if is_dead else Goal.REACHABILITY
+    goal = Goal.DEADLOCK if is_dead else goal
     net = Net(tables, set().union(*map(conditions.places, asked)), goal)
     apply_all(net, [r for r in rules if goal in r.keeps], until)
     return Reduced(net)
