@@ -223,3 +223,56 @@ def test_wrong_inputs(folder: Path, tmp_path: Path) -> None:
     (folder / "model.pnml").write_text("<pnml>")
     assert runner.invoke(app, ["contest", str(folder), "StateSpace"]).exit_code == 1
     assert runner.invoke(app, ["contest", str(folder), "Everything"]).exit_code == 2
+
+
+@pytest.mark.parametrize(
+    ("formula", "why"),
+    [
+        ("<integer-le><integer-constant>1</integer-constant></integer-le>", "not two"),
+        (
+            "<integer-le><integer-constant>x</integer-constant>"
+            "<integer-constant>1</integer-constant></integer-le>",
+            "`x` is no number",
+        ),
+        (f"<until><before>{ONE_IN_Q}</before></until>", "not two"),
+        (f"<until><reach>{ONE_IN_Q}</reach><before>{ONE_IN_Q}</before></until>", "needs `before`"),
+        (f"<until>{ONE_IN_Q}{ONE_IN_Q}</until>", "needs `before`"),
+    ],
+)
+def test_formulas_that_are_wrong(folder: Path, formula: str, why: str) -> None:
+    """A clear error, and no answer."""
+    write(folder, "CTLCardinality", f"<all-paths>{formula}</all-paths>")
+    done = CliRunner().invoke(app, ["contest", str(folder), "CTLCardinality"])
+    assert done.exit_code == 1 and why in done.stderr and not done.stdout
+
+
+def test_formulas_of_another_kind_are_not_known(folder: Path) -> None:
+    """The others are answered all the same."""
+    write(
+        folder,
+        "LTLCardinality",
+        f"<all-paths><finally>{ONE_IN_Q}</finally></all-paths>",
+        f"<all-paths><finally><exists-path>{ONE_IN_Q}</exists-path></finally></all-paths>",
+        "<all-paths><finally><is-fireable><transition>?</transition></is-fireable></finally></all-paths>",
+    )
+    unknown = "CANNOT_COMPUTE"
+    assert values(said(folder, "LTLCardinality")) == {"a": "TRUE", "b": unknown, "c": unknown}
+
+
+def test_the_initial_marking_decides(folder: Path) -> None:
+    """No method is needed."""
+    true = f"<finally><negation>{ONE_IN_Q}</negation></finally>"
+    for examination in ("CTLCardinality", "LTLCardinality"):
+        write(folder, examination, f"<all-paths>{true}</all-paths>")
+        lines = said(folder, examination, "--only", "walk")
+        assert lines == ["FORMULA a TRUE TECHNIQUES REWRITING"]
+
+
+def test_deep_formulas(folder: Path) -> None:
+    """However deep: an answer, or a clear error."""
+    for depth in (100, 3000):
+        negations = "<negation>" * depth + ONE_IN_Q + "</negation>" * depth
+        write(folder, "CTLCardinality", f"<all-paths><finally>{negations}</finally></all-paths>")
+        done = CliRunner().invoke(app, ["contest", str(folder), "CTLCardinality"])
+        assert done.exception is None or isinstance(done.exception, SystemExit), done.exception
+        assert (done.exit_code, bool(done.stderr)) in ((0, False), (1, True))

@@ -102,7 +102,9 @@ def test_reduced_nets(program: Path, kind: str) -> None:
             texts.append((smaller[0], f"{n} {smaller[1]}"))
             joined += not has_next(f)
         for n, (net, text) in enumerate(texts):
-            found = list(ask(program, [Task(kind, net.text([text]), SECONDS, 256)]))
+            found = list(
+                ask(program, [Task(kind, net.text([text]), SECONDS, 256, draw.randrange(1, 9))])
+            )
             assert len(found) == 1 and isinstance(found[0], Answer)
             assert (found[0].value != (kind == "ltl")) == wanted[n], (tables, text)
         made += len(wanted)
@@ -115,7 +117,9 @@ def test_linear_time_is_what_the_tableau_says(program: Path) -> None:
     for draw, tables, graph in nets(range(2000, 2050)):
         found = list(formulas(draw, tables, "ltl", 5))
         texts = [f"{i} {question(tables, 'ltl', f, {})}" for i, f in enumerate(found)]
-        said = list(ask(program, [Task("ltl", tables.text(texts), SECONDS, 256)]))
+        said = list(
+            ask(program, [Task("ltl", tables.text(texts), SECONDS, 256, draw.randrange(1, 9))])
+        )
         assert {a.number: not a.value for a in said if isinstance(a, Answer)} == {
             i: holds(graph, f) for i, f in enumerate(found)
         }, tables

@@ -220,8 +220,10 @@ class _Portfolio:
             place.question = self._question(number)
         found = [p.question for p in self.places if p.question is not None]
         if found:
-            waits = not self.only and any(line.temporal for line in self.lines)
-            self.structural = Structural(self.tables, found, self.said, self.ends, waits=waits)
+            goes_on = any(line.temporal is not None for line in self.lines)
+            self.structural = Structural(
+                self.tables, found, self.said, self.ends, goes_on=goes_on, waits=not self.only
+            )
             self.structural.start()
 
     def end(self) -> None:
@@ -256,7 +258,11 @@ class _Portfolio:
                 return
 
     def _structural_alone(self) -> Iterator[Answer]:
-        while self.structural is not None and time.monotonic() < self.ends:
+        while (
+            self.structural is not None
+            and time.monotonic() < self.ends
+            and any(p.is_open for p in self.places)
+        ):
             is_running = self.structural.is_alive()
             try:
                 found = self.said.get(timeout=_POLL_S)

@@ -102,10 +102,10 @@ def branching(f: Formula, known: Known, wanted: bool = True) -> Formula:
             return branching(made, _nothing, False)
         case Op("A" | "E" as quantifier, (Op("X" | "F" | "G" as operator, (p,)),)):
             part = branching(p, known, wanted)
-            q, o = (
+            path_, time_ = (
                 (quantifier, operator) if wanted else (_opposite(quantifier), _opposite(operator))
             )
-            return {"X": _next, "F": _finally, "G": _globally}[o](q, part)
+            return {"X": _next, "F": _finally, "G": _globally}[time_](path_, part)
     raise ValueError(f"{f} is not a formula of CTL")
 
 

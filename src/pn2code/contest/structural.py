@@ -139,7 +139,8 @@ class Structural(threading.Thread):
         questions: that are asked.
         said: where the answers go.
         ends: when to stop, on the monotonic clock.
-        waits: whether questions may come at any time.
+        goes_on: whether questions may come later, when others are answered.
+        waits: and that at any time, since other methods answer some.
     """
 
     def __init__(
@@ -149,6 +150,7 @@ class Structural(threading.Thread):
         said: Said,
         ends: float,
         *,
+        goes_on: bool = False,
         waits: bool = False,
     ) -> None:
         super().__init__(daemon=True)
@@ -156,6 +158,7 @@ class Structural(threading.Thread):
         self.questions = list(questions)
         self.said = said
         self.ends = ends
+        self.goes_on = goes_on
         self.waits = waits
         self.is_over = threading.Event()
         self.equations: dict[int, StateEquation] = {}
@@ -277,7 +280,7 @@ class Structural(threading.Thread):
     def _later(self) -> None:
         """Questions that come when others are answered."""
         looks = 0
-        while self.waits or looks < _LOOKS:
+        while self.goes_on and (self.waits or looks < _LOOKS):
             looks += 1
             if any(q.number not in self.seen for q in self.questions if q.number >= self.later):
                 looks = 0
