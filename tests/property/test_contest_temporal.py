@@ -13,7 +13,7 @@ from helpers.random_linear import holds, random_linear, temporal_parts
 from helpers.random_tables import Graph, random_branching, random_tables, sparse_tables
 from pn2code.contest.engine import Answer, Task, ask, engine
 from pn2code.contest.examinations import Asked
-from pn2code.contest.formulas import Formula, Op
+from pn2code.contest.formulas import AtMost, Constant, Formula, Op, Tokens
 from pn2code.contest.portfolio import answers
 from pn2code.contest.rewriting import has_next
 from pn2code.contest.stepwise import question, smaller_for
@@ -154,3 +154,27 @@ def test_methods_that_only_help(program: Path, only: str) -> None:
                 assert r.value == truth(graph, kind, asked[r.name]), (tables, r)
                 known += 1
     assert known > 5
+
+
+def test_two_negations_are_none() -> None:
+    """The answer to what is asked decides."""
+    tables = Tables((1, 0), ({0: 1},), ({1: 1},), {"p": (0,), "q": (1,)}, {"t": (0,)})
+    p = AtMost(Constant(1), Tokens(("p",)))
+    for kind in ("ctl", "ltl"):
+        t = Temporal(tables, kind, Op("A", (Op("G", (Op("not", (Op("not", (p,)),)),)),)))
+        (asked,) = t.wanted
+        t.learn(asked, True)
+        assert t.value is False
+
+
+def test_what_is_wanted_later_is_asked(program: Path) -> None:
+    """A question that comes up when another one is answered, after the last round."""
+    draw = random.Random(1)
+    for tables in (sparse_tables(random.Random(seed)) for seed in range(5000, 5012)):
+        graph = Graph.of(tables, LARGEST)
+        if graph is None:
+            continue
+        for f in formulas(draw, tables, "ltl", 2):
+            lines = [Asked("f", formula=f, kind="ltl")]
+            (result,) = answers(program, tables, lines, seconds=SECONDS)
+            assert result.value == truth(graph, "ltl", f), tables

@@ -174,6 +174,8 @@ class _Portfolio:
                 self.places.append(_Place(line, part, which, hint))
         self.diagrams: dict[int, Diagrams] = {}
         self.structural: Structural | None = None
+        self.given = 0
+        """Places that a round has had; those after them have come since."""
         for line in self.lines:
             if line.asked.formula is not None:
                 is_whole = only in ("ctl", "ltl")
@@ -241,20 +243,28 @@ class _Portfolio:
 
     def rounds(self) -> Iterator[Result]:
         """Until all is known or the time is over."""
-        for number in range(len(_ROUNDS_S) + 1):
+        number = 0
+        while not all(line.is_done for line in self.lines):
             left = self.ends - time.monotonic()
             open_ = [n for n, p in enumerate(self.places) if p.is_open]
+            if number > len(_ROUNDS_S):  # only what has come since
+                open_ = [n for n in open_ if n >= self.given]
             if not open_ or left < _LEAST_S or self.only == "structure":
                 break
+            self.given = len(self.places)
             length = min(left, _ROUNDS_S[number]) if number < len(_ROUNDS_S) else left
             for answer in ask(self.program, self._lanes(open_, number, length), self.said):
                 assert isinstance(answer, Answer)
                 yield from self._noted(answer)
                 if all(line.is_done for line in self.lines):
                     return
+            number += 1
         for answer in self._structural_alone():
             yield from self._noted(answer)
             if all(line.is_done for line in self.lines):
+                return
+            if len(self.places) > self.given and self.only != "structure":
+                yield from self.rounds()
                 return
 
     def _structural_alone(self) -> Iterator[Answer]:

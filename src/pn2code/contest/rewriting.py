@@ -83,9 +83,7 @@ def branching(f: Formula, known: Known, wanted: bool = True) -> Formula:
     if isinstance(f, Truth):
         return Truth(f.value == wanted)
     if is_plain(f):
-        value = known(f)
-        plain = f if value is None else Truth(value)
-        return plain if wanted else negation(plain)
+        return _plain(f, known, wanted)
     assert isinstance(f, Op)
     match f:
         case Op("not", (part,)):
@@ -107,6 +105,16 @@ def branching(f: Formula, known: Known, wanted: bool = True) -> Formula:
             )
             return {"X": _next, "F": _finally, "G": _globally}[time_](path_, part)
     raise ValueError(f"{f} is not a formula of CTL")
+
+
+def _plain(f: Formula, known: Known, wanted: bool) -> Formula:
+    """A formula about one marking, or its negation; two negations are none."""
+    match f:
+        case Op("not", (Op("not", (inner,)),)):
+            return _plain(inner, known, wanted)
+    value = known(f)
+    plain = f if value is None else Truth(value)
+    return plain if wanted else negation(plain)
 
 
 def _nothing(f: Formula) -> None:
@@ -213,9 +221,7 @@ def _linear(f: Formula, known: Known, wanted: bool) -> Formula:
     if isinstance(f, Truth):
         return Truth(f.value == wanted)
     if is_plain(f):
-        value = known(f)
-        plain = f if value is None else Truth(value)
-        return plain if wanted else negation(plain)
+        return _plain(f, known, wanted)
     assert isinstance(f, Op)
     match f:
         case Op("not", (part,)):
