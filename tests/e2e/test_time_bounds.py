@@ -134,3 +134,33 @@ def test_a_net_alone_has_no_durations(tmp_path: Path) -> None:
     (write(tmp_path) / "cell.toml").unlink()
     done = CliRunner().invoke(app, ["time", str(tmp_path / "cell.cpn")])
     assert done.exit_code == 1 and "time-no-cell" in done.stderr
+
+
+def test_why_a_run_takes_as_long_as_it_does(tmp_path: Path) -> None:
+    cell = write(tmp_path / "cell", said="bad")
+    assert ran(cell, tmp_path / "run") == 4.0
+    found = asked(str(cell), "--run", str(tmp_path / "run"))
+    assert found["ended"] == "finished" and found["seconds"] == 4.0
+    assert [(s["owner"], s["begin_s"], s["end_s"]) for s in found["critical_path"]] == [
+        ("drill", 0.0, 2.0),
+        ("drill", 2.0, 4.0),
+    ]
+    drill, press = found["activities"]
+    assert (drill["times"], drill["busy_s"], drill["critical_s"], drill["gain_s"]) == (2, 4, 4, 1)
+    assert (press["busy_s"], press["critical_s"], press["gain_s"]) == (3, 0, 0)
+    sides = {s["owner"]: s for s in found["sides"]}
+    assert sides["drill"]["utilisation"] == 1.0 and sides["press"]["utilisation"] == 0.75
+    assert sides["drill"]["waits_s"] == {}
+    done = CliRunner().invoke(app, ["time", str(cell), "--run", str(tmp_path / "run")])
+    assert (
+        "No overlapping makes it shorter than 4.000 s: so long `drill` is at work." in done.stdout
+    )
+    trace = tmp_path / "run" / "cell.trace.jsonl"
+    text = trace.read_text(encoding="utf-8")
+    trace.write_text(text.replace('"v": "bad"', '"v": "good"', 1), encoding="utf-8")
+    done = CliRunner().invoke(app, ["time", str(cell), "--run", str(trace)])
+    assert done.exit_code == 1 and "time-no-run" in done.stderr
+    done = CliRunner().invoke(app, ["time", str(cell), "--run", str(tmp_path / "none")])
+    assert done.exit_code == 1 and "cannot be read" in done.stderr
+    done = CliRunner().invoke(app, ["time", str(cell), "--run", str(trace), "--within", "3"])
+    assert done.exit_code == 2

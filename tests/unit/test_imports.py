@@ -63,7 +63,7 @@ ALLOWED: dict[str, set[str]] = {
         "simulate", "trace", "verdict", "verify", "web"},
     "geometry": {"cell", "diagnostics", "ml", "net", "primitive_calls", "robot", "semantics", "trace", "verdict",
         "verify"},
-    "timing": {"cell", "diagnostics", "geometry", "robot", "verdict", "verify"},
+    "timing": {"cell", "diagnostics", "geometry", "net", "robot", "semantics", "trace", "verdict", "verify"},
     "dossier": {"toolchain", "verify"},
     "cli": {"cell", "cell_file", "channels", "conform", "contest", "convert", "diagnostics", "division", "dossier",
         "drawing", "emission", "geometry", "input_files", "ir", "lowering", "ml", "net", "new_cell", "pipeline", "play",

@@ -29,6 +29,7 @@ from pn2code.verify.exploring.limits import Limits, cores
 
 if TYPE_CHECKING:
     from pn2code.timing.look import Times
+    from pn2code.verdict.opened import OpenNet
 
 EPILOG = """Examples:
 
@@ -37,6 +38,8 @@ EPILOG = """Examples:
   pn2code time examples/riveting --layout good --within 120
 
   pn2code time examples/tending -o time --json
+
+  pn2code time examples/handover --run run
 """
 
 
@@ -52,6 +55,14 @@ def time(
             min=0.0,
             callback=finite,
             help="Ask whether each run comes to its end within S seconds. The exit code is the answer: 0, 1 or 3.",
+        ),
+    ] = None,
+    run: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="RUN",
+            help="Look at this run instead (a folder that `pn2code run` wrote, or its trace): its critical path, who "
+            "waits for what, utilisation, and what could be gained by overlapping.",
         ),
     ] = None,
     out: Annotated[
@@ -77,6 +88,14 @@ def time(
 
     d = Diagnostics()
     opened = open_net(cell, parse_values(settings), form, warnings=d, inputs=inputs)
+    if run is not None:
+        if within is not None or out is not None or layout is not None:
+            raise typer.BadParameter(
+                "a run is one of one layout: `--layout`, `--within` and `-o` have no meaning with it",
+                param_hint="--run",
+            )
+        _look_at(opened, run, d, full=full, as_json=as_json, form=form)
+        return
     line = Line(shown=not as_json, plain=True, first="reading the cell ...")
     try:
         if out is not None:
@@ -107,6 +126,23 @@ def time(
                 why = "if `pn2code verify` has nothing against the cell, and no fault stops a run"
             typer.echo(f"{word}: each run comes to its end within {within:g} s{where}: {why}")
     raise typer.Exit(_code(found, within))
+
+
+def _look_at(
+    opened: OpenNet, run: Path, d: Diagnostics, *, full: bool, as_json: bool, form: Format
+) -> None:
+    from pn2code.timing.run_look import look_at
+    from pn2code.timing.run_report import text
+
+    with playing(form):
+        found = look_at(opened, run, d)
+    if found is None or d.has_errors:
+        stop(d, form)
+    print_diagnostics(d.sorted(), form)
+    if as_json:
+        typer.echo(json.dumps({"file": opened.flat.file, **found.row()}, indent=1))
+    else:
+        typer.echo(text(found, full=full))
 
 
 def _answers(found: Times, within: float | None) -> list[tuple[str, str, str]]:
