@@ -50,7 +50,7 @@ def test_stops_hold_commands_up(tmp_path: Path) -> None:
     again, _ = ran(cell, tmp_path / "run", *often)
     assert again == found
     trace = tmp_path / "run" / "slowest" / "cell.trace.jsonl"
-    assert '"event": "stop"' in trace.read_text(encoding="utf-8")
+    assert '"event": "stand"' in trace.read_text(encoding="utf-8")
     done = CliRunner().invoke(app, ["replay", str(trace), str(cell)])
     assert done.exit_code == 0, done.output
     (cell / "cell.toml").write_text(

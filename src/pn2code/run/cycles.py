@@ -242,7 +242,7 @@ def _are_known(plan: Plan, prepared: Prepared, d: Diagnostics) -> bool:
 
 
 def _cycle(number: int, is_counted: bool, record: RunRecord, summary: Mapping[str, Any]) -> Cycle:
-    lasted = [e["duration"] for e in record.events if e.get("event") == "stop"]
+    lasted = [e["duration"] for e in record.events if e.get("event") == "stand"]
     return Cycle(
         number,
         is_counted,

@@ -403,7 +403,7 @@ class Engine:
         """The motion with the stops that are drawn for it."""
         held, seconds = stops.held_up(robot.name, motion.trajectory)
         for stop in seconds:
-            event = {"t": self.now, "event": "stop", "robot": robot.name, "duration": stop}
+            event = {"t": self.now, "event": "stand", "robot": robot.name, "duration": stop}
             self.record.events.append(event)
         return replace(motion, trajectory=held) if seconds else motion
 
