@@ -76,6 +76,19 @@ def test_within_so_many_seconds(tmp_path: Path) -> None:
     assert "NO: each run comes to its end within 3.9 s: a run takes 4.001 s" in done.stdout
 
 
+def test_an_answer_may_come_too_late(tmp_path: Path) -> None:
+    """The press answers after 3 s; the drill takes 4 s with two answers."""
+    cell = write(tmp_path)
+    toml = (cell / "cell.toml").read_text(encoding="utf-8")
+    for timeout, code in (("3.5", 0), ("2.5", 3)):
+        text = toml.replace('["Finished"]', f'["Finished"]\nreply_timeout_s = {timeout}')
+        (cell / "cell.toml").write_text(text, encoding="utf-8")
+        found = asked(str(cell), "--within", "10", code=code)
+        others = found["layouts"][0]["cycle"]["others"]
+        late = "an answer of device `press` may come after 3.000 s, later than reply_timeout_s (2.5 s) allows"
+        assert others == ([late] if code else [])
+
+
 def test_what_can_be_repeated_has_no_upper_bound(tmp_path: Path) -> None:
     cell = str(write(tmp_path, again="0"))
     cycle = asked(cell)["layouts"][0]["cycle"]

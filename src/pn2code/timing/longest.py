@@ -161,6 +161,22 @@ class Ways:
         return []
 
 
+def longest_inside(successors: Sequence[Sequence[Arc]], inside: Collection[int]) -> int | None:
+    """How long one can be among these nodes, until they are left (ns); None: as long as one likes."""
+    if not inside:
+        return 0
+    numbers = {node: i for i, node in enumerate(sorted(inside), 1)}
+    left = len(numbers) + 1
+    graph: list[list[Arc]] = [[(i, 0, 0) for i in numbers.values()]]
+    for node in numbers:
+        arcs = [(numbers.get(target, left), ns, 0) for target, ns, _ in successors[node]]
+        graph.append([*arcs, (left, 0, 0)])
+    graph.append([])
+    ways = Ways(graph, {left})
+    found = ways.longest()
+    return None if ways.cycle or found is None else found.ns
+
+
 def _back(before: dict[int, tuple[int, int]], node: int) -> list[tuple[int, int]]:
     out = []
     while node in before:

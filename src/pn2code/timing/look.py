@@ -25,9 +25,9 @@ from pn2code.robot.transforms import pose_of
 from pn2code.timing import codes
 from pn2code.timing.answers import Command, Cycle, Ending, Fault, Layout
 from pn2code.timing.anyhow import Anyhow
-from pn2code.timing.doings import Doings
-from pn2code.timing.longest import Way
-from pn2code.timing.search import Search
+from pn2code.timing.doings import NS, Doings
+from pn2code.timing.longest import Way, longest_inside
+from pn2code.timing.search import TIE, Search
 from pn2code.verdict.opened import OpenNet
 from pn2code.verify.controller.running import NotModelledError
 from pn2code.verify.exploring.limits import Limits
@@ -218,12 +218,33 @@ class _Look:
                 yield (
                     f"channel `{channel.name}` may come to hold two messages, and then the cell stops"
                 )
+        if not search.why:
+            yield from self._late()
         if search.halts:
             yield "a script may come to where none of its transitions is possible, and stop the cell"
         if search.is_endless and not search.cycle:
             yield "a run may go on for ever, and never come to its end"
         if not search.ends and not search.why:
             yield "no run comes to its end"
+
+    def _late(self) -> Iterator[str]:
+        """Who may owe an answer for longer than the supervisor waits for it."""
+        timeout = self.config.supervisor.reply_timeout_s
+        places = {p.name: p.index for p in self.graph.running.net.places}
+        situations = self.search.situations
+        for owner in self.graph.partition.owners:
+            place = places.get(f"cell.{owner.name}.owes")
+            if place is None:
+                continue
+            marked = self.graph.marked
+            owing = [i for i, (state, *_) in enumerate(situations) if place in marked[state]]
+            ns = longest_inside(self.search.successors, owing)
+            if ns is None or ns + TIE > timeout * NS:
+                after = "at any time" if ns is None else f"after {ns / NS:.3f} s"
+                yield (
+                    f"an answer of {owner.phrase} may come {after}, later than reply_timeout_s "
+                    f"({timeout:g} s) allows"
+                )
 
     def _run(self, way: Way | None, which: str) -> Run | None:
         if way is None or self.folder is None:

@@ -7,7 +7,7 @@ from random import Random
 
 import pytest
 
-from pn2code.timing.longest import Arc, Ways, components, shortest
+from pn2code.timing.longest import Arc, Ways, components, longest_inside, shortest
 
 
 def acyclic(r: Random, count: int) -> list[list[Arc]]:
@@ -102,3 +102,11 @@ def test_components_are_those_of_mutual_reach(seed: int) -> None:
             assert (component[a] == component[b]) == together
         for target, *_ in graph[a]:
             assert place[component[a]] <= place[component[target]]
+
+
+def test_how_long_one_can_be_inside() -> None:
+    graph: list[list[Arc]] = [[(1, 9, 0)], [(2, 3, 0), (3, 1, 0)], [(3, 4, 0)], [(0, 50, 0)]]
+    assert longest_inside(graph, {1, 2}) == 7
+    assert longest_inside(graph, {2}) == 4
+    assert longest_inside(graph, set()) == 0
+    assert longest_inside(graph, {0, 1, 2, 3}) is None
