@@ -127,8 +127,7 @@ class Cycle:
         if self.repeats:
             return "no", "the cell can repeat something for as long as it likes"
         if self.why or self.most is None:
-            if self.at_most is not None and not self.others and self.at_most + TIE <= limit:
-                return "yes", ""
+            # What runs may do besides coming to their end is not known then, either, so `at_most` proves nothing.
             return "unknown", self.why or "no run comes to the end"
         if self.most - TIE > limit:
             return "no", f"a run takes {seconds_up(self.most)} s"
