@@ -21,6 +21,7 @@
 #include "explore_bounds.h"
 #include "explore_error.h"
 #include "explore_report.h"
+#include "graph/explore_bindings.h"
 #include "query/explore_query.h"
 #include "search/explore_reduce.h"
 #include "pn/pn_file.h"
@@ -68,6 +69,7 @@ static void print_help(void)
         "  --still             traces say that these are the same at each step\n"
         "  --multiset-limit N  colours of a multi-set bound that are printed (default: all)\n"
         "  --whole P,Q,..      places of which all colours are printed\n"
+        "  --bindings T,U,..   transitions of which all bindings are printed, if the graph is not large\n"
         "  --ends-in PHASE     for tests: the time is over when explore, graph, components, properties or questions "
         "begins\n"
         "  --late-in PHASE     for tests: so does the time for telling what was seen\n"
@@ -177,6 +179,7 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
            || ((strcmp(option, "--late-in") == 0) && read_text(value, &options->late_in))
            || ((strcmp(option, "--multiset-limit") == 0) && read_number(value, UINT64_MAX, &options->multiset_limit))
            || ((strcmp(option, "--whole") == 0) && read_text(value, &options->whole))
+           || ((strcmp(option, "--bindings") == 0) && read_text(value, &options->bindings))
            || ((strcmp(option, "--heaps") == 0) && read_text(value, &options->heaps))
            || ((strcmp(option, "--most-heaped") == 0) && read_number(value, UINT64_MAX, &options->most_heaped))
            || ((strcmp(option, "--initial") == 0) && read_text(value, &options->initial))
@@ -396,7 +399,9 @@ static int explore(ex_run_t *run)
         ex_report_keep(run);
     }
     if (run->is_seen_whole && run->options.has_graph) {
-        (void)ex_graph(run);
+        if (ex_graph(run)) {
+            ex_bindings(run);
+        }
     }
     if (is_explored && is_exact && (atomic_load(&run->why) == (int)EX_ERROR)
         && (strcmp(run->error.kind, "exception") == 0)) {

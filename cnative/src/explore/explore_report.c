@@ -11,6 +11,7 @@
 
 #include "explore_bounds.h"
 #include "explore_error.h"
+#include "graph/explore_bindings.h"
 #include "query/explore_query.h"
 #include "query/explore_early.h"
 
@@ -142,6 +143,9 @@ static void print_report(ex_run_t *run, bool is_last, FILE *out)
         ex_bounds_json(run, out);
         (void)fprintf(out, ",\n ");
     }
+    (void)fprintf(out, "\"bindings\": ");
+    ex_bindings_json(run, out);
+    (void)fprintf(out, ",\n ");
     ex_graph_json(run, out);
     ex_queries_json(run, !is_last, out);
     (void)fprintf(out, "}\n");

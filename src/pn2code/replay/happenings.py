@@ -87,6 +87,9 @@ def _events(record: RunRecord) -> list[Json]:
             case "sense":
                 text = f"sensor {line['sensor']}: {line['value']}"
                 rows.append({"t": line["t"], "kind": "sense", "party": line["robot"], "text": text})
+            case "stand":
+                text = f"stands for {line['duration']:.2f} s"
+                rows.append({"t": line["t"], "kind": "stand", "party": line["robot"], "text": text})
             case "part":
                 text = f"{line['effect']} {line['part']}"
                 rows.append({"t": line["t"], "kind": "part", "party": line["robot"], "text": text})
