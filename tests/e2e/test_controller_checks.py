@@ -628,6 +628,7 @@ def test_channels_need_no_graph(explorers: Explorers, tmp_path: Path) -> None:
         }
         rests = {c.name: c.rests_on for c in looked.checks}
         assert rests[control_types.CHANNELS] == ("markings" if answer == "yes" else None)
+        assert rests[control_types.MESSAGES] == "net"
 
 
 def test_generate_and_verify_name_the_same_exception(tmp_path: Path) -> None:

@@ -83,8 +83,10 @@ IntInf.toString (IntInf.orb (5, 10)) ^ IntInf.toString (IntInf.andb (~4, 7)) ^ I
   154~6
 IntInf.toString (#1 (IntInf.divMod (~7, 2))) ^ IntInf.toString (#2 (IntInf.quotRem (~7, 2)))
   ~4~1
-Bool.toString (valOf (Bool.fromString " TRUE"))
-  true
+Bool.toString (valOf (Bool.fromString " true")) ^ Bool.toString (Option.isSome (Bool.fromString "True"))
+  truefalse
+Time.fmt 0 (Time.fromReal 2.5) ^ Time.fmt 0 (Time.fromReal ~3.5) ^ Time.fmt 3 (Time.fromMicroseconds 2501)
+  2~40.003
 int_option (Option.mapPartial (fn x => if x > 2 then SOME (x * 2) else NONE) (SOME 3))
   SOME 6
 int_option (Option.join (SOME (SOME 4))) ^ int_option (Option.filter (fn x => x > 2) 2)

@@ -87,6 +87,24 @@ def test_the_time_ends_in_a_phase(
         assert {a["why"] for a in answers} == {"seconds"}
 
 
+@pytest.mark.parametrize(
+    ("phase", "seen"),
+    [("graph", NO_ARCS), ("components", NO_ARCS), ("properties", NO_ARCS), ("questions", ALL)],
+)
+def test_no_time_is_left_in_a_phase(steps: Asked, phase: str, seen: dict[str, bool]) -> None:
+    """A part of the work that does not end when its time is over takes nothing with it of what was known before."""
+    whole, _ = steps.say(LINES)
+    found, answers = steps.say(LINES, "--late-in", phase)
+    said = found.report
+    assert (found.code, said["complete"], said["why"], said["seen"]) == (3, False, "seconds", seen)
+    for known in ("nodes", "arcs", "fired", "dead_count", "bounds"):
+        assert said[known] == whole.report[known]
+    assert [a["answer"] for a in answers] == ["yes", "no", "yes", "unknown"]
+    assert [a["why"] for a in answers] == [None, None, None, "seconds"]
+    assert answers[2]["value"] == 1
+    assert (said["graph"] is not None) == seen["components"]
+
+
 def test_all_is_seen(steps: Asked) -> None:
     found, answers = steps.say(LINES)
     assert (found.code, found.report["complete"], found.report["seen"]) == (0, True, ALL)

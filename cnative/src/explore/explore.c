@@ -1,5 +1,5 @@
 /* SPDX-License-Identifier: MIT
- * explore.c - the state space of the whole net: options, signals, progress, the report.
+ * explore.c - the state space of the whole net: options, signals, progress.
  */
 #define _POSIX_C_SOURCE 200809L
 #if defined(__linux__)
@@ -12,22 +12,19 @@
 #include <signal.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
 #if defined(__linux__)
 #include <sys/prctl.h>
 #endif
 
-#include "explore_error.h"
 #include "explore_bounds.h"
+#include "explore_error.h"
+#include "explore_report.h"
 #include "graph/explore_bindings.h"
 #include "query/explore_query.h"
 #include "search/explore_reduce.h"
 #include "pn/pn_file.h"
-#include "pn/pn_text.h"
-
-enum { EXIT_FINE = 0, EXIT_MODEL = 1, EXIT_USAGE = 2, EXIT_TRUNCATED = 3 };
 
 #define MEBI              ((uint64_t)1U << 20U)
 #define DEFAULT_MEMORY    (4096U * MEBI)
@@ -75,6 +72,7 @@ static void print_help(void)
         "  --bindings T,U,..   transitions of which all bindings are printed, if the graph is not large\n"
         "  --ends-in PHASE     for tests: the time is over when explore, graph, components, properties or questions "
         "begins\n"
+        "  --late-in PHASE     for tests: so does the time for telling what was seen\n"
         "  --parent PID        end at once when this process, which started it, has ended\n"
         "  --lay-again N       after N states see once more how they are stored best (default 262144)\n"
         "  --help              this text\n\n"
@@ -178,6 +176,7 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
            || ((strcmp(option, "--query-trace-to") == 0) && read_text(value, &options->query_trace_to))
            || ((strcmp(option, "--lay-again") == 0) && read_number(value, UINT64_MAX, &options->lay_again))
            || ((strcmp(option, "--ends-in") == 0) && read_text(value, &options->ends_in))
+           || ((strcmp(option, "--late-in") == 0) && read_text(value, &options->late_in))
            || ((strcmp(option, "--multiset-limit") == 0) && read_number(value, UINT64_MAX, &options->multiset_limit))
            || ((strcmp(option, "--whole") == 0) && read_text(value, &options->whole))
            || ((strcmp(option, "--bindings") == 0) && read_text(value, &options->bindings))
@@ -286,6 +285,11 @@ static void show_progress(ex_run_t *run, watch_t *watch)
     watch->shown = now;
 }
 
+/* After so large a part of the time, and so many seconds more, a process that has not ended says what it has kept, and
+ * ends; whoever started it waits for it twice as long. */
+#define LAST_PART    1.05
+#define LAST_SECONDS 0.05
+
 /* The thread that looks at the clock. */
 static void *keep_watch(void *user)
 {
@@ -305,6 +309,12 @@ static void *keep_watch(void *user)
                 ex_stop(run, EX_SECONDS);
             } else if (end < until) {
                 until = end;
+            }
+            const double last = run->started + (ex_late_seconds(run) * LAST_PART) + LAST_SECONDS;
+            if (now >= last) {
+                ex_report_late();
+            } else if (last < until) {
+                until = last;
             }
         }
         struct timespec at;
@@ -340,130 +350,6 @@ static void end_watch(watch_t *watch)
             show_progress(&s_run, watch);
         }
     }
-}
-
-/* --- the report --------------------------------------------------------------------------------------------------- */
-
-const char *ex_why_text(ex_why_t why)
-{
-    static const char *const s_texts[] = {
-        [EX_COMPLETE] = "complete", [EX_DECIDED] = "decided",         [EX_APPROXIMATE] = "approximation",
-        [EX_STATES] = "states",     [EX_SECONDS] = "seconds",         [EX_MEMORY] = "memory",
-        [EX_INFINITE] = "infinite", [EX_INTERRUPTED] = "interrupted", [EX_CAPACITY] = "capacity",
-        [EX_ERROR] = "error",
-    };
-    return s_texts[why];
-}
-
-static void print_string(const char *string)
-{
-    static char s_buffer[8192];
-    pn_text_t text;
-    pn_text_init(&text, s_buffer, sizeof s_buffer);
-    pn_text_json_str(&text, string);
-    (void)printf("%s", s_buffer);
-}
-
-static void print_index(int64_t index)
-{
-    if (index < 0) {
-        (void)printf("null");
-    } else {
-        (void)printf("%" PRId64, index);
-    }
-}
-
-static void print_error(const ex_run_t *run)
-{
-    const ex_error_t *const error = &run->error;
-    if (error->kind == NULL) {
-        (void)printf("null");
-        return;
-    }
-    (void)printf("{\"message\": ");
-    print_string(error->message);
-    (void)printf(", \"where\": ");
-    print_string(error->where);
-    (void)printf(", \"place\": ");
-    print_index(error->place);
-    (void)printf(", \"transition\": ");
-    print_index(error->transition);
-    (void)printf(", \"kind\": \"%s\"", error->kind);
-    ex_raised_json(run, stdout);
-    (void)printf("}");
-}
-
-static uint64_t peak_mib(void)
-{
-    struct rusage usage;
-    (void)getrusage(RUSAGE_SELF, &usage);
-    return (uint64_t)usage.ru_maxrss / 1024U;
-}
-
-static void print_reductions(const ex_options_t *options)
-{
-    const bool is_used[] = { options->is_time_reduced, options->is_stubborn, options->is_symmetric,
-                             options->turns != NULL };
-    static const char *const s_names[] = { "time", "partial-order", "symmetry", "turns" };
-    const char *between = "";
-    (void)printf(",\n \"reductions\": [");
-    for (uint32_t i = 0U; i < (sizeof is_used / sizeof is_used[0]); i++) {
-        if (is_used[i]) {
-            (void)printf("%s\"%s\"", between, s_names[i]);
-            between = ", ";
-        }
-    }
-    (void)printf("]");
-}
-
-static void print_report(ex_run_t *run)
-{
-    const ex_why_t why = (ex_why_t)atomic_load(&run->why);
-    const ex_options_t *options = &run->options;
-    const uint64_t store_bytes = ((run->store.bucket != NULL) ? ex_store_bytes(&run->store) : run->approximate_bytes)
-                                 + (run->has_bounds ? ex_codec_bytes(run) : 0U); /* that is: all was made */
-    (void)printf("{\"complete\": %s, \"why\": \"%s\", \"error\": ", (why == EX_COMPLETE) ? "true" : "false",
-                 ex_why_text(why));
-    print_error(run);
-    (void)printf(",\n \"seen\": {\"markings\": %s, \"arcs\": %s, \"components\": %s}",
-                 run->is_seen_whole ? "true" : "false", run->has_arcs ? "true" : "false",
-                 run->has_components ? "true" : "false");
-    (void)printf(",\n \"nodes\": %" PRIu64 ", \"arcs\": %" PRIu64 ", \"depth\": %" PRIu64 ", \"expanded\": %" PRIu64,
-                 run->nodes, run->arcs, run->depth, run->expanded);
-    (void)printf(",\n \"seconds\": %.6f, \"cpu_seconds\": %.6f, \"states_per_second\": %.0f", run->seconds,
-                 run->cpu_seconds, (run->seconds > 0.0) ? ((double)run->nodes / run->seconds) : 0.0);
-    (void)printf(",\n \"bytes_per_state\": %.3f, \"store_bytes\": %" PRIu64 ", \"peak_mib\": %" PRIu64
-                 ", \"threads\": %" PRIu32 ", \"order\": \"%s\"",
-                 (run->nodes > 0U) ? ((double)store_bytes / (double)run->nodes) : 0.0, store_bytes, peak_mib(),
-                 options->threads, options->is_depth_first ? "dfs" : "bfs");
-    (void)printf(",\n \"approximate\": ");
-    if (!ex_is_exact(run)) {
-        (void)printf("{\"kind\": \"%s\", \"omission_probability\": %.6g}", options->is_bitstate ? "bitstate" : "hash",
-                     run->omission_probability);
-    } else {
-        (void)printf("null");
-    }
-    print_reductions(options);
-    const int spill_error = atomic_load(&run->memory.spill_error);
-    if (spill_error != 0) {
-        (void)printf(",\n \"spill_error\": ");
-        print_string(strerror(spill_error));
-    }
-    (void)printf(",\n \"fired\": [");
-    for (uint32_t t = 0U; t < pn_net.transition_count; t++) {
-        (void)printf("%s%" PRIu64, (t > 0U) ? ", " : "", (run->fired != NULL) ? run->fired[t] : 0U);
-    }
-    (void)printf("],\n \"dead_count\": %" PRIu64 ",\n ", run->dead_count);
-    if (run->has_bounds) {
-        ex_bounds_json(run, stdout);
-        (void)printf(",\n ");
-    }
-    (void)printf("\"bindings\": ");
-    ex_bindings_json(run, stdout);
-    (void)printf(",\n ");
-    ex_graph_json(run, stdout);
-    ex_queries_json(run, stdout);
-    (void)printf("}\n");
 }
 
 /* --- the run ------------------------------------------------------------------------------------------------------ */
@@ -509,6 +395,9 @@ static int explore(ex_run_t *run)
         atomic_store(&run->why, (int)EX_APPROXIMATE);
     }
     run->is_seen_whole = is_explored && (atomic_load(&run->why) == (int)EX_COMPLETE);
+    if (is_explored) {
+        ex_report_keep(run);
+    }
     if (run->is_seen_whole && run->options.has_graph) {
         if (ex_graph(run)) {
             ex_bindings(run);
@@ -520,24 +409,27 @@ static int explore(ex_run_t *run)
         ex_follow_error(run);
     }
     if (is_explored && (run->queries != NULL)) {
+        ex_report_keep(run);
         ex_phase(run, "questions");
         ex_queries_answer(run);
     }
+    if (run->graph != NULL) {
+        ex_graph_write(run);
+    }
+    const bool is_written = ex_report(run);
     end_watch(&watch);
-    print_report(run);
-    const bool is_written = fflush(stdout) == 0;
     switch ((ex_why_t)atomic_load(&run->why)) {
     case EX_COMPLETE:
-    case EX_DECIDED: return is_written ? EXIT_FINE : EXIT_USAGE;
+    case EX_DECIDED: return is_written ? EX_EXIT_FINE : EX_EXIT_USAGE;
     case EX_ERROR:
-    case EX_CAPACITY: return EXIT_MODEL;
+    case EX_CAPACITY: return EX_EXIT_MODEL;
     case EX_APPROXIMATE:
     case EX_STATES:
     case EX_SECONDS:
     case EX_MEMORY:
     case EX_INFINITE:
     case EX_INTERRUPTED:
-    default: return EXIT_TRUNCATED;
+    default: return EX_EXIT_TRUNCATED;
     }
 }
 
@@ -545,28 +437,27 @@ int main(int argc, char **argv)
 {
     ex_run_t *run = &s_run;
     if (!read_options(argc, argv, &run->options)) {
-        return EXIT_USAGE;
+        return EX_EXIT_USAGE;
     }
     if (run->options.shows_help) {
         print_help();
-        return EXIT_FINE;
+        return EX_EXIT_FINE;
     }
     if (pn_net.abi != PN_NET_ABI) {
         (void)fprintf(stderr, "explore: the net was generated for another version of the runtime; generate it again\n");
-        return EXIT_USAGE;
+        return EX_EXIT_USAGE;
     }
     ex_equip(run);
     if ((run->options.queries != NULL) && !ex_queries_read(run)) {
-        return EXIT_USAGE;
+        return EX_EXIT_USAGE;
     }
     catch_signals();
     if ((run->options.parent != 0U) && !follow_parent(run->options.parent)) {
-        return EXIT_TRUNCATED;
+        return EX_EXIT_TRUNCATED;
     }
     if (!make(run)) {
         ex_stop(run, EX_MEMORY);
-        print_report(run);
-        return (fflush(stdout) == 0) ? EXIT_TRUNCATED : EXIT_USAGE;
+        return ex_report(run) ? EX_EXIT_TRUNCATED : EX_EXIT_USAGE;
     }
     return explore(run);
 }

@@ -60,6 +60,8 @@ enum { SEEN_BITS = 10, UNIT_BITS = 64 };
 
 struct ex_bounds {
     uint64_t states;
+    bool is_found;   /* what the threads have seen is put together, and nobody sees more */
+    bool is_known;   /* and it is all of it */
     uint32_t *order; /* packed places, by their first bit */
     group_t *group;
     uint32_t groups;
@@ -397,9 +399,7 @@ static bool see_multiset(place_bounds_t *own, const char *text)
 /* The time was over some time ago: what is left to look at may be as much as all that was explored. */
 static bool is_late(const ex_run_t *run)
 {
-    const double most = run->options.max_seconds;
-    const double late = (run->options.late_seconds > 0.0) ? run->options.late_seconds : ((most * 1.1) + 1.0);
-    return (most > 0.0) && ((ex_clock() - run->started) > late);
+    return (run->options.max_seconds > 0.0) && ((ex_clock() - run->started) > ex_late_seconds(run));
 }
 
 /* All multi-sets that the places which are not packed ever held. */
@@ -557,18 +557,35 @@ static void different_json(const ex_run_t *run, FILE *out)
     free(held);
 }
 
-void ex_bounds_json(ex_run_t *run, FILE *out)
+void ex_bounds_find(ex_run_t *run)
 {
     ex_bounds_t *const bounds = run->worker[0].bounds;
-    char *const buffer = malloc(TEXT_SIZE);
-    bool is_seen = (bounds != NULL) && see_groups(bounds);
-    for (uint32_t i = 1U; (bounds != NULL) && (i < run->options.threads); i++) {
+    if ((bounds == NULL) || bounds->is_found) {
+        return;
+    }
+    bool is_seen = see_groups(bounds);
+    for (uint32_t i = 1U; i < run->options.threads; i++) {
         if (run->worker[i].bounds != NULL) {
             is_seen = is_seen && see_groups(run->worker[i].bounds);
             merge(bounds, run->worker[i].bounds);
         }
     }
-    const bool is_known = is_seen && (buffer != NULL) && (bounds->states > 0U) && see_interned(run, bounds);
+    bounds->is_found = true;
+    bounds->is_known = is_seen && (bounds->states > 0U) && see_interned(run, bounds);
+}
+
+bool ex_bounds_are_found(const ex_run_t *run)
+{
+    const ex_bounds_t *const bounds = run->worker[0].bounds;
+    return (bounds == NULL) || bounds->is_found;
+}
+
+void ex_bounds_json(ex_run_t *run, FILE *out)
+{
+    ex_bounds_find(run);
+    ex_bounds_t *const bounds = run->worker[0].bounds;
+    char *const buffer = malloc(TEXT_SIZE);
+    const bool is_known = (buffer != NULL) && (bounds != NULL) && bounds->is_known;
     (void)fprintf(out, "\"bounds\": %s", is_known ? "[" : "null");
     for (uint32_t p = 0U; is_known && (p < pn_net.place_count); p++) {
         const pn_place_t *const place = &pn_net.place[p];

@@ -10,7 +10,10 @@ typedef struct ex_bounds ex_bounds_t;
 bool ex_bounds_make(ex_worker_t *worker);
 /* Called once for each state, with worker->marking that of the state. */
 void ex_bounds_see(ex_worker_t *worker);
-/* After the exploration: ,"bounds": [...] as a member of the report. */
+/* After the exploration: puts together what was seen, once. */
+void ex_bounds_find(ex_run_t *run);
+bool ex_bounds_are_found(const ex_run_t *run);
+/* The same if it has not been done, and then: ,"bounds": [...] as a member of the report. */
 void ex_bounds_json(ex_run_t *run, FILE *out);
 
 #endif /* EXPLORE_BOUNDS_H */

@@ -46,6 +46,7 @@ typedef struct ex_options {
     const char *query_trace_to; /* what the names of traces that prove their answers begin with */
     const char *error_trace_to; /* the same for the trace to an exception */
     const char *ends_in; /* phase in which the time ends as soon as it begins, whatever the clock says; NULL: none */
+    const char *late_in; /* the same of the time that is left then; NULL: none */
     uint64_t multiset_limit; /* colours of a multi-set bound that are printed */
     const char *whole;       /* places of which all are, numbers with commas between; NULL: none */
     const char *bindings;    /* transitions of which all bindings are, likewise; NULL: none */

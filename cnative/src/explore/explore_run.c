@@ -5,6 +5,8 @@
 
 #include "explore_run.h"
 
+#include "explore_report.h"
+
 #include <string.h>
 #include <time.h>
 
@@ -30,6 +32,9 @@ void ex_phase(ex_run_t *run, const char *phase)
     atomic_store(&run->phase, phase);
     if ((run->options.ends_in != NULL) && (strcmp(run->options.ends_in, phase) == 0)) {
         ex_stop(run, EX_SECONDS);
+    }
+    if ((run->options.late_in != NULL) && (strcmp(run->options.late_in, phase) == 0)) {
+        ex_report_late();
     }
 }
 

@@ -139,6 +139,11 @@ void ex_stop(ex_run_t *run, ex_why_t why);
 void ex_fail(ex_worker_t *worker, int64_t transition);
 /* Another part of the work begins; the name is for the progress lines. */
 void ex_phase(ex_run_t *run, const char *phase);
+/* Seconds from the start after which nothing more is worked out about what was seen, where there is a limit of time. */
+static inline double ex_late_seconds(const ex_run_t *run)
+{
+    return (run->options.late_seconds > 0.0) ? run->options.late_seconds : ((run->options.max_seconds * 1.1) + 1.0);
+}
 /* Whether the store has keys of one word. */
 static inline bool ex_has_words(const ex_run_t *run)
 {

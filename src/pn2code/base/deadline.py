@@ -11,6 +11,7 @@ Whatever runs as a process of its own is asked to end, or is ended, when `is_ove
 from __future__ import annotations
 
 import signal
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -114,7 +115,7 @@ class Deadline:
             signal.signal(signal.SIGALRM, before)
 
     def _ring(self, number: int, frame: FrameType | None) -> None:
-        if self.is_over() and not _is_importing(frame):
+        if self.is_over() and not _is_importing(frame) and not _is_leaving():
             raise TimeIsOverError
 
 
@@ -128,6 +129,14 @@ def _is_importing(frame: FrameType | None) -> bool:
             return True
         frame = frame.f_back
     return False
+
+
+def _is_leaving() -> bool:
+    """Whether the blocks are being left already: what they tidy up on the way out is not broken off."""
+    problem = sys.exc_info()[1]
+    while problem is not None and not isinstance(problem, TimeIsOverError):
+        problem = problem.__context__
+    return problem is not None
 
 
 NEVER = Deadline()

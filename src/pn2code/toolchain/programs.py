@@ -243,7 +243,8 @@ class _Builder:
         files: Sequence[OutputFile],
         interrupted: Callable[[], bool],
     ) -> None:
-        self.interrupted = interrupted
+        self._is_enough = interrupted
+        self._is_given_up = False
         self.folder = folder
         self.host = host
         self.flags = (*FLAGS, *host.flags)
@@ -292,9 +293,13 @@ class _Builder:
                 path.write_text(f.text, encoding="utf-8")
             with ThreadPoolExecutor(2) as pool:
                 library = pool.submit(self._library, room, d)
-                net = self._net(room, d)
-                if not library.result() or not net:
-                    return None
+                try:
+                    net = self._net(room, d)
+                    if not library.result() or not net:
+                        return None
+                except BaseException:
+                    self._is_given_up = True  # no tool works on in a folder that is removed
+                    raise
             made = room / "program"
             own = [f"{Path(f.path).stem}.o" for f in self._sources()]
             parts = [*own, str(self.library), *self.host.libraries]
@@ -335,6 +340,10 @@ class _Builder:
             return False
         made.replace(self.library)
         return True
+
+    def interrupted(self) -> bool:
+        """Whether compilers that run are to be ended."""
+        return self._is_given_up or self._is_enough()
 
     def _is_own(self, source: str) -> bool:
         return Path(source).name.startswith(self.host.name)

@@ -1,6 +1,6 @@
 Bool.toString (1 < 2)
 Bool.fromString "true!"
-Bool.fromString " FALSE"
+Bool.fromString " false"
 Bool.fromString "yes"
 Bool.not false
 Int.toString (ord #"a")

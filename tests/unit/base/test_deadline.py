@@ -16,6 +16,7 @@ from helpers.netbuilder import flat
 from pn2code.base import deadline as deadline_module
 from pn2code.base.deadline import NEVER, Deadline, TimeIsOverError
 from pn2code.diagnostics import Diagnostics
+from pn2code.toolchain.programs import Compiler, _Builder
 from pn2code.verify.codes import TIME_OVER
 from pn2code.verify.exploring import explore as explore_module
 from pn2code.verify.exploring import programs
@@ -110,6 +111,22 @@ def test_a_module_is_loaded_to_its_end(tmp_path: Path, monkeypatch: pytest.Monke
         Deadline.after(0.0)._ring(14, sys._getframe())
 
 
+def test_what_is_tidied_up_is_not_broken_off() -> None:
+    """The alarm that rings while the block is being left is one too many."""
+    tidied = []
+    with pytest.raises(TimeIsOverError):
+        try:
+            Deadline.after(0.0)._ring(14, sys._getframe())
+        finally:
+            try:
+                raise ValueError
+            except ValueError:
+                Deadline.after(0.0)._ring(14, sys._getframe())
+            Deadline.after(0.0)._ring(14, sys._getframe())
+            tidied.append(True)
+    assert tidied == [True]
+
+
 def test_nothing_rings_after_the_block() -> None:
     import signal
 
@@ -155,6 +172,34 @@ def test_a_compiler_is_ended(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     assert [i.code for i in d] == [TIME_OVER]
     pids = [int(file.read_text()) for file in tmp_path.glob("pid.*") if file.read_text()]
     assert pids and all(ended(pid) for pid in pids)
+
+
+def test_no_tool_works_on_in_a_folder_that_is_removed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The time is over while the net is compiled: what is compiled beside it ends first."""
+    ended_first: list[bool] = []
+
+    def library(self: _Builder, room: Path, _: Diagnostics) -> bool:
+        tries = 0
+        while not self.interrupted() and tries < 400:
+            time.sleep(0.01)
+            tries += 1
+        ended_first.append(self.interrupted() and room.is_dir())
+        return False
+
+    def net(*_: object) -> bool:
+        raise TimeIsOverError
+
+    monkeypatch.setattr(_Builder, "_library", library)
+    monkeypatch.setattr(_Builder, "_net", net)
+    compiler = Compiler(("cc",), "")
+    d = Diagnostics()
+    builder = _Builder(tmp_path, programs.HOST, compiler, (), lambda: False)
+    with pytest.raises(TimeIsOverError):
+        builder.kept(d)
+    assert ended_first == [True]
+    assert not list(tmp_path.iterdir()) and not list(d)
 
 
 @pytest.mark.skipif(not sys.platform.startswith("linux"), reason="looks at /proc")

@@ -110,6 +110,8 @@ bool ex_write_graph(ex_run_t *run, const ex_graph_t *graph, const char *path);
 bool ex_graph(ex_run_t *run);
 /* Members of the report: "dead": [...], "graph": {...} or null, "traces": [...]; without a graph too. */
 void ex_graph_json(ex_run_t *run, FILE *out);
+/* The file of nodes and arcs, if one is wanted. */
+void ex_graph_write(ex_run_t *run);
 /* Whether runs end at a node: nothing can occur. Of a part, arcs may be missing. */
 static inline bool ex_ends_at(const ex_graph_t *graph, uint32_t node)
 {

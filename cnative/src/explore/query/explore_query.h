@@ -189,6 +189,8 @@ void ex_early_answer(ex_run_t *run);
 /* After the graph has left a question open (there was no time, or no memory): what was seen of the states while they
  * were explored. */
 void ex_early_conclude(const ex_run_t *run, ex_question_t *question);
+/* For a report before the questions have been answered: what there is to say of one if the time is over now. */
+void ex_early_expect(const ex_run_t *run, ex_question_t *question);
 
 /* --- explore_query.c --- */
 
@@ -207,8 +209,8 @@ bool ex_is_kept(const ex_queries_t *queries, const ex_question_t *question);
 
 /* --- explore_query_report.c --- */
 
-/* Member of the report: ,"queries": [...]; nothing if there are none. */
-void ex_queries_json(const ex_run_t *run, FILE *out);
+/* Member of the report: ,"queries": [...]; nothing if there are none. `is_early`: they have not been answered. */
+void ex_queries_json(const ex_run_t *run, bool is_early, FILE *out);
 
 /* --- explore_ctl.c --- */
 

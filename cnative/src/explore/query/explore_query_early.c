@@ -262,6 +262,16 @@ void ex_early_conclude(const ex_run_t *run, ex_question_t *question)
     }
 }
 
+void ex_early_expect(const ex_run_t *run, ex_question_t *question)
+{
+    const ex_why_t why = (ex_why_t)atomic_load(&run->why);
+    if (!ex_is_kept(run->queries, question)) {
+        question->why = "reduction";
+    } else if (!answer_by_states(run, question)) {
+        question->why = ex_why_text((why == EX_COMPLETE) ? EX_SECONDS : why);
+    }
+}
+
 static void answer_roughly(ex_run_t *run)
 {
     ex_queries_t *const queries = run->queries;

@@ -31,11 +31,10 @@ static void print_value(const ex_question_t *question, FILE *out)
     (void)fputs(buffer, out);
 }
 
-static void print_answer(const ex_run_t *run, uint32_t number, FILE *out)
+static void print_answer(const ex_run_t *run, const ex_question_t *question, uint32_t number, FILE *out)
 {
     static const char *const s_answers[] = { "unknown", "yes", "no" };
     char path[EX_PATH_SIZE];
-    const ex_question_t *const question = &run->queries->question[number];
     (void)fprintf(out, "{\"answer\": \"%s\", \"why\": ", s_answers[question->answer]);
     if (question->why != NULL) {
         print_string(question->why, out);
@@ -65,7 +64,7 @@ static void print_answer(const ex_run_t *run, uint32_t number, FILE *out)
     (void)fprintf(out, "}");
 }
 
-void ex_queries_json(const ex_run_t *run, FILE *out)
+void ex_queries_json(const ex_run_t *run, bool is_early, FILE *out)
 {
     if (run->queries == NULL) {
         return;
@@ -73,7 +72,11 @@ void ex_queries_json(const ex_run_t *run, FILE *out)
     (void)fprintf(out, ",\n \"queries\": [");
     for (uint32_t i = 0U; i < run->queries->questions; i++) {
         (void)fprintf(out, "%s", (i > 0U) ? ",\n  " : "");
-        print_answer(run, i, out);
+        ex_question_t said = run->queries->question[i];
+        if (is_early) {
+            ex_early_expect(run, &said);
+        }
+        print_answer(run, &said, i, out);
     }
     (void)fprintf(out, "]");
 }

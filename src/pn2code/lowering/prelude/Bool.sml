@@ -1,8 +1,8 @@
-(* Reads the letters of a word, in either case. *)
+(* Reads the letters of a word; capital ones are others, as in SML/NJ. *)
 fun word (getc, stream, nil) = SOME stream
   | word (getc, stream, c :: rest) =
     case getc stream of
-        SOME (d, next) => if Char.toLower d = c then word (getc, next, rest) else NONE
+        SOME (d, next) => if d = c then word (getc, next, rest) else NONE
       | NONE => NONE
 
 fun Bool_scan getc stream =

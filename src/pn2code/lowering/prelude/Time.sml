@@ -31,7 +31,10 @@ fun Time_fmt decimals (t : IntInf.int) =
     else
         let val shown = if decimals > 9 then 9 else decimals
             val unit_ : IntInf.int = IntInf.pow (10, 9 - shown)
-            val number = IntInf.div (IntInf.abs t + IntInf.div (unit_, 2), unit_)
+            val (below, rest) = IntInf.divMod (IntInf.abs t, unit_)
+            val half = IntInf.compare (2 * rest, unit_) (* the even neighbour, if it is just between two *)
+            val is_up = half = GREATER orelse (half = EQUAL andalso IntInf.mod (below, 2) = 1)
+            val number = if is_up then below + 1 else below
             val scale : IntInf.int = IntInf.pow (10, shown)
             val whole = IntInf.toString (IntInf.div (number, scale))
             val fraction = StringCvt.padLeft #"0" shown (IntInf.toString (IntInf.mod (number, scale)))

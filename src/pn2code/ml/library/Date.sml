@@ -112,7 +112,9 @@ structure Date = struct
         let fun part (i, n) = valOf (Int.fromString (String.substring (text, i, n)))
             fun find (name, x :: names, m :: rest) = if short x = name then m else find (name, names, rest)
               | find _ = raise Date
-        in SOME (date {year = part (20, 4), month = find (String.substring (text, 4, 3), month_names, months),
+            val is_day = List.exists (fn name => short name = String.substring (text, 0, 3)) weekday_names
+        in if not is_day then NONE
+           else SOME (date {year = part (20, 4), month = find (String.substring (text, 4, 3), month_names, months),
                        day = part (8, 2), hour = part (11, 2), minute = part (14, 2), second = part (17, 2),
                        offset = NONE})
         end

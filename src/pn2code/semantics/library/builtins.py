@@ -111,8 +111,8 @@ def _cause(exn: Data) -> str:
 
 
 def _read_truth(e: Evaluator, text: str) -> tuple[Value, int] | None:
-    found = re.match(r"[ \t\n\v\f\r]*(true|false)", text, re.IGNORECASE)
-    return found and (found[1].lower() == "true", found.end())
+    found = re.match(r"[ \t\n\v\f\r]*(true|false)", text)
+    return found and (found[1] == "true", found.end())
 
 
 GENERAL: dict[str, tuple[int, Function]] = {
@@ -121,7 +121,7 @@ GENERAL: dict[str, tuple[int, Function]] = {
     "Bool.not": (1, lambda e, a: not a),
     "Bool.toString": (1, lambda e, a: "true" if a else "false"),
     "Bool.fromString": (1, from_string(_read_truth)),
-    "Bool.scan": (2, scanner(_read_truth, lambda c: c in "truefalsTRUEFALS \t\n\v\f\r")),
+    "Bool.scan": (2, scanner(_read_truth, lambda c: c in "truefals \t\n\v\f\r")),
     "Ref.ref": (1, lambda e, a: Ref(a)),
     "Ref.!": (1, lambda e, ref: ref.contents),
     "Ref.:=": (1, lambda e, p: _assign(p[0], p[1])),

@@ -82,11 +82,12 @@ def _from_seconds(seconds: float) -> int:
 
 
 def seconds_text(time: int, decimals: int) -> str:
-    """Seconds, rounded to so many decimals."""
+    """Seconds, rounded to so many decimals; what lies just between two becomes the even one, as in SML/NJ."""
     if decimals < 0:
         raise MlException(exception("Size"))
     scaled = abs(time) * 10**decimals
-    number = (scaled + _SECOND // 2) // _SECOND
+    number, rest = divmod(scaled, _SECOND)
+    number += 2 * rest > _SECOND or (2 * rest == _SECOND and number % 2 == 1)
     whole, fraction = divmod(number, 10**decimals)
     sign = "~" if time < 0 else ""
     return f"{sign}{whole}" + (f".{fraction:0{decimals}d}" if decimals else "")

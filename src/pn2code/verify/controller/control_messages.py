@@ -10,7 +10,7 @@ from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission import arena_size
 from pn2code.verify.controller import arena, messages
-from pn2code.verify.controller.control_answers import unknown
+from pn2code.verify.controller.control_answers import STRUCTURE, unknown
 from pn2code.verify.controller.control_types import (
     MEMORY,
     MESSAGES,
@@ -35,7 +35,11 @@ def formats(
     if sent.answer == "unknown":
         return [unknown(MESSAGES, {"why": why if found is None else found.why})]
     if not sent.wrong:
-        return [Check(MESSAGES, sent.answer, sent.says, sent.count)]
+        return [
+            Check(
+                MESSAGES, sent.answer, sent.says, sent.count, STRUCTURE if not sent.count else None
+            )
+        ]
     tokens = [(x.channel.place, x.value) for x in sent.wrong]
     asked = "".join(f"{line}\n" for line in own_priorities(partition))
     with tempfile.TemporaryDirectory(prefix="pn2code-") as name:

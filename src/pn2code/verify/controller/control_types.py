@@ -101,7 +101,7 @@ class Check:
         answer: "yes", "no" or "unknown".
         says: one line for people.
         value: the number that belongs to it, if there is one.
-        why: of "unknown", as in `reasons`; of a blocked cell "deadlock" or "endless"; of a bound "structure".
+        why: of "unknown", as in `reasons`; of a blocked cell "deadlock" or "endless"; of the net "structure".
         is_accepted: cell.toml says that it need not be so.
         evidence: the run; of confluence a second one, which goes on in another way.
         transitions: the two whose order matters; those that touch what is another's.

@@ -491,11 +491,13 @@ def _run(
             return nothing(net, Limits(), "seconds")
         _bad_end(net, process.returncode, said, d)
         return None
+    if found["why"] == "seconds":  # it may have ended in the middle of a trace
+        _tidy(options, process.pid)
     return found
 
 
 def _tidy(options: ExploreOptions, pid: int) -> None:
-    """Removes what an explorer that came to a bad end was writing."""
+    """Removes what an explorer that came to a sudden end was writing."""
     if options.traces is not None:
         for part in options.traces.glob(f"*.{pid}.part"):
             with suppress(OSError):
