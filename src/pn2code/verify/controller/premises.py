@@ -42,7 +42,9 @@ IN_TURNS = (
     "the programs are looked at in turns, so that each run is seen in one of its orders: the states are those of the "
     "reduced space (docs/reductions.md)"
 )
-_MOTIONS = frozenset({"move_joint", "move_linear", "move_home", "measure"})
+_MOTIONS = frozenset(
+    {"move_joint", "move_axes", "move_linear", "move_circular", "move_home", "measure"}
+)
 
 _SENSORS = "each possible value of a sensor occurs from time to time"
 
