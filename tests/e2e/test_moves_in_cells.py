@@ -174,6 +174,7 @@ def test_a_run_ends(kind: str, tmp_path: Path) -> None:
         ('{ command = "move_axes" }', AXES, "yes"),
         ('{ command = "move_axes" }', AXES.replace("10.0 * Real", "70.0 * Real"), "unknown"),
         ('{ command = "move_joint", frame = "bench" }', AT, "yes"),
+        ('{ command = "move_joint", depart = 0.1, acceleration = 0.5 }', AT, "yes"),
         ('{ command = "move_joint", frame = "bench" }', AT.replace("1200.0", "3600.0"), "unknown"),
         ('{ command = "move_linear", frame = "world", approach = 3.0 }', AT, "unknown"),
     ],
@@ -188,6 +189,7 @@ def test_what_the_arm_cannot_do_stops_the_cell(
     (found,) = [c for c in checks if c["check"] == "non-blocking"]
     assert found["answer"] == answer
     assert ("commands a move that is not possible" in found["says"]) == (answer != "yes")
+    assert any("arms get to where" in x for x in found["assumes"]) == (answer == "yes")
 
 
 @pytest.mark.parametrize(

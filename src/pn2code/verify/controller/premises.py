@@ -32,7 +32,7 @@ _MOVING = (
 
 _REACHED = (
     "arms get to where they are told to go, and nothing is in their way (limits and singularities on the way, "
-    "increments and collisions show in a run)"
+    "arcs, increments and collisions show in a run)"
 )
 _PARTS = (
     "tools find the parts that they take, hold them until they release them, and put them down where they can stand, "
