@@ -192,6 +192,15 @@ def test_what_the_arm_cannot_do_stops_the_cell(
     assert any("arms get to where" in x for x in found["assumes"]) == (answer == "yes")
 
 
+def test_an_answer_rests_on_arcs_where_there_are_some(tmp_path: Path) -> None:
+    entry, options, _ = KINDS["arc"]
+    where = str(cell(tmp_path, entry, **options))
+    done = CliRunner().invoke(app, ["verify", where, "--json", "--no-medium", "--most-traces", "0"])
+    (found,) = [c for c in json.loads(done.stdout)["controller"] if c["check"] == "non-blocking"]
+    assert found["answer"] == "yes"
+    assert any("on the way, arcs, increments and collisions" in x for x in found["assumes"])
+
+
 @pytest.mark.parametrize(
     ("entry", "options", "message"),
     [
