@@ -144,9 +144,8 @@ def test_verify(
     if expected.is_large:  # exploring takes longer than compiling
         request.getfixturevalue("as_delivered")
     options = ["--json", "--no-medium", "--traces", str(tmp_path), "--threads", "1"]
-    if (
-        expected.is_large
-    ):  # its README verifies the cell as it runs, which test_documented_commands does as printed
+    # Its programs are proved when they are generated, as those of all examples are.
+    if expected.is_large:
         options.append("--no-controller")
     done = CliRunner().invoke(app, ["verify", str(folder), *options])
     assert done.exit_code == 0, done.output
