@@ -13,7 +13,7 @@ from pn2code.cell.config import CellConfig
 from pn2code.cell.load import load as load_cell
 from pn2code.diagnostics import Diagnostics
 from pn2code.robot import scene
-from pn2code.robot.commands import MoveJoint, MoveLinear, Pose
+from pn2code.robot.commands import Move, MoveCircular, MoveLinear, without_pace
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.motion import MotionFault
 from pn2code.robot.robot_cell import RobotCell
@@ -32,7 +32,7 @@ class Arms:
     def __init__(self, cells: Mapping[str, RobotCell]) -> None:
         self._cells = cells
         self.robots = frozenset(r.name for cell in cells.values() for r in cell.robots)
-        self._known: dict[tuple[str, bool, Pose], str] = {}
+        self._known: dict[tuple[str, Move], str] = {}
 
     @staticmethod
     def of(config: CellConfig, d: Diagnostics, *, partial: bool = True) -> Arms | None:
@@ -50,28 +50,26 @@ class Arms:
         found = Arms(cells)
         return found if found.robots else None
 
-    def why_unreachable(self, robot: str, command: MoveJoint | MoveLinear) -> str:
-        """Why the arm cannot come to the pose of a command, in words that name robot, pose and layout; "": it can.
+    def why_unreachable(self, robot: str, command: Move) -> str:
+        """Why the arm cannot come to where a command leads, in words that name robot, pose and layout; "": it can.
 
-        Moves relative to the tool are not looked at: where they lead depends on where they begin. Of lines only the
-        end is looked at, on any branch.
+        Moves relative to the tool are not looked at: where they lead depends on where they begin. Of lines and arcs
+        only the end is looked at, on any branch.
         """
-        if isinstance(command, MoveLinear) and command.frame == "tool":
-            return ""
-        is_free = isinstance(command, MoveLinear)
-        key = (robot, is_free, command.target)
+        key = (robot, without_pace(command))
         if key not in self._known:
-            self._known[key] = self._looked(robot, command.target, is_free)
+            self._known[key] = self._looked(robot, command)
         return self._known[key]
 
-    def _looked(self, name: str, pose: Pose, is_free: bool) -> str:
+    def _looked(self, name: str, command: Move) -> str:
+        is_free = isinstance(command, MoveLinear | MoveCircular)
         for layout, cell in self._cells.items():
             for robot in cell.robots:
                 if robot.name != name:
                     continue
                 own = replace(robot, branch=None) if is_free else robot
                 try:
-                    RobotExecutor(own, cell.motion).reach(pose)
+                    RobotExecutor(own, cell.motion, cell.frames).reach(command)
                 except MotionFault as fault:
                     return f"{fault.message} (layout `{layout}`)" if layout else fault.message
         return ""

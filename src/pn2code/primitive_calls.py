@@ -24,6 +24,7 @@ from pn2code.base.frozen import frozen
 from pn2code.cell.config import Primitive
 from pn2code.cell.reach import Reach
 from pn2code.ml.core.types import UNIT, TFun
+from pn2code.robot.approach import pose_before
 from pn2code.semantics.evaluation.evaluate import Evaluator
 from pn2code.semantics.game.token_game import Game
 from pn2code.semantics.values.data import Native, Value
@@ -43,6 +44,7 @@ class Unknown:
 
 
 Calls = list[commands.Command | Unknown]
+Heard = tuple[commands.Command | Unknown, ...]
 
 
 class Listener:
@@ -58,7 +60,7 @@ class Listener:
         self._calls = Calls()
         symbols = game.net.program.globals
         own = {symbols[name].uid: primitive for name, primitive in primitives.items()}
-        self._listening = {uid: self._noted(uid, partial(command, p)) for uid, p in own.items()}
+        self._listening = {uid: self._noted(uid, partial(told, p)) for uid, p in own.items()}
         reach = Reach(game.net.program)
         for symbol in reach.functions():
             is_idle = isinstance(symbol.type, TFun) and symbol.type.result == UNIT
@@ -68,11 +70,11 @@ class Listener:
                     symbol.uid, partial(_unknown, symbol.name)
                 )
 
-    def _noted(self, uid: int, heard: Callable[[Any], commands.Command | Unknown]) -> Native:
+    def _noted(self, uid: int, heard: Callable[[Any], Heard]) -> Native:
         function = self._values[uid]
 
         def note(evaluator: Evaluator, argument: Value) -> Any:
-            self._calls.append(heard(argument))
+            self._calls.extend(heard(argument))
             return evaluator.call(function, argument)
 
         return Native("", 1, note)
@@ -89,36 +91,77 @@ class Listener:
             self._values.update(kept)
 
 
-def _unknown(function: str, _argument: Any) -> Unknown:
-    return Unknown(function)
+def _unknown(function: str, _argument: Any) -> Heard:
+    return (Unknown(function),)
 
 
-def command(primitive: Primitive, argument: Any) -> commands.Command:
-    """What the robot is told by a call: poses in m and rad."""
+def told(primitive: Primitive, argument: Any) -> tuple[commands.Command, ...]:
+    """What the robot is told by a call, in order: poses in m and rad."""
     speed = primitive.speed
-    if primitive.command in ("move_joint", "move_linear") and len(argument) == 2:
-        argument, speed = argument
+    takes = 2 if primitive.command == "move_circular" else 1
+    values = argument if primitive.command in _MOVES and len(argument) <= 3 else (argument,)
+    if primitive.command in _MOVES and len(values) > takes:
+        *values, speed = values
+    # The factors are those of scripts (`pn2code.tdl`), so that speeds are equal to the last digit.
+    fraction = 1.0 if speed is None else speed * 0.01
+    metres = None if speed is None else speed / 1000.0
+    frame = primitive.frame or "world"
+    ramp = 1.0 if primitive.acceleration is None else primitive.acceleration * 0.01
     match primitive.command:
-        # The factors are those of scripts (`pn2code.tdl`), so that speeds are equal to the last digit.
         case "move_joint":
-            return commands.MoveJoint(_pose(argument), 1.0 if speed is None else speed * 0.01)
+            moves = [commands.MoveJoint(_pose(values[0]), fraction, frame, ramp)]
+            return (*_departure(primitive, None, ramp), *moves)
+        case "move_axes":
+            # By label, a1 .. a6: the order of SML.
+            axes = tuple(math.radians(float(v)) for v in values[0])
+            return (*_departure(primitive, None, ramp), commands.MoveAxes(axes, fraction, ramp))
         case "move_linear":
             assert primitive.frame is not None, "an entry without a frame is an error"
-            metres = None if speed is None else speed / 1000.0
-            return commands.MoveLinear(_pose(argument), primitive.frame, metres)
+            line = commands.MoveLinear(_pose(values[0]), frame, metres, ramp)
+            if not primitive.approach:
+                return (*_departure(primitive, metres, ramp), line)
+            before = _si(*pose_before(_numbers(values[0]), primitive.approach))
+            there = commands.MoveJoint(before, 1.0, frame, ramp)
+            return (*_departure(primitive, metres, ramp), there, line)
+        case "move_circular":
+            assert primitive.frame is not None, "an entry without a frame is an error"
+            via, end = map(_pose, values)
+            return (commands.MoveCircular(via, end, frame, metres, ramp),)
         case "move_home":
-            return commands.MoveHome(1.0 if speed is None else speed * 0.01)
+            return (*_departure(primitive, None, ramp), commands.MoveHome(fraction, ramp))
         case "measure":
-            return commands.Measure(_pose(argument))
+            return (commands.Measure(_pose(argument)),)
         case "tool":
-            return commands.ToolAction(primitive.action, primitive.duration_s, primitive.handling)
+            action = primitive.action
+            return (commands.ToolAction(action, primitive.duration_s, primitive.handling),)
         case "wait":
             seconds = argument if isinstance(argument, int | float) else primitive.duration_s
-            return commands.Wait(float(seconds))
+            return (commands.Wait(float(seconds)),)
+
+
+_MOVES = frozenset({"move_joint", "move_axes", "move_linear", "move_circular"})
+"""Commands whose functions may take a speed beside what they take."""
+
+
+def _departure(
+    primitive: Primitive, speed: float | None, ramp: float
+) -> tuple[commands.MoveLinear, ...]:
+    """Straight back, before a move that says so."""
+    if not primitive.depart:
+        return ()
+    back = _si(0.0, 0.0, -primitive.depart, 0.0, 0.0, 0.0)
+    return (commands.MoveLinear(back, "tool", speed, ramp),)
+
+
+def _numbers(argument: Any) -> tuple[float, ...]:
+    """Of a pose, mm and degrees. Values of records lie in the order of SML: by label."""
+    parts = dict(zip(sorted(_NAMES), argument, strict=True))
+    return tuple(float(parts[name]) for name in _NAMES)
 
 
 def _pose(argument: Any) -> commands.Pose:
-    """A record in mm and degrees. Values of records lie in the order of SML: by label."""
-    parts = dict(zip(sorted(_NAMES), argument, strict=True))
-    x, y, z, *angles = (float(parts[name]) for name in _NAMES)
+    return _si(*_numbers(argument))
+
+
+def _si(x: float, y: float, z: float, *angles: float) -> commands.Pose:
     return commands.Pose(x / 1000.0, y / 1000.0, z / 1000.0, *map(math.radians, angles))

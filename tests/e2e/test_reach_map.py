@@ -15,6 +15,7 @@ from helpers.meeting_cell import meeting_cell
 from helpers.robot_cells import pose_mm, riveting_cell
 from pn2code.cli.main import app
 from pn2code.geometry.reach_map import Task, reach_map
+from pn2code.robot.commands import MoveJoint
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.motion import MotionFault
 from pn2code.robot.transforms import matrix_of
@@ -39,7 +40,7 @@ def test_poses_are_reached_where_an_executor_reaches_them() -> None:
         count = 0
         for pose in poses:
             try:
-                RobotExecutor(there, cell.motion).reach(pose)
+                RobotExecutor(there, cell.motion).reach(MoveJoint(pose))
                 count += 1
             except MotionFault:
                 pass

@@ -55,9 +55,11 @@ file = "order.robcad"
 kind = "data"
 
 [primitives]
-joint = { command = "move_joint", speed = 0.5 }
-line = { command = "move_linear", frame = "tool", speed = 0.2 }
-home = { command = "move_home", speed = 0.5 }
+joint = { command = "move_joint", frame = "bench", speed = 0.5, acceleration = 0.4, depart = 0.1 }
+axes = { command = "move_axes", speed = 0.5, acceleration = 0.4 }
+line = { command = "move_linear", frame = "bench", speed = 0.2, acceleration = 0.3, approach = 0.2 }
+arc = { command = "move_circular", frame = "tool", speed = 0.2, acceleration = 0.3 }
+home = { command = "move_home", speed = 0.5, acceleration = 0.2, depart = 0.05 }
 look = { command = "measure" }
 rest = { command = "wait", duration_s = 3.0 }
 grip = { command = "tool", action = "grip", duration_s = 0.5, takes = "box" }
@@ -138,6 +140,18 @@ roll = 4.0
 pitch = 5.0
 yaw = 6.0
 
+[frames.bench]
+x = 1.0
+y = 2.0
+z = 3.0
+roll = 4.0
+pitch = 5.0
+yaw = 6.0
+
+[frames.corner]
+parent = "bench"
+x = 0.1
+
 [report]
 rows = ["order"]
 count = { grips = "grip" }
@@ -154,6 +168,7 @@ motion.joint_speed = 0.4
 scene.floor = true
 parts.box.grip_tolerance = 0.02
 places.here.x = 0.9
+frames.corner.x = 0.2
 
 [[property]]
 name = "ends"
@@ -165,8 +180,8 @@ about = "net"
 """)
 
 _NEEDED = {
-    "primitives": ("parts", "places"),
-    "report": ("channel", "primitives", "parts", "places"),
+    "primitives": ("parts", "places", "frames"),
+    "report": ("channel", "primitives", "parts", "places", "frames"),
     "scene": ("robots",),
     "layouts": tuple(FULL),
 }
@@ -237,7 +252,7 @@ def read(folder: Path, data: dict[str, Any], section: str) -> tuple[str, Diagnos
         [(p.name, p.says, p.holds.text, p.expect, p.fair, p.of_net) for p in from_cell(config, d)],
     ]
     if cell is not None:
-        shown += [cell.motion, cell.scene, cell.parts, cell.places]
+        shown += [cell.motion, cell.scene, cell.parts, cell.places, cell.frames]
         shown += [
             (r.name, r.arm.name, r.tool and r.tool.name, r.base, r.home, r.branch)
             for r in cell.robots

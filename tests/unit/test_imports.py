@@ -76,9 +76,9 @@ EVERYWHERE = {"base"}
 # Of `robot`, the script language and the proofs may know the commands (plain values) only.
 ONLY = {
     ("cell", "robot"): {"pn2code.robot.commands"},
-    ("tdl", "robot"): {"pn2code.robot.commands"},
+    ("tdl", "robot"): {"pn2code.robot.approach", "pn2code.robot.commands"},
     ("verify", "robot"): {"pn2code.robot.commands"},
-    ("primitive_calls", "robot"): {"pn2code.robot.commands"},
+    ("primitive_calls", "robot"): {"pn2code.robot.approach", "pn2code.robot.commands"},
 }
 
 

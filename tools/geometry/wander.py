@@ -91,7 +91,7 @@ def _walk(
     parts.begin()
     names = {r.name for r in cell.robots}
     arms = {
-        o.index: _Arm(RobotExecutor(cell.robot(o.name), cell.motion))
+        o.index: _Arm(RobotExecutor(cell.robot(o.name), cell.motion, cell.frames))
         for o in graph.partition.owners
         if o.name in names
     }

@@ -15,7 +15,16 @@ from pn2code.cell_file.logic import PRIMITIVE
 from pn2code.diagnostics import Origin
 from pn2code.robot.commands import Handling
 
-CommandName = Literal["move_joint", "move_linear", "move_home", "measure", "tool", "wait"]
+CommandName = Literal[
+    "move_joint",
+    "move_axes",
+    "move_linear",
+    "move_circular",
+    "move_home",
+    "measure",
+    "tool",
+    "wait",
+]
 COMMANDS = PRIMITIVE["command"].words
 
 
@@ -26,21 +35,33 @@ class Primitive:
     Args:
         function: its name in the net.
         command: what the robot does.
-        frame: of move_linear: "world" (absolute) or "tool" (incremental); None: of the others.
+        frame: of move_linear and move_circular: "world" (absolute), "tool" (incremental), or a name of `[frames]`; of
+            move_joint: a name; None: of move_joint the world.
         action: of tool: its name.
         duration_s: of tool: seconds.
         handling: of tool: what it does to a part.
         speed: of moves: as in a script, mm/s of the TCP on a line, else percent of the speeds of the axes; None: that
             which the function takes beside the pose, or that of the cell.
+        acceleration: of moves: percent of the acceleration of the cell; None: all of it.
+        approach: of move_linear: mm; the arm comes first, on a joint move, to so far before the pose; 0: it does not.
+        depart: of moves but move_circular: mm; the arm goes first straight back by so much; 0: it does not.
     """
 
     function: str
     command: CommandName
-    frame: Literal["world", "tool"] | None = None
+    frame: str | None = None
     action: str = ""
     duration_s: float = 0.0
     handling: Handling | None = None
     speed: float | None = None
+    acceleration: float | None = None
+    approach: float = 0.0
+    depart: float = 0.0
+
+    @property
+    def is_linear(self) -> bool:
+        """Whether the TCP is led, so that speeds are those of the TCP."""
+        return self.command in ("move_linear", "move_circular")
 
 
 @frozen
@@ -177,6 +198,12 @@ class CellConfig:
     def net_path(self) -> Path:
         """Where the net is."""
         return self.folder / self.net_file
+
+    @property
+    def frame_names(self) -> tuple[str, ...]:
+        """The names of `[frames]`."""
+        frames = self.geometry.get("frames")
+        return tuple(frames) if isinstance(frames, dict) else ()
 
     @property
     def parts_at_start(self) -> dict[str, int]:

@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path, PurePath
-from typing import Any, Literal, cast
+from typing import Any, cast
 
 from pn2code.cell import codes
 from pn2code.cell.config import (
@@ -336,8 +336,9 @@ def _primitives(r: Tables, data: dict[str, Any]) -> dict[str, Primitive]:
         if command not in COMMANDS:
             continue
         own = PRIMITIVE.names(command)
+        is_linear = command in ("move_linear", "move_circular")
         tool = command == "tool"
-        frame = r.choice(table, at, PRIMITIVE["frame"]) if "frame" in own else ""
+        frame = _frame(r, data, table, at, command) if "frame" in own else ""
         action = r.get(table, at, PRIMITIVE["action"], "") if tool else ""
         if tool and not action and "action" in table:
             r.d.error(codes.CELL_VALUE, "`action` is empty", r.at(*at, "action"))
@@ -345,21 +346,60 @@ def _primitives(r: Tables, data: dict[str, Any]) -> dict[str, Primitive]:
         out[name] = Primitive(
             name,
             cast(CommandName, command),
-            cast(Literal["world", "tool"], frame) if frame else None,
+            frame or None,
             action,
             r.number(table, at, timed) if timed else 0.0,
             _handling(r, data, table, at) if tool else None,
-            _speed(r, table, at, command) if "speed" in own else None,
+            _scaled(r, table, at, command, "speed", 1000.0 if is_linear else 100.0),
+            _scaled(r, table, at, command, "acceleration", 100.0),
+            _scaled(r, table, at, command, "approach", 1000.0) or 0.0,
+            _scaled(r, table, at, command, "depart", 1000.0) or 0.0,
         )
+        _check_approach(r, out[name], at)
     return out
 
 
-def _speed(r: Tables, table: dict[str, Any], at: KeyPath, command: str) -> float | None:
-    """The speed of a move as in a script: mm/s, or percent of the speeds of the axes."""
-    if "speed" not in table:
+def _frame(
+    r: Tables, data: dict[str, Any], table: dict[str, Any], at: KeyPath, command: str
+) -> str:
+    """The frame of a move: the world, the tool of moves that may be increments, or one that has a name."""
+    key = PRIMITIVE.key("frame", command)
+    frame = str(r.get(table, at, key, ""))
+    own = ("world",) if command == "move_joint" else ("world", "tool")
+    frames = _table(data.get("frames"))
+    if frame and frame not in own and (frame == "tool" or frame not in frames):
+        r.d.error(
+            codes.CELL_VALUE,
+            f"`frame` is `{frame}`, but {key.expected} is expected",
+            r.at(*at, "frame"),
+            hint="a joint move goes to an absolute pose; use `move_linear` for increments"
+            if frame == "tool"
+            else did_you_mean(frame, (*own, *frames))
+            or f"add a table `[frames.{frame}]` (docs/robots.md)",
+        )
+        return ""
+    return "" if command == "move_joint" and frame == "world" else frame
+
+
+def _scaled(
+    r: Tables, table: dict[str, Any], at: KeyPath, command: str, name: str, factor: float
+) -> float | None:
+    """A number as in a script: mm/s, mm or percent; None: it is not there."""
+    if name not in table or name not in PRIMITIVE.names(command):
         return None
-    speed = r.number(table, at, PRIMITIVE.key("speed", command), 0.1)
-    return speed * (1000.0 if command == "move_linear" else 100.0)
+    return r.number(table, at, PRIMITIVE.key(name, command), 0.1) * factor
+
+
+def _check_approach(r: Tables, primitive: Primitive, at: KeyPath) -> None:
+    """Increments begin where the tool is, so there is no pose to come to."""
+    for name in ("approach", "depart"):
+        if primitive.frame == "tool" and getattr(primitive, name):
+            r.d.error(
+                codes.CELL_VALUE,
+                f"`{name}` goes with an absolute pose, but `frame` is `tool`",
+                r.at(*at, name),
+                hint=f"remove `{name}`, or make the poses absolute",
+            )
 
 
 def _handling(

@@ -18,6 +18,7 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 
 from pn2code.cell import codes
+from pn2code.cell.axes_types import is_axes
 from pn2code.cell.config import CellConfig, CommandName, Primitive
 from pn2code.cell.partition import Owner, Partition
 from pn2code.cell.pose_types import is_pose, pose_types
@@ -32,12 +33,14 @@ from pn2code.net.uses import walk
 _TAKES: dict[CommandName, str] = {
     "move_joint": "POSE -> unit` or `POSE * real -> unit",
     "move_linear": "POSE -> unit` or `POSE * real -> unit",
+    "move_axes": "AXES -> unit` or `AXES * real -> unit",
+    "move_circular": "POSE * POSE -> unit` or `POSE * POSE * real -> unit",
     "move_home": "unit -> unit",
     "measure": "POSE -> POSE",
     "tool": "unit -> unit",
     "wait": "real -> unit",
 }
-"""Type of the function of each command; POSE is a record of six reals."""
+"""Type of the function of each command; POSE and AXES are records of six reals."""
 
 
 def check_primitives(partition: Partition, config: CellConfig, d: Diagnostics) -> None:
@@ -116,9 +119,9 @@ class _Checker:
                     f"`{name}` has type `{symbol.type}`, but a function for `{primitive.command}` has type "
                     f"`{_TAKES[primitive.command]}`",
                     at,
-                    notes=["POSE is a record of six reals x y z rx ry rz"]
-                    if "POSE" in _TAKES[primitive.command]
-                    else [],
+                    notes=[
+                        text for word, text in _RECORDS.items() if word in _TAKES[primitive.command]
+                    ],
                     hint=_other_commands(symbol.type),
                 )
             elif (
@@ -133,12 +136,13 @@ class _Checker:
                     at,
                     hint=f"give its argument the colour set of the poses: `fun {name} (p : POSE) = ...`",
                 )
-            elif primitive.speed is not None and moves_at_speed(symbol.type):
+            elif primitive.speed is not None and moves_at_speed(symbol.type, primitive.command):
+                what = "joint position" if primitive.command == "move_axes" else "pose"
                 self.d.error(
                     codes.PRIMITIVE_ENTRY,
                     f"`{name}` takes a speed, and the entry has one, too",
                     self.config.locator.origin("primitives", name, "speed"),
-                    hint="remove `speed`, or let the function take the pose alone",
+                    hint=f"remove `speed`, or let the function take the {what} alone",
                 )
             elif primitive.command == "wait" and symbol.type.argument == UNIT:  # type: ignore[union-attr]
                 if not primitive.duration_s:
@@ -148,7 +152,7 @@ class _Checker:
                         at,
                         hint="add `duration_s = ...` to the entry, or let the function take the seconds",
                     )
-            elif primitive.command == "move_linear" and not primitive.frame:
+            elif primitive.is_linear and not primitive.frame:
                 self.d.error(
                     codes.PRIMITIVE_ENTRY,
                     f"`primitives.{name}.frame` is missing",
@@ -392,11 +396,32 @@ def _takes_any_pose(t: Type) -> bool:
             return False
 
 
-def moves_at_speed(t: Type) -> bool:
-    """Whether a function takes a pose and a speed: mm/s on a line, else percent of the speeds of the axes."""
-    match t:
-        case TFun(TRecord((("1", pose), ("2", speed))), _):
+_RECORDS = {
+    "POSE": "POSE is a record of six reals x y z rx ry rz",
+    "AXES": "AXES is a record of six reals a1 .. a6 or j1 .. j6: the angles of the axes, in degrees",
+}
+
+
+def moves_at_speed(t: Type, command: CommandName) -> bool:
+    """Whether a function takes a speed beside where to go: mm/s of the TCP, or percent of the speeds of the axes."""
+    if not isinstance(t, TFun):
+        return False
+    match command, t.argument:
+        case "move_joint" | "move_linear", TRecord((("1", pose), ("2", speed))):
             return _is_pose(pose) and speed in (REAL, INT)
+        case "move_axes", TRecord((("1", axes), ("2", speed))):
+            return is_axes(axes) and speed in (REAL, INT)
+        case "move_circular", TRecord((("1", via), ("2", end), ("3", speed))):
+            return is_pose(via) and is_pose(end) and speed in (REAL, INT)
+        case _:
+            return False
+
+
+def _is_arc(t: Type) -> bool:
+    """Whether these are two poses: one on the way, and the end."""
+    match t:
+        case TRecord((("1", via), ("2", end))):
+            return is_pose(via) and is_pose(end)
         case _:
             return False
 
@@ -407,7 +432,11 @@ def _fits(t: Type, primitive: Primitive) -> bool:
     takes, gives = t.argument, t.result
     match primitive.command:
         case "move_joint" | "move_linear":
-            return (_is_pose(takes) or moves_at_speed(t)) and gives == UNIT
+            return (_is_pose(takes) or moves_at_speed(t, primitive.command)) and gives == UNIT
+        case "move_axes":
+            return (is_axes(takes) or moves_at_speed(t, primitive.command)) and gives == UNIT
+        case "move_circular":
+            return (_is_arc(takes) or moves_at_speed(t, primitive.command)) and gives == UNIT
         case "measure":
             return _is_pose(takes) and _is_pose(gives)
         case "wait":

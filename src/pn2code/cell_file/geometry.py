@@ -19,6 +19,18 @@ POSE = Section(
     )
 )
 _POSE = "a table { x, y, z, roll, pitch, yaw }: m, degrees"
+FRAME = Section(
+    (
+        *POSE,
+        Key(
+            "parent",
+            "text",
+            'The frame in which this one is given: `"world"`, or the name of another one.',
+            "the name of a frame",
+            default="world",
+        ),
+    )
+)
 BRANCHES = tuple(
     f"{s}/{e}/{w}" for s in ("front", "back") for e in ("up", "down") for w in ("plus", "minus")
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pn2code.cell_file.geometry import MOTION, PART, POSE, ROBOT, SCENE
+from pn2code.cell_file.geometry import FRAME, MOTION, PART, POSE, ROBOT, SCENE
 from pn2code.cell_file.keys import Key, Section
 from pn2code.cell_file.logic import (
     BOUND,
@@ -43,6 +43,14 @@ _PLACED = (
         "named",
         "A pose in the world with a name.",
         inner=POSE,
+        entry="NAME",
+        is_word=True,
+    ),
+    Key(
+        "frames",
+        "named",
+        "A frame in which moves of `[primitives]` have their poses, with a name; not `world` or `tool`.",
+        inner=FRAME,
         entry="NAME",
         is_word=True,
     ),

@@ -201,7 +201,11 @@ def _in_cell(
         return None
     if name in {r.name for r in config.devices}:
         return specs_of(partition), DeviceExecutor(name), sensors
-    return specs_of(partition), RobotExecutor(loaded.robot(name), loaded.motion), sensors
+    return (
+        specs_of(partition),
+        RobotExecutor(loaded.robot(name), loaded.motion, loaded.frames),
+        sensors,
+    )
 
 
 def _check_files(
@@ -241,7 +245,7 @@ def _load(script: Path, d: Diagnostics) -> CheckedProgram | None:
         d.error(CELL_MISSING, f"`{script}` is not UTF-8 text", Origin(str(script)))
         return None
     tree = parse(SourceText(text, Origin(str(script), 1, 1)), d)
-    return check(tree, d) if tree is not None else None
+    return check(tree, d, None) if tree is not None else None
 
 
 def _signals() -> list[int]:

@@ -214,7 +214,7 @@ class ProgramComparison:
     def script(self, owner: Owner, text: str, d: Diagnostics) -> robot.RobotReport | None:
         """Compares the script of a robot or device; None after an error in it that was reported."""
         parsed = parse(SourceText(text, Origin(f"{owner.name}.tdl", 1, 1)), d)
-        checked = check(parsed, d) if parsed is not None else None
+        checked = check(parsed, d, self._config.frame_names) if parsed is not None else None
         if checked is None:
             return None
         partition, game = self._partition, self._game()

@@ -270,5 +270,5 @@ def _regions(printer: _Printer, offset: int) -> list[Block]:
 def _must_check(path: str, text: str) -> None:
     d = Diagnostics()
     program = parse(SourceText(text, Origin(path, 1, 1)), d)
-    if program is None or check(program, d) is None:
+    if program is None or check(program, d, None) is None:
         raise RuntimeError(f"the script made for {path} is wrong:\n{report(d.errors)}\n\n{text}")

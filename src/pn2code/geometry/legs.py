@@ -68,7 +68,7 @@ class Planner:
 
     def __init__(self, cell: RobotCell) -> None:
         self.cell = cell
-        self._executors = {r.name: RobotExecutor(r, cell.motion) for r in cell.robots}
+        self._executors = {r.name: RobotExecutor(r, cell.motion, cell.frames) for r in cell.robots}
         self.stands: list[Stand] = []
         self.legs: list[Leg] = []
         self._stands: dict[tuple[object, ...], Stand] = {}

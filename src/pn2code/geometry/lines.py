@@ -1,4 +1,4 @@
-"""How far the joints of an arm turn within a piece of a line, although only samples of it are worked out.
+"""How far the joints of an arm turn within a piece of a line or an arc, although only samples of it are worked out.
 
     follower = Follower(kinematics, path)
     q, turns = follower.pieces(a, b)   # joint positions in the middle of pieces, and how far each axis may be from them
@@ -45,13 +45,16 @@ class Follower:
         s = a[:, None] + (b - a)[:, None] * parts
         q = self._at(s.ravel()).reshape(count, SAMPLES + 1, AXES)
         half = (b - a) * (self._speed / (2.0 * SAMPLES))
-        turns, is_fine = self._bounds(q, half)
+        turns, is_fine = self._bounds(q, s.reshape(count, SAMPLES + 1), half)
         middle = q[:, SAMPLES // 2]
         away = (np.abs(q - middle[:, None]) + turns).max(axis=1)
         away[~is_fine] = np.inf
         lost = ~is_fine & ((b - a) * self._speed < SHORTEST)
         if lost.any():
-            self.trouble = "the line passes so near to a singularity that what lies between samples is not known"
+            self.trouble = (
+                f"the {self._path.line.name} passes so near to a singularity that what lies between samples is not "
+                "known"
+            )
             away[lost] = 0.0
         return middle, away
 
@@ -62,7 +65,7 @@ class Follower:
         near = self._path.grid[index]
         return np.asarray(rows + TURN * np.round((near - rows) / TURN))
 
-    def _bounds(self, q: Array, half: Array) -> tuple[Array, Flags]:
+    def _bounds(self, q: Array, s: Array, half: Array) -> tuple[Array, Flags]:
         """How far each axis turns from a sample to half way to the next, (n, samples, 6); for which pieces."""
         there = ~np.isnan(q).any(axis=(1, 2))
         flat = np.nan_to_num(q).reshape(-1, AXES)
@@ -79,15 +82,16 @@ class Follower:
         line = self._path.line
         rotation = self._k.forward_many(flat)[:, :3, :3]
         spin = (rotation @ (line.axis * line.angle)).reshape(*q.shape[:2], 3)
-        twist = np.concatenate([np.broadcast_to(line.shift, spin.shape), spin], axis=2)
+        shift = line.shifts(s.ravel()).reshape(spin.shape)
+        twist = np.concatenate([shift, spin], axis=2)
         turns = np.zeros(q.shape)
         if is_fine.any():
             own = np.linalg.solve(jacobian[is_fine], twist[is_fine][..., None])[..., 0]
             least = sigma[is_fine]
             other = self._steep * y[is_fine] / (least * reach[is_fine])
-            # The twist turns with the tool, by no more than the angle of half a step.
-            more = (other + w[is_fine] / least) * self._speed
+            # The twist turns with the tool, by no more than the angle of half a step; that of an arc bends, too.
             way = w[is_fine] / max(self._speed, 1e-12)
+            more = (other + w[is_fine] / least) * self._speed + way * line.bend / least
             bound = (np.abs(own) + more[..., None]) * way[..., None]
             turns[is_fine] = np.minimum(bound, y[is_fine][..., None])
         return turns, is_fine

@@ -17,7 +17,7 @@ import numpy as np
 
 from pn2code.base.frozen import frozen
 from pn2code.geometry.situations import Situations
-from pn2code.robot.commands import MoveHome, MoveJoint, MoveLinear
+from pn2code.robot.commands import MoveAxes, MoveCircular, MoveHome, MoveJoint, MoveLinear
 from pn2code.robot.kinematics import BRANCHES, CHARACTERISTIC_LENGTH, TURN, Kinematics
 from pn2code.robot.model import AXES
 from pn2code.robot.motion import LinearTrajectory
@@ -44,11 +44,11 @@ class Task:
 
     @staticmethod
     def of(found: Situations, robot: CellRobot) -> Task:
-        """All that a robot is told, from wherever it can be then; HOME belongs to the arm, not to the task."""
+        """All that a robot is told, from wherever it can be then; joint positions belong to the arm, not the task."""
         parts: list[Array] = []
         seen: set[tuple[float, ...]] = set()
         for leg in found.doing.planner.legs:
-            if leg.robot != robot.name or isinstance(leg.command, MoveHome):
+            if leg.robot != robot.name or isinstance(leg.command, MoveHome | MoveAxes):
                 continue
             own: Array | None = None
             if isinstance(leg.path, LinearTrajectory):
@@ -56,11 +56,12 @@ class Task:
                 count = max(2, int(np.ceil(line.length / LINE_STEP)) + 1)
                 own = robot.T_world_base @ line.at(np.linspace(0.0, 1.0, count))
             elif (
-                isinstance(leg.command, MoveJoint)
-                or isinstance(leg.command, MoveLinear)
-                and leg.command.frame == "world"
+                isinstance(leg.command, MoveJoint | MoveLinear | MoveCircular)
+                and leg.command.frame != "tool"
             ):
                 own = matrix_of(leg.command.target)[None]
+                if leg.command.frame != "world":
+                    own = matrix_of(found.doing.planner.cell.frames[leg.command.frame]) @ own
             if own is None:
                 continue
             key = tuple(np.round(own[[0, -1]], _DIGITS).ravel().tolist())

@@ -7,6 +7,8 @@ import math
 from pn2code.robot.commands import (
     Command,
     Measure,
+    MoveAxes,
+    MoveCircular,
     MoveHome,
     MoveJoint,
     MoveLinear,
@@ -42,10 +44,15 @@ def words(command: Command | None) -> str:
     match command:
         case None:
             return "stands"
-        case MoveJoint(target=pose):
-            return f"joint {numbers(pose)}"
+        case MoveJoint(target=pose, frame=frame):
+            return f"joint {numbers(pose)}{_within(frame)}"
+        case MoveAxes(axes=axes):
+            return f"axes {' '.join(_short(math.degrees(v)) for v in axes)}"
         case MoveLinear(target=pose, frame=frame):
-            return f"linear {numbers(pose)}" + (" in tool" if frame == "tool" else "")
+            return f"linear {numbers(pose)}{_within(frame)}"
+        case MoveCircular(target=pose, via=via, frame=frame):
+            places = " ".join(_short(1000.0 * v) for v in (via.x, via.y, via.z))
+            return f"circular {numbers(pose)} via {places}{_within(frame)}"
         case MoveHome():
             return "home"
         case Measure():
@@ -54,6 +61,10 @@ def words(command: Command | None) -> str:
             return f"tool {action}"
         case Wait(duration=seconds):
             return f"wait {seconds:g} s"
+
+
+def _within(frame: str) -> str:
+    return "" if frame == "world" else f" in {frame}"
 
 
 def numbers(pose: Pose) -> str:

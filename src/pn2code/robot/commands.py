@@ -5,11 +5,11 @@ All in SI units (m, rad, s); scripts and files use mm and degrees, converted onc
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Literal
 
 from pn2code.base.frozen import frozen
 
-Frame = Literal["world", "tool"]
 Effect = Literal["takes", "releases", "creates", "removes"]
 EFFECTS: tuple[Effect, ...] = ("takes", "releases", "creates", "removes")
 
@@ -28,10 +28,27 @@ class Pose:
 
 @frozen
 class MoveJoint:
-    """PTP to a TCP pose in the world frame; `speed` is the fraction (0..1] of the configured joint speed."""
+    """PTP to a TCP pose.
+
+    Args:
+        speed: the fraction (0..1] of the configured joint speed.
+        frame: in which the pose is given: "world", or a name of `[frames]`.
+        acceleration: the fraction (0..1] of the configured acceleration, as of all moves.
+    """
 
     target: Pose
     speed: float = 1.0
+    frame: str = "world"
+    acceleration: float = 1.0
+
+
+@frozen
+class MoveAxes:
+    """PTP to a joint position, rad; `speed` and `acceleration` as of `MoveJoint`."""
+
+    axes: tuple[float, ...]
+    speed: float = 1.0
+    acceleration: float = 1.0
 
 
 @frozen
@@ -39,18 +56,38 @@ class MoveHome:
     """PTP to the robot's HOME joint position."""
 
     speed: float = 1.0
+    acceleration: float = 1.0
 
 
 @frozen
 class MoveLinear:
-    """LIN: absolute in the world frame, or incremental in the tool frame as it stands at the beginning.
+    """LIN: absolute in a frame, or incremental in the tool frame as it stands at the beginning.
 
-    `speed` in m/s; None: the configured linear speed.
+    Args:
+        frame: "world", "tool", or a name of `[frames]`.
+        speed: m/s; None: the configured linear speed.
     """
 
     target: Pose
-    frame: Frame = "world"
+    frame: str = "world"
     speed: float | None = None
+    acceleration: float = 1.0
+
+
+@frozen
+class MoveCircular:
+    """CIRC: on the arc through a place on the way to a pose; turning as a linear move does.
+
+    Args:
+        via: only its position matters.
+        frame, speed: as of `MoveLinear`.
+    """
+
+    via: Pose
+    target: Pose
+    frame: str = "world"
+    speed: float | None = None
+    acceleration: float = 1.0
 
 
 @frozen
@@ -95,4 +132,12 @@ class Wait:
     duration: float
 
 
-Command = MoveJoint | MoveHome | MoveLinear | ToolAction | Measure | Wait
+Move = MoveJoint | MoveAxes | MoveHome | MoveLinear | MoveCircular
+Command = Move | ToolAction | Measure | Wait
+
+
+def without_pace(move: Move) -> Move:
+    """The same move for all that differ only in how fast it is: where it leads."""
+    if isinstance(move, MoveLinear | MoveCircular):
+        return replace(move, speed=None, acceleration=1.0)
+    return replace(move, speed=1.0, acceleration=1.0)

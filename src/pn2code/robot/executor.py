@@ -11,6 +11,9 @@ The same commands give the same motions, whatever shows them: backends only repl
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from dataclasses import replace
+from types import MappingProxyType
 from typing import Literal, assert_never
 
 import numpy as np
@@ -19,6 +22,9 @@ from pn2code.base.frozen import frozen
 from pn2code.robot.commands import (
     Command,
     Measure,
+    Move,
+    MoveAxes,
+    MoveCircular,
     MoveHome,
     MoveJoint,
     MoveLinear,
@@ -26,13 +32,26 @@ from pn2code.robot.commands import (
     ToolAction,
     Wait,
 )
-from pn2code.robot.motion import MotionFault, Still, Trajectory, other_branches, plan_lin, plan_ptp
+from pn2code.robot.model import AXES
+from pn2code.robot.motion import (
+    LinearTrajectory,
+    MotionFault,
+    MotionLimits,
+    Still,
+    Trajectory,
+    check_axes,
+    other_branches,
+    plan_circ,
+    plan_lin,
+    plan_ptp,
+)
 from pn2code.robot.robot_cell import CellRobot, MotionConfig
 from pn2code.robot.transforms import Array, describe, difference, inverse, matrix_of, pose_of
 
 CHECK_LENGTH = 0.005  # m: on a line, samples are no further apart than this on average,
 CHECK_ANGLE = math.radians(2.0)  # nor than this
-MotionKind = Literal["ptp", "lin", "tool", "measure", "wait"]
+MotionKind = Literal["ptp", "lin", "circ", "tool", "measure", "wait"]
+_NO_FRAMES: Mapping[str, Pose] = MappingProxyType({})
 
 
 @frozen(eq=False)
@@ -79,12 +98,21 @@ class Motion:
 
 
 class RobotExecutor:
-    """One robot's state between commands: its joint position; begins at HOME."""
+    """One robot's state between commands: its joint position; begins at HOME.
 
-    def __init__(self, robot: CellRobot, config: MotionConfig) -> None:
+    Args:
+        robot: the arm.
+        config: how it moves.
+        frames: in which poses can be given beside the world, by name; each in the world.
+    """
+
+    def __init__(
+        self, robot: CellRobot, config: MotionConfig, frames: Mapping[str, Pose] = _NO_FRAMES
+    ) -> None:
         self.robot = robot
         self._config = config
         self._limits = robot.limits(config)
+        self._frames = {name: matrix_of(pose) for name, pose in frames.items()}
         self._T_world_base = robot.T_world_base
         self._T_base_world = inverse(self._T_world_base)
         self.q: Array = np.array(robot.home)
@@ -142,12 +170,13 @@ class RobotExecutor:
             case MoveJoint():
                 return self._to_pose(command, now)
             case MoveHome():
-                home = np.array(self.robot.home)
-                k = self.robot.kinematics
-                path = plan_ptp(k, self.q, home, self._limits, command.speed)
-                return self._moving(command, "ptp", now, path, home, k.forward(home))
+                return self._to_axes(command, now, np.array(self.robot.home))
+            case MoveAxes():
+                return self._to_axes(command, now, self._axes(command))
             case MoveLinear():
                 return self._linear(command, now)
+            case MoveCircular():
+                return self._circular(command, now)
             case ToolAction():
                 return self._standing(command, "tool", now, command.duration)
             case Wait():
@@ -158,33 +187,106 @@ class RobotExecutor:
             case _:
                 assert_never(command)
 
-    def reach(self, pose: Pose) -> None:
-        """Raises MotionFault when no joint position puts the TCP there, with robot and pose in the message."""
-        command = MoveJoint(pose)
-        try:
-            self._found(command)
-        except MotionFault as fault:
-            raise self._named(fault, command) from None
+    def reach(self, command: Move) -> None:
+        """Raises MotionFault, with robot and pose, when no joint position puts the TCP where a move leads.
 
-    def _found(self, command: MoveJoint) -> tuple[Array, Array]:
+        Of a line or an arc only its end is looked at, in the branch of joint moves; nothing of increments, which begin
+        wherever the tool is.
+        """
+        told: Command = command
+        if isinstance(command, MoveLinear | MoveCircular):
+            told = MoveJoint(command.target, frame=command.frame)
+        try:
+            match command:
+                case MoveAxes():
+                    self._axes(command)
+                case MoveHome():
+                    pass
+                case MoveJoint() | MoveLinear() | MoveCircular() if command.frame != "tool":
+                    self._found(command.target, command.frame)
+        except MotionFault as fault:
+            raise self._named(fault, told) from None
+
+    def _found(self, pose: Pose, frame: str) -> tuple[Array, Array]:
         """The joint position nearest to where it is, and the target in the base frame."""
-        target = self._T_base_world @ self._checked(command.target)
+        target = self._in_base(pose, frame)
         found = self.robot.kinematics.nearest(target, self.q, self.robot.branch)
         if found is None:
             raise self._unreachable(target)
         return found.q, target
 
+    def _in_base(self, pose: Pose, frame: str) -> Array:
+        """A pose of the world, of a frame that has a name, or of the tool, in the base frame."""
+        own = self._checked(pose)
+        if frame == "world":
+            return np.asarray(self._T_base_world @ own)
+        if frame == "tool":
+            return np.asarray(self._T_base_tcp @ own)
+        if frame not in self._frames:
+            raise MotionFault("bad-command", f"there is no frame `{frame}` in cell.toml")
+        return np.asarray(self._T_base_world @ (self._frames[frame] @ own))
+
+    def _axes(self, command: MoveAxes) -> Array:
+        """The joint position of a command, which is inside the limits."""
+        q = np.array(command.axes)
+        if q.shape != (AXES,) or not np.isfinite(q).all():
+            raise MotionFault(
+                "bad-command", f"a joint position has {AXES} finite angles, not {command.axes}"
+            )
+        check_axes(self.robot.kinematics, q)
+        return q
+
+    def _limited(self, command: Move) -> MotionLimits:
+        """What the arm may do on this command."""
+        part = command.acceleration
+        if part == 1.0:
+            return self._limits
+        if not 0.0 < part <= 1.0:
+            raise MotionFault(
+                "bad-command",
+                f"acceleration must be a fraction above 0 and at most 1, but it is {part:g}",
+            )
+        return replace(
+            self._limits,
+            acceleration=self._limits.acceleration * part,
+            linear_acceleration=self._limits.linear_acceleration * part,
+        )
+
     def _to_pose(self, command: MoveJoint, now: float) -> Motion:
-        q, target = self._found(command)
-        path = plan_ptp(self.robot.kinematics, self.q, q, self._limits, command.speed)
+        q, target = self._found(command.target, command.frame)
+        path = plan_ptp(self.robot.kinematics, self.q, q, self._limited(command), command.speed)
         return self._moving(command, "ptp", now, path, q, target)
 
+    def _to_axes(self, command: MoveHome | MoveAxes, now: float, q: Array) -> Motion:
+        k = self.robot.kinematics
+        path = plan_ptp(k, self.q, q, self._limited(command), command.speed)
+        return self._moving(command, "ptp", now, path, q, k.forward(q))
+
     def _linear(self, command: MoveLinear, now: float) -> Motion:
-        goal = self._checked(command.target)
-        start = self._T_base_tcp
-        target = start @ goal if command.frame == "tool" else self._T_base_world @ goal
-        path = plan_lin(self.robot.kinematics, self.q, start, target, self._limits, command.speed)
+        target = self._in_base(command.target, command.frame)
+        path = plan_lin(
+            self.robot.kinematics,
+            self.q,
+            self._T_base_tcp,
+            target,
+            self._limited(command),
+            command.speed,
+        )
         return self._moving(command, "lin", now, path, path.q(path.duration), target)
+
+    def _circular(self, command: MoveCircular, now: float) -> Motion:
+        via = self._in_base(command.via, command.frame)
+        target = self._in_base(command.target, command.frame)
+        path = plan_circ(
+            self.robot.kinematics,
+            self.q,
+            self._T_base_tcp,
+            via,
+            target,
+            self._limited(command),
+            command.speed,
+        )
+        return self._moving(command, "circ", now, path, path.q(path.duration), target)
 
     def _checked(self, pose: Pose) -> Array:
         values = (pose.x, pose.y, pose.z, pose.rx, pose.ry, pose.rz)
@@ -218,8 +320,10 @@ class RobotExecutor:
         """The fault with the robot's name and the pose in the world."""
         if fault.pose is not None:
             pose = pose_of(self._T_world_base @ matrix_of(fault.pose))
-        elif isinstance(command, MoveJoint):
+        elif isinstance(command, MoveJoint) and command.frame == "world":
             pose = command.target
+        elif isinstance(command, MoveJoint) and command.frame in self._frames:
+            pose = pose_of(self._frames[command.frame] @ matrix_of(command.target))
         else:
             pose = self.pose
         message = f"robot `{self.robot.name}`: {fault.message}, at TCP pose {describe(pose)}"
@@ -247,7 +351,11 @@ class RobotExecutor:
         self._next = (q_end, T_end)
         target = pose_of(self._T_world_base @ T_end)
         step = self._config.sample
-        if kind == "lin":
+        if isinstance(path, LinearTrajectory) and kind == "circ":
+            way, turn = path.line.length, path.line.angle
+            parts = math.ceil(max(way / CHECK_LENGTH, turn / CHECK_ANGLE, 1.0) - 1e-6)
+            step = max(step, path.duration / parts)
+        elif kind == "lin":
             way, turn = difference(matrix_of(self.pose), matrix_of(target))
             parts = math.ceil(max(way / CHECK_LENGTH, turn / CHECK_ANGLE, 1.0) - 1e-6)
             step = max(step, path.duration / parts)

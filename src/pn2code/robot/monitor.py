@@ -123,10 +123,10 @@ class Monitor:
         """Puts the robots where they are at time `t` (s; joint positions in rad) and looks.
 
         Args:
-            kinds: what each robot is doing (absent: standing). On a linear move a singularity is a
+            kinds: what each robot is doing (absent: standing). On a line or an arc a singularity is a
                 fault; a joint move passes through one without noticing (the wrist does so often).
                 On a joint move nothing may touch anything: parts that may come together do so only
-                on linear moves and while the tool works.
+                on lines and arcs and while the tool works.
         """
         kinds = kinds or {}
         t = float(t)
@@ -139,7 +139,7 @@ class Monitor:
         poses = {s.robot: s.pose for s in samples}
         fault: Fault | None = None
         for s in samples:
-            fault = fault or self._own_fault(s, t, kinds.get(s.robot) == "lin")
+            fault = fault or self._own_fault(s, t, kinds.get(s.robot) in ("lin", "circ"))
             c = s.conditioning
             axis = (self._cell.robot(s.robot).arm.axes[s.limit_axis],)
             self._note("limit", s, s.limit_margin, t, phase, axis)

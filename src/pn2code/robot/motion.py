@@ -39,6 +39,9 @@ _CHECK_TIME = 0.01
 _CHECK_LENGTH = 0.002
 _CHECK_ANGLE = math.radians(0.5)
 _SAME = 1e-12
+# m: places that are nearer to each other are one; of a chord's length: so flat, an arc is a line.
+_NEAR = 1e-6
+_FLAT = 1e-5
 
 
 class MotionFault(Exception):  # noqa: N818
@@ -207,17 +210,47 @@ class JointTrajectory:
         return np.asarray(out)
 
 
+def turning(start: Array, target: Array) -> tuple[Array, float]:
+    """Axis (in the start's frame, so that R(s) = R_start * Rot(axis, s * angle)) and angle from one pose to another."""
+    turn = rotation_vector(start[:3, :3].T @ target[:3, :3])
+    angle = float(np.linalg.norm(turn))
+    return (turn / angle if angle > _SAME else np.array([0.0, 0.0, 1.0])), angle
+
+
+class Way(Protocol):
+    """A way of the TCP, by the fraction s of it, at a constant speed of its place and of its turning.
+
+    Attributes:
+        start: where it begins; length: m; angle: rad, how far the tool turns; axis: about which, in its own frame.
+        bend: a bound on how fast the velocity of the TCP for one unit of s turns in space, m.
+        name: for messages.
+    """
+
+    start: Array
+    length: float
+    angle: float
+    axis: Array
+    bend: float
+    name: str
+
+    def at(self, s: Array) -> Array:
+        """Poses (n, 4, 4) at fractions s of the way."""
+
+    def shifts(self, s: Array) -> Array:
+        """Velocity of the TCP's place (m) for one unit of s, (n, 3)."""
+
+
 class Line:
     """Straight from one pose to another, turning about one axis at constant ratio (slerp)."""
+
+    bend = 0.0
+    name = "line"
 
     def __init__(self, start: Array, target: Array) -> None:
         self.start, self.target = start, target
         self.shift = target[:3, 3] - start[:3, 3]
         self.length = float(np.linalg.norm(self.shift))
-        # In the start's frame, so that R(s) = R_start * Rot(axis, s * angle).
-        turn = rotation_vector(start[:3, :3].T @ target[:3, :3])
-        self.angle = float(np.linalg.norm(turn))
-        self.axis = turn / self.angle if self.angle > _SAME else np.array([0.0, 0.0, 1.0])
+        self.axis, self.angle = turning(start, target)
 
     def at(self, s: Array) -> Array:
         """Poses (n, 4, 4) at fractions s of the way."""
@@ -228,16 +261,79 @@ class Line:
         out[s >= 1.0] = self.target
         return out
 
-    def twist(self, rotation: Array) -> Array:
-        """Velocity of the TCP (m, rad; base frame) for one unit of s, at an orientation on the way."""
-        return np.concatenate([self.shift, rotation @ (self.axis * self.angle)])
+    def shifts(self, s: Array) -> Array:
+        """The same everywhere."""
+        return np.broadcast_to(self.shift, (len(s), 3))
+
+
+class Arc:
+    """A piece of a circle through three places, from one pose to another, turning as a line does.
+
+    Args:
+        start: a pose; via: only its place matters; target: a pose.
+
+    Raises:
+        MotionFault: no circle, or every one, goes through the places.
+    """
+
+    name = "arc"
+
+    def __init__(self, start: Array, via: Array, target: Array) -> None:
+        self.start, self.target = start, target
+        a, b, c = (pose[:3, 3] for pose in (start, via, target))
+        chord = c - a
+        long = float(np.linalg.norm(chord))
+        if long < _NEAR:
+            raise MotionFault(
+                "bad-command",
+                "a circular move ends where it begins, so that every circle through these places would do; make "
+                "two moves of it",
+                pose=pose_of(target),
+            )
+        off = (b - a) - chord * float((b - a) @ chord) / long**2
+        bent = float(np.linalg.norm(off))
+        if bent < max(_NEAR, _FLAT * long):
+            raise MotionFault(
+                "bad-command",
+                f"the places of a circular move lie on a line (the one on the way is {1000.0 * bent:.4f} mm off it), "
+                "so there is no circle through them; move on a line",
+                pose=pose_of(via),
+            )
+        # In the plane with x along the chord and y towards the place on the way.
+        x_axis, y_axis = chord / long, off / bent
+        x = float((b - a) @ x_axis)
+        centre_y = (x * x + bent * bent - x * long) / (2.0 * bent)
+        self._centre = a + 0.5 * long * x_axis + centre_y * y_axis
+        self.radius = math.hypot(0.5 * long, centre_y)
+        self._u = (a - self._centre) / self.radius
+        # The arc runs on the side of the chord on which the place on the way is: first along y, then down again.
+        self._v = (0.5 * long * y_axis - centre_y * x_axis) / self.radius
+        self.sweep = 2.0 * math.atan2(0.5 * long, -centre_y)
+        self.length = self.radius * self.sweep
+        self.axis, self.angle = turning(start, target)
+        self.bend = self.length * self.sweep
+
+    def at(self, s: Array) -> Array:
+        """Poses (n, 4, 4) at fractions s of the way."""
+        out = np.repeat(self.start[None], len(s), axis=0)
+        t = (s * self.sweep)[:, None]
+        out[:, :3, 3] = self._centre + self.radius * (np.cos(t) * self._u + np.sin(t) * self._v)
+        if self.angle > _SAME:
+            out[:, :3, :3] = self.start[:3, :3] @ rotation_about(self.axis, s * self.angle)
+        out[s >= 1.0] = self.target
+        return out
+
+    def shifts(self, s: Array) -> Array:
+        """Along the tangents."""
+        t = (s * self.sweep)[:, None]
+        return np.asarray(self.length * (np.cos(t) * self._v - np.sin(t) * self._u))
 
 
 class LinearTrajectory:
-    """LIN: the TCP on a line, joints by the closed-form inverse on one branch."""
+    """LIN and CIRC: the TCP on a line or an arc, joints by the closed-form inverse on one branch."""
 
     def __init__(
-        self, kinematics: Kinematics, line: Line, branch: Branch, law: _Law, start: Array
+        self, kinematics: Kinematics, line: Way, branch: Branch, law: _Law, start: Array
     ) -> None:
         self._k, self.line, self.branch, self._law = kinematics, line, branch, law
         self.duration = law.duration
@@ -265,16 +361,19 @@ class LinearTrajectory:
         """Joint speed, rad/s."""
         if not 0.0 < t < self.duration:
             return np.zeros(AXES)
-        return np.asarray(self.rates(self.q(t)[None], np.array([self.rate(t)]))[0])
+        now = np.array([t])
+        return np.asarray(self.rates(self.q(t)[None], np.array([self.rate(t)]), self.way(now))[0])
 
     def rate(self, t: float) -> float:
         """Speed along the way, 1/s."""
         return self._law.at(t)[1]
 
-    def rates(self, q: Array, rate: Array) -> Array:
-        """Joint speeds (n, 6) at joint positions (n, 6) for speeds along the way (1/s)."""
+    def rates(self, q: Array, rate: Array, s: Array) -> Array:
+        """Joint speeds (n, 6) at joint positions (n, 6) for speeds along the way (1/s), at fractions s of it."""
         now = self._k.forward_many(q)
-        twist = np.stack([self.line.twist(r) for r in now[:, :3, :3]]) * rate[:, None]
+        spin = self.line.axis * self.line.angle
+        spins = np.stack([r @ spin for r in now[:, :3, :3]])
+        twist = np.concatenate([self.line.shifts(s), spins], axis=1) * rate[:, None]
         return np.asarray((np.linalg.pinv(self._k.jacobian_many(q)) @ twist[..., None])[..., 0])
 
     def sample(self, times: Array) -> Array:
@@ -336,10 +435,54 @@ def plan_lin(
     )
     size = max(line.length, line.angle)
     law = _Law(fast, limits.linear_acceleration / size, limits.linear_jerk / size)
-    branch = kinematics.branch_of(start)
-    out = LinearTrajectory(kinematics, line, branch, law, start)
+    return _led(kinematics, line, law, start, limits)
+
+
+def plan_circ(
+    kinematics: Kinematics,
+    start: Array,
+    T_start: Array,
+    T_via: Array,
+    T_target: Array,
+    limits: MotionLimits,
+    speed: float | None = None,
+) -> LinearTrajectory:
+    """A circular move from `T_start`, where `start` puts the TCP, through the place of `T_via` to `T_target`.
+
+    The TCP's acceleration and jerk towards the centre count as well: with the speed v, the radius r and the law's own
+    acceleration a and jerk j, the former are v^2/r and (v^3/r^2, 3 v a/r), so that each gets a part of what is allowed.
+
+    Args:
+        speed: m/s, as fast as the limits allow on this radius; None: the configured one.
+
+    Raises MotionFault as `plan_lin` does, and where there is no arc.
+    """
+    wanted = limits.linear_velocity if speed is None else speed
+    _check_speed(wanted, math.inf, "linear speed must be above 0")
+    arc = Arc(T_start, T_via, T_target)
+    most, jerk, r = limits.linear_acceleration, limits.linear_jerk, arc.radius
+    v = min(wanted, math.sqrt(most * r / math.sqrt(2.0)), (jerk * r * r / 4.0) ** (1.0 / 3.0))
+    turning = limits.angular_velocity / arc.angle if arc.angle > _SAME else math.inf
+    fast = min(v / arc.length, turning)
+    v = fast * arc.length
+    a = min(most / math.sqrt(2.0), jerk * r / (6.0 * v))
+    size = max(arc.length, arc.angle)
+    law = _Law(fast, a / size, 0.5 * jerk / size)
+    return _led(kinematics, arc, law, start, limits)
+
+
+def _led(
+    kinematics: Kinematics, way: Way, law: _Law, start: Array, limits: MotionLimits
+) -> LinearTrajectory:
+    """The joint positions along a way, checked."""
+    out = LinearTrajectory(kinematics, way, kinematics.branch_of(start), law, start)
     _check_line(kinematics, out, limits)
     return out
+
+
+def check_axes(kinematics: Kinematics, q: Array) -> None:
+    """Raises MotionFault for a joint position outside the limits."""
+    _check_limits(kinematics, q[None])
 
 
 def _check_speed(value: float, most: float, message: str) -> None:
@@ -377,7 +520,7 @@ def _check_line(kinematics: Kinematics, lin: LinearTrajectory, limits: MotionLim
         others = _other_branches(kinematics, lin, first)
         raise MotionFault(
             "unreachable",
-            f"the line leaves the reach of branch {lin.branch} "
+            f"the {lin.line.name} leaves the reach of branch {lin.branch} "
             f"{1000 * lin.line.length * float(lin.way(times[first : first + 1])[0]):.1f} mm after its start"
             + others,
             pose=where,
@@ -388,13 +531,15 @@ def _check_line(kinematics: Kinematics, lin: LinearTrajectory, limits: MotionLim
     except MotionFault as fault:
         assert fault.time is not None, "it has the times"
         others = _other_branches(kinematics, lin, int(np.argmax(times >= fault.time)))
-        message = f"on branch {lin.branch}, on which the line begins, {fault.message}{others}"
+        message = (
+            f"on branch {lin.branch}, on which the {lin.line.name} begins, {fault.message}{others}"
+        )
         raise MotionFault(
             fault.kind, message, pose=fault.pose, q=fault.q, time=fault.time
         ) from None
     # Exact joint speeds, and the real steps: the one sees a singularity nearby, the other a leap over it.
     rate = np.array([lin.rate(float(t)) for t in times])
-    exact = np.abs(lin.rates(path, rate)) / limits.axis_velocity
+    exact = np.abs(lin.rates(path, rate, lin.way(times))) / limits.axis_velocity
     step = np.zeros_like(exact)
     step[1:] = np.abs(np.diff(path, axis=0)) / np.diff(times)[:, None] / limits.axis_velocity
     load = np.maximum(exact, step)
@@ -408,7 +553,7 @@ def _check_line(kinematics: Kinematics, lin: LinearTrajectory, limits: MotionLim
     leap = step[first, axis] > 2.0 * exact[first, axis] + 0.5
     singular = leap or condition.condition > SINGULAR_CONDITION
     what = (
-        f"the line passes a singularity (condition number {condition_text(condition.condition)}, elbow "
+        f"the {lin.line.name} passes a singularity (condition number {condition_text(condition.condition)}, elbow "
         f"{math.degrees(condition.elbow):.1f} deg from straight, wrist "
         f"{math.degrees(condition.wrist):.1f} deg): "
         if singular

@@ -147,6 +147,7 @@ class RobotCell:
     Args:
         parts: the kinds of parts that are carried, by name.
         places: poses in the world that have a name.
+        frames: in which moves can be given, by name; each in the world.
     """
 
     robots: tuple[CellRobot, ...]
@@ -154,6 +155,7 @@ class RobotCell:
     scene: SceneConfig
     parts: Mapping[str, PartKind] = field(default_factory=dict)
     places: Mapping[str, Pose] = field(default_factory=dict)
+    frames: Mapping[str, Pose] = field(default_factory=dict)
 
     def robot(self, name: str) -> CellRobot:
         """The robot of that name; KeyError if there is none."""

@@ -20,6 +20,7 @@ from pn2code.cell_file.keys import Section
 from pn2code.diagnostics import Diagnostics
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes
+from pn2code.robot.frames import read_frames
 from pn2code.robot.kinematics import BRANCH_NAMES, Kinematics
 from pn2code.robot.model import find_arm, find_tool
 from pn2code.robot.parts_table import PartKind, read_kinds, read_places
@@ -76,8 +77,11 @@ def load(
     names = tuple(geometry.get("robots", {}))
     kinds = read_kinds(table("parts", None), folder)
     places = read_places(table("places", None))
+    frames = read_frames(table("frames", None))
     scene = _scene(table("scene", SCENE), robots, names, kinds, folder)
-    return RobotCell(robots, motion, scene, kinds, places) if len(d.errors) == before else None
+    if len(d.errors) != before:
+        return None
+    return RobotCell(robots, motion, scene, kinds, places, frames)
 
 
 def _motion(t: Table) -> MotionConfig:

@@ -48,8 +48,8 @@ CHOICE = register(
 PRIMITIVE = register(
     "robot-primitive",
     "a robot primitive is used in a way that is not a command",
-    "Primitives are the functions named in `[primitives]` of cell.toml. Moves and "
-    "measurements take a pose, `tool` and `move_home` take unit, `wait` takes a number of "
-    "seconds. They are called in code segments only. A device has no arm: it can `wait` and do "
-    "`tool` actions.",
+    "Primitives are the functions named in `[primitives]` of cell.toml. Moves and measurements take a pose, "
+    "`move_axes` takes a joint position, `move_circular` two poses, `tool` and `move_home` take unit, `wait` takes a "
+    "number of seconds. They are called in code segments only. A device has no arm: it can `wait` and do `tool` "
+    "actions.",
 )

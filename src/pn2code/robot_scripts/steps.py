@@ -26,7 +26,7 @@ from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import ArcKind, BindAll, BindEquation, BindRandom
 from pn2code.robot_scripts import codes as codes
-from pn2code.robot_scripts import membership
+from pn2code.robot_scripts import membership, moves
 from pn2code.robot_scripts.assignments import one_after_the_other
 from pn2code.robot_scripts.conditions import Asked, Order
 from pn2code.robot_scripts.evaluate import Evaluator
@@ -326,38 +326,23 @@ class StepTranslator:
                 span,
                 codes.PRIMITIVE,
             )
-        speed = primitive.speed
-        motion = t.Motion.LINEAR if command == "move_linear" else t.Motion.JOINT
-        at: t.Expression | None = None
-        if speed is not None:
-            at = t.Quantity(speed, "mm/s" if motion is t.Motion.LINEAR else "%")
-        elif isinstance(argument, Rec) and len(argument.fields) == 2 and command != "wait":
-            at = self._speed(motion, argument.get("2"), span)
-            argument = argument.get("1")
-        if command in ("move_joint", "move_linear", "measure"):
-            if not (isinstance(argument, Scalar) and argument.type is tdl.Type.POSE):
-                raise UnsupportedError(
-                    f"`{name}` takes a pose: a record of six reals x y z rx ry rz",
-                    span,
-                    codes.PRIMITIVE,
-                )
-            if command == "measure":
-                transition = s.step.transition
-                element = Element(
-                    transition.name,
-                    "transition",
-                    transition.origin,
-                    f"transition {transition.short} ({transition.id})",
-                )
-                (target,) = self.names.shared(
-                    [output], ScalarShape(tdl.Type.POSE), element, self._taken
-                )
-                self._taken = self._taken | {target}
-                self._nodes.append(Line(t.Measure(argument.exp, t.Target(target))))
-                return Scalar(t.Name(target), tdl.Type.POSE)
-            self._nodes.append(Line(t.Move(motion, argument.exp, primitive.frame, at)))
-        elif command == "move_home":
-            self._nodes.append(Line(t.Move(motion, None, None, at)))
+        if command.startswith("move_"):
+            self._nodes += [Line(m) for m in self._moves(primitive, argument, span)]
+        elif command == "measure":
+            nominal = moves.pose(argument, name, span)
+            transition = s.step.transition
+            element = Element(
+                transition.name,
+                "transition",
+                transition.origin,
+                f"transition {transition.short} ({transition.id})",
+            )
+            (target,) = self.names.shared(
+                [output], ScalarShape(tdl.Type.POSE), element, self._taken
+            )
+            self._taken = self._taken | {target}
+            self._nodes.append(Line(t.Measure(nominal, t.Target(target))))
+            return Scalar(t.Name(target), tdl.Type.POSE)
         elif command == "tool":
             duration = t.Quantity(primitive.duration_s, "s")
             self._nodes.append(Line(t.Tool(primitive.action, duration, handling)))
@@ -371,10 +356,21 @@ class StepTranslator:
             self._nodes.append(Line(t.WaitTime(duration_exp)))
         return Rec(())
 
-    def _speed(self, motion: t.Motion, given: Value, span: Span) -> t.Expression:
+    def _moves(self, primitive: Primitive, argument: Value, span: Span) -> list[t.Move]:
+        """What a call of a primitive that moves the arm makes it do."""
+        at: t.Expression | None = None
+        if primitive.speed is not None:
+            at = t.Quantity(primitive.speed, "mm/s" if primitive.is_linear else "%")
+        else:
+            argument, speed = moves.with_speed(primitive.command, argument)
+            if speed is not None:
+                at = self._speed(speed, span, is_linear=primitive.is_linear)
+        return moves.of(primitive, argument, at, span)
+
+    def _speed(self, given: Value, span: Span, *, is_linear: bool) -> t.Expression:
         """The speed that a function takes beside the pose; one that is known is possible."""
         assert isinstance(given, Scalar), "the cell has been checked"
-        if motion is t.Motion.LINEAR:
+        if is_linear:
             at, most, unit = as_quantity(given, tdl.Type.SPEED).exp, math.inf, "mm/s"
         else:
             percent = as_real(given).exp

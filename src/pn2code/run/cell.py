@@ -179,7 +179,7 @@ def _scripts(
     for robot in config.programs:
         file = files[f"{robot.name}.tdl"]
         tree = parse(SourceText(file.text, Origin(file.path, 1, 1)), d)
-        checked = check(tree, d) if tree is not None else None
+        checked = check(tree, d, config.frame_names) if tree is not None else None
         if checked is None:
             return None
         out[robot.name] = (file, checked)
@@ -314,7 +314,9 @@ def _start(
             continue
         script, program = prepared.scripts[name]
         executor = (
-            RobotExecutor(cell.robot(name), cell.motion) if name in arms else DeviceExecutor(name)
+            RobotExecutor(cell.robot(name), cell.motion, cell.frames)
+            if name in arms
+            else DeviceExecutor(name)
         )
         files = RobotFiles(side, GRACE_S if options.realtime else 0.0)
         engine.add_robot(name, script, program, files, executor)

@@ -31,6 +31,8 @@ from pn2code.robot.commands import (
     Command,
     Handling,
     Measure,
+    MoveAxes,
+    MoveCircular,
     MoveHome,
     MoveJoint,
     MoveLinear,
@@ -463,7 +465,9 @@ class Engine:
         self._note_action(robot, self.now)
         robot.executor.finish()
         robot.motion = None
-        if robot.arm is not None and isinstance(motion.command, MoveJoint | MoveLinear):
+        if robot.arm is not None and isinstance(
+            motion.command, MoveJoint | MoveLinear | MoveCircular
+        ):
             arm = robot.arm.robot
             reached = pose_of(arm.T_world_base @ arm.kinematics.forward(robot.arm.q))
             self.record.note_error("TCP off the commanded pose", distance(reached, motion.target))
@@ -574,10 +578,14 @@ def _kind(command: Command) -> tuple[str, str]:
     match command:
         case MoveJoint():
             return "joint", "joint"
+        case MoveAxes():
+            return "joint", "axes"
         case MoveHome():
             return "home", "home"
         case MoveLinear():
             return "linear", "linear"
+        case MoveCircular():
+            return "linear", "circular"
         case ToolAction(action=action):
             return "tool", action
         case Measure():
@@ -589,10 +597,15 @@ def _kind(command: Command) -> tuple[str, str]:
 def _words(command: Command) -> str:
     """A command in the units of the scripts."""
     match command:
-        case MoveJoint(target=p) | MoveLinear(target=p) | Measure(nominal=p):
+        case MoveJoint() | MoveLinear() | MoveCircular() | Measure():
+            p = command.nominal if isinstance(command, Measure) else command.target
             mm = " ".join(f"{v * 1000:.4f}" for v in (p.x, p.y, p.z))
             deg = " ".join(f"{np.degrees(v):.4f}" for v in (p.rx, p.ry, p.rz))
-            return f"{_kind(command)[0]} {mm} mm, {deg} deg"
+            frame = "world" if isinstance(command, Measure) else command.frame
+            within = "" if frame in ("world", "tool") else f" in {frame}"
+            return f"{_kind(command)[1]} {mm} mm, {deg} deg{within}"
+        case MoveAxes(axes=axes):
+            return f"axes {' '.join(f'{np.degrees(v):.4f}' for v in axes)} deg"
         case MoveHome():
             return "home"
         case ToolAction(action=action):

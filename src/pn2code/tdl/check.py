@@ -8,7 +8,7 @@ reached, variables that may have no value, declarations that nothing uses.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 
 from pn2code.base.frozen import frozen
@@ -19,6 +19,9 @@ from pn2code.tdl import tree as t
 from pn2code.tdl.evaluate import ScriptError, ScriptValue, evaluate
 from pn2code.tdl.expressions import RESERVED, Scope, type_of
 from pn2code.tdl.types import NUMBERS, QUANTITIES, Type, fits
+
+AXES = 6
+"""Of an arm."""
 
 
 @frozen
@@ -39,10 +42,18 @@ class CheckedProgram:
     bodies: Mapping[str, flow.Body]
 
 
-def check(program: t.Program, d: Diagnostics) -> CheckedProgram | None:
-    """Check a script; None when an error was reported (warnings do not count)."""
+def check(
+    program: t.Program, d: Diagnostics, frames: Collection[str] | None = ()
+) -> CheckedProgram | None:
+    """Check a script; None when an error was reported (warnings do not count).
+
+    Args:
+        program: the script.
+        d: gets what is wrong.
+        frames: that the cell has, beside `world` and `tool`; None: it is not looked at.
+    """
     before = len(d.errors)
-    checker = _Checker(program, d)
+    checker = _Checker(program, d, frames)
     checker.declarations()
     for procedure in program.procedures:
         checker.body(procedure.body)
@@ -79,8 +90,9 @@ class _ConstantsOnly:
 class _Checker:
     """Walks a program once."""
 
-    def __init__(self, program: t.Program, d: Diagnostics) -> None:
+    def __init__(self, program: t.Program, d: Diagnostics, frames: Collection[str] | None) -> None:
         self.program = program
+        self.frames = frames
         self.d = d
         self.variables: dict[str, t.Variable] = {}
         self.constants: dict[str, ScriptValue] = {}
@@ -352,7 +364,14 @@ class _Checker:
             case t.Move():
                 self.move(s)
             case t.Speed(motion, value):
-                if value is not None:
+                if motion is t.Motion.CIRCULAR:
+                    self.d.error(
+                        codes.SPEED,
+                        "circular moves have the speed of linear moves",
+                        s.span,
+                        hint="write `speed $linear`",
+                    )
+                elif value is not None:
                     self.speed(motion, value)
             case t.WaitTime(duration) | t.Tool(_, duration):
                 self.expect(duration, Type.TIME, "the duration")
@@ -379,29 +398,34 @@ class _Checker:
                     )
 
     def move(self, s: t.Move) -> None:
-        if s.target is not None:
-            self.expect(s.target, Type.POSE, "the target")
+        self.goal(s)
         if s.speed is not None:
             self.speed(s.motion, s.speed)
+        if s.acceleration is not None:
+            self.fraction(s.acceleration, "acceleration")
+        is_position = s.target is None or isinstance(s.target, t.Axes)
+        what = "`home`" if s.target is None else "`axes(...)`"
         if s.frame is None:
-            if s.motion is t.Motion.LINEAR and s.target is None:
+            if s.motion is not t.Motion.JOINT and is_position:
                 self.d.error(
                     codes.FRAME,
-                    "`home` is a joint position",
+                    f"{what} is a joint position",
                     s.span,
-                    hint="write `move $joint home`",
+                    hint="write `move $joint " + ("home`" if s.target is None else "axes(...)`"),
                 )
             return
         span = s.frame_span or s.span
-        if s.frame not in ("world", "tool"):
+        known = ("world", "tool", *(self.frames or ()))
+        if s.frame not in known and self.frames is not None:
             self.d.error(
                 codes.UNKNOWN_FRAME,
                 f"there is no frame `{s.frame}`",
                 span,
-                hint=did_you_mean(s.frame, ("world", "tool")) or "frames are `world` and `tool`",
+                hint=did_you_mean(s.frame, known)
+                or "frames are `world`, `tool`, and those of [frames] in the cell's cell.toml",
             )
-        elif s.target is None:
-            self.d.error(codes.FRAME, "`home` is a joint position and has no frame", span)
+        elif is_position:
+            self.d.error(codes.FRAME, f"{what} is a joint position and has no frame", span)
         elif s.motion is t.Motion.JOINT and s.frame == "tool":
             self.d.error(
                 codes.FRAME,
@@ -410,17 +434,48 @@ class _Checker:
                 hint="write `move $linear ... in tool`, or leave the frame out",
             )
 
+    def goal(self, s: t.Move) -> None:
+        """Where a move goes: an arc by way of somewhere, nothing else so."""
+        if isinstance(s.target, t.Axes):
+            if len(s.target.angles) != AXES:
+                self.d.error(
+                    codes.ARGUMENTS,
+                    f"`axes` takes {AXES} angles, but {len(s.target.angles)} are given",
+                    s.target.span,
+                )
+            for number, angle in enumerate(s.target.angles, 1):
+                self.expect(angle, Type.ANGLE, f"the angle of axis {number}")
+        elif s.target is not None:
+            self.expect(s.target, Type.POSE, "the target")
+        if s.via is not None:
+            self.expect(s.via, Type.POSE, "the pose on the way")
+        if (s.via is not None) != (s.motion is t.Motion.CIRCULAR):
+            self.d.error(
+                codes.VIA,
+                "a circular move needs a pose on the way"
+                if s.via is None
+                else "only a circular move goes by way of a pose",
+                s.span if s.via is None else s.via.span,
+                hint="write `move $circular END via POSE`",
+            )
+
     def speed(self, motion: t.Motion, value: t.Expression) -> None:
-        joint = motion is t.Motion.JOINT
-        what = "joint speed" if joint else "linear speed"
-        if not self.expect(value, Type.REAL if joint else Type.SPEED, what):
+        if motion is t.Motion.JOINT:
+            self.fraction(value, "joint speed")
+            return
+        if not self.expect(value, Type.SPEED, "linear speed"):
             return
         known = self.known(value)
-        if known is not None and not (0 < known <= 1 if joint else known > 0):
+        if known is not None and not known > 0:
+            self.d.error(codes.SPEED, "the linear speed must be above zero", value.span)
+
+    def fraction(self, value: t.Expression, what: str) -> None:
+        if not self.expect(value, Type.REAL, what):
+            return
+        known = self.known(value)
+        if known is not None and not 0 < known <= 1:
             self.d.error(
-                codes.SPEED,
-                f"the {what} must be above zero" + (" and at most 100 %" if joint else ""),
-                value.span,
+                codes.SPEED, f"the {what} must be above zero and at most 100 %", value.span
             )
 
     def known(self, e: t.Expression) -> float | None:

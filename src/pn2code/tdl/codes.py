@@ -96,18 +96,26 @@ UNKNOWN_FIELD = register(
 UNKNOWN_FRAME = register(
     "tdl-unknown-frame",
     "there is no such frame",
-    "Frames are `world` (absolute) and `tool` (an increment in the tool frame as it is when the move begins).",
+    "Frames are `world` (absolute), `tool` (an increment in the tool frame as it is when the move begins), and those "
+    "of `[frames]` in cell.toml.",
 )
 FRAME = register(
     "tdl-frame",
     "a move cannot be made in this frame",
-    "`move $joint` goes to an absolute pose; only `move $linear` can be incremental (`in tool`).",
+    "`move $joint` goes to an absolute pose; only `move $linear` and `move $circular` can be incremental "
+    "(`in tool`). HOME and `axes(...)` are joint positions, which have no frame.",
 )
 UNKNOWN_MOTION = register(
     "tdl-unknown-motion",
     "there is no such motion",
-    "Motions are `$joint` (point to point, all axes together) and `$linear` (the TCP on a "
-    "straight line).",
+    "Motions are `$joint` (point to point, all axes together), `$linear` (the TCP on a straight line) and `$circular` "
+    "(the TCP on an arc).",
+)
+VIA = register(
+    "tdl-via",
+    "a pose on the way is missing, or is no use",
+    "`move $circular END via POSE` goes on the arc from where the TCP is through the position of POSE to END. Other "
+    "moves go by way of no pose.",
 )
 SPEED = register(
     "tdl-speed",

@@ -16,6 +16,7 @@ from functools import reduce
 from typing import Protocol, assert_never, cast
 
 from pn2code.base.frozen import frozen
+from pn2code.robot.approach import pose_before
 from pn2code.tdl import tree as t
 from pn2code.tdl.types import MAX_INT, MIN_INT, UNITS
 
@@ -185,6 +186,8 @@ def _call(function: str, arguments: list[ScriptValue]) -> ScriptValue:
     if function == "pose":
         return ScriptPose(*(float(cast(float, a)) for a in arguments))
     first = arguments[0]
+    if isinstance(first, ScriptPose) and function == "before":
+        return ScriptPose(*pose_before(astuple(first), cast(float, arguments[1])))
     if function == "computed":
         return True
     if function == "text":

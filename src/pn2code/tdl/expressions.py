@@ -25,7 +25,8 @@ from pn2code.tdl.types import (
 
 FUNCTIONS: Final[dict[str, int]] = {
     "abs": 1, "min": 2, "max": 2, "floor": 1, "ceil": 1, "round": 1, "trunc": 1, "sqrt": 1,
-    "real": 1, "sin": 1, "cos": 1, "tan": 1, "text": 1, "single": 1, "filled": 1, "pose": 6, "computed": 1,
+    "real": 1, "sin": 1, "cos": 1, "tan": 1, "text": 1, "single": 1, "filled": 1, "pose": 6, "before": 2,
+    "computed": 1,
 }  # fmt: skip
 """Built-in functions and their numbers of arguments."""
 
@@ -246,6 +247,11 @@ def _result(e: t.CallExpression, name: str, types: list[Type], scope: Scope) -> 
             ):
                 if found is not wanted:
                     _argument(f"`{label}` of a pose", wanted, found, a, scope)
+            return Type.POSE
+        case "before":
+            for i, (what, wanted) in enumerate((("pose", Type.POSE), ("distance", Type.LENGTH))):
+                if types[i] is not wanted:
+                    _argument(f"the {what} of `before`", wanted, types[i], e.arguments[i], scope)
             return Type.POSE
         case "text":
             return Type.STRING

@@ -9,7 +9,8 @@ from typing import Final
 
 KEYWORDS: Final = (
     "program", "input", "output", "const", "var", "procedure", "begin", "end", "single",
-    "move", "home", "in", "at", "speed", "default", "wait", "until", "read", "into", "clear", "write", "signal",
+    "move", "home", "axes", "via", "in", "at", "acceleration", "speed", "default",
+    "wait", "until", "read", "into", "clear", "write", "signal",
     "compute", "tool", "takes", "releases", "creates", "removes", "for",
     "measure", "sense", "mark", "with", "null", "stop", "call", "return", "goto", "exit", "when",
     "if", "then", "elsif", "else", "while", "loop",
@@ -32,9 +33,13 @@ block: statement*
 ?statement: move | speed | wait_time | wait_until | read | clear | write | assign | compute | tool
           | measure | sense | mark | stop | call | return | label | goto | exit | if | while | loop
 
-move: "move" MOTION target ("in" frame)? ("at" expression)?
-?target: HOME | expression
-frame: NAME | TOOL
+move: "move" MOTION target via? ("in" frame)? pace? ramp?
+?target: HOME | axes | expression
+axes: "axes" "(" expression ("," expression)* ")"
+via: "via" expression
+pace: "at" expression
+ramp: "acceleration" expression
+frame: NAME | TOOL | STRING
 speed: SPEED MOTION (DEFAULT | expression)
 wait_time: "wait" expression
 wait_until: "wait" "until" expression

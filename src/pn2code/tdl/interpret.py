@@ -103,7 +103,7 @@ class Interpreter:
         self._statements = self._marks = 0
         self._values: dict[str, ScriptValue] = {}
         self._at: list[tuple[str, int]] = [("", 0)]
-        self._speed: dict[t.Motion, float | None] = {t.Motion.JOINT: None, t.Motion.LINEAR: None}
+        self._speed: dict[t.Motion, float | None] = dict.fromkeys(t.Motion)
         self._measuring: tuple[t.Measure, ScriptPose, commands.Pose] | None = None
         self._sensing: t.Sense | None = None
         self._end: Finished | Fault | None = None
@@ -325,26 +325,8 @@ class Interpreter:
 
     def _command(self, s: t.Move | t.WaitTime | t.Tool | t.Measure) -> commands.Command:
         match s:
-            case t.Move(t.Motion.JOINT, target):
-                speed = self._move_speed(s)
-                joint = 1.0 if speed is None else speed
-                if not 0 < joint <= 1:
-                    raise ScriptError(
-                        f"joint speed {joint * 100:g} % is not above zero and at most 100 %"
-                    )
-                if target is None:
-                    return commands.MoveHome(joint)
-                return commands.MoveJoint(self._pose(target), joint)
-            case t.Move(_, target):
-                speed = self._move_speed(s)
-                if speed is not None and speed <= 0:
-                    raise ScriptError(f"linear speed {speed:g} mm/s is not above zero")
-                assert target is not None
-                return commands.MoveLinear(
-                    self._pose(target),
-                    "tool" if s.frame == "tool" else "world",
-                    None if speed is None else speed / 1000.0,
-                )
+            case t.Move():
+                return self._move(s)
             case t.WaitTime(duration):
                 return commands.Wait(self._duration(duration))
             case t.Tool(action, duration, handling):
@@ -354,8 +336,41 @@ class Interpreter:
                 self._measuring = (s, pose, self._pose(nominal))
                 return commands.Measure(self._measuring[2])
 
+    def _move(self, s: t.Move) -> commands.Move:
+        frame = s.frame or "world"
+        speed = self._move_speed(s)
+        ramp = 1.0 if s.acceleration is None else self._number(s.acceleration)
+        if not 0 < ramp <= 1:
+            raise ScriptError(f"acceleration {ramp * 100:g} % is not above zero and at most 100 %")
+        if s.motion is t.Motion.JOINT:
+            joint = 1.0 if speed is None else speed
+            if not 0 < joint <= 1:
+                raise ScriptError(
+                    f"joint speed {joint * 100:g} % is not above zero and at most 100 %"
+                )
+            match s.target:
+                case None:
+                    return commands.MoveHome(joint, ramp)
+                case t.Axes(angles):
+                    axes = tuple(math.radians(self._number(a)) for a in angles)
+                    return commands.MoveAxes(axes, joint, ramp)
+                case target:
+                    return commands.MoveJoint(self._pose(target), joint, frame, ramp)
+        if speed is not None and speed <= 0:
+            raise ScriptError(f"linear speed {speed:g} mm/s is not above zero")
+        metres = None if speed is None else speed / 1000.0
+        assert s.target is not None and not isinstance(s.target, t.Axes), "it was checked"
+        if s.motion is t.Motion.LINEAR:
+            return commands.MoveLinear(self._pose(s.target), frame, metres, ramp)
+        assert s.via is not None, "it was checked"
+        via = self._pose(s.via)
+        return commands.MoveCircular(via, self._pose(s.target), frame, metres, ramp)
+
     def _move_speed(self, s: t.Move) -> float | None:
-        return self._speed[s.motion] if s.speed is None else self._number(s.speed)
+        if s.speed is not None:
+            return self._number(s.speed)
+        joint = s.motion is t.Motion.JOINT
+        return self._speed[t.Motion.JOINT if joint else t.Motion.LINEAR]
 
     def _number(self, e: t.Expression) -> float:
         number = float(cast(float, evaluate(e, self)))

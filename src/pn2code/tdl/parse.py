@@ -314,18 +314,33 @@ class _Builder(Transformer[Token, Any]):
 
     def move(self, meta: Meta, c: list[Any]) -> t.Move:
         motion, target, *rest = c
-        frame = rest.pop(0) if rest and isinstance(rest[0], t.Target) else None
+        frame = next((x for x in rest if isinstance(x, t.Target)), None)
+        said: dict[str, t.Expression] = dict(x for x in rest if isinstance(x, tuple))
         return t.Move(
             self._motion(motion),
             None if isinstance(target, Token) else target,
             frame.name if frame else None,
-            rest[0] if rest else None,
+            said.get("at"),
+            said.get("via"),
+            said.get("acceleration"),
             frame.span if frame else None,
             self._span(meta),
         )
 
+    def axes(self, meta: Meta, c: list[t.Expression]) -> t.Axes:
+        return t.Axes(tuple(c), self._span(meta))
+
+    def via(self, meta: Meta, c: list[t.Expression]) -> tuple[str, t.Expression]:
+        return "via", c[0]
+
+    def pace(self, meta: Meta, c: list[t.Expression]) -> tuple[str, t.Expression]:
+        return "at", c[0]
+
+    def ramp(self, meta: Meta, c: list[t.Expression]) -> tuple[str, t.Expression]:
+        return "acceleration", c[0]
+
     def frame(self, meta: Meta, c: list[Token]) -> t.Target:
-        return self._target(c[0])
+        return t.Target(_word(c[0]), self._at(c[0]))
 
     def speed(self, meta: Meta, c: list[Any]) -> t.Speed:
         value = None if isinstance(c[2], Token) else c[2]

@@ -133,13 +133,29 @@ def transition(name: str) -> str:
     return name if all(is_name(part) for part in name.split(".")) else quoted(name)
 
 
+def _goal(target: t.Expression | t.Axes | None) -> str:
+    match target:
+        case None:
+            return "home"
+        case t.Axes(angles):
+            return f"axes({', '.join(map(expression, angles))})"
+        case _:
+            return expression(target)
+
+
+def _frame(name: str) -> str:
+    return name if name == "tool" or is_name(name) else quoted(name)
+
+
 def simple(s: t.Simple) -> str:
     """The line of a statement that has no body."""
     match s:
-        case t.Move(motion, target, frame, speed):
-            text = f"move {motion.value} {'home' if target is None else expression(target)}"
-            text += f" in {frame}" if frame else ""
-            return text + (f" at {expression(speed)}" if speed else "")
+        case t.Move(motion, target, frame, speed, via, acceleration):
+            text = f"move {motion.value} {_goal(target)}"
+            text += f" via {expression(via)}" if via else ""
+            text += f" in {_frame(frame)}" if frame else ""
+            text += f" at {expression(speed)}" if speed else ""
+            return text + (f" acceleration {expression(acceleration)}" if acceleration else "")
         case t.Speed(motion, value):
             return f"speed {motion.value} {'default' if value is None else expression(value)}"
         case t.WaitTime(duration):

@@ -166,19 +166,30 @@ class Motion(Enum):
 
     JOINT = "$joint"
     LINEAR = "$linear"
+    CIRCULAR = "$circular"
+
+
+@frozen
+class Axes:
+    """`axes(0 deg, -90 deg, 90 deg, 0 deg, 45 deg, 0 deg)`: a joint position, the target of a joint move."""
+
+    angles: tuple[Expression, ...]
+    span: Span = field(default=GENERATED, compare=False, repr=False)
 
 
 @frozen
 class Move:
-    """`move $joint p`, `move $joint home`, `move $linear p in tool at 50 mm/s`.
+    """`move $joint p`, `move $joint home`, `move $linear p in tool at 50 mm/s`, `move $circular q via p`.
 
-    `target` None is home; `frame` None: none was written, which means `world`.
+    `target` None is home; `frame` None: none was written, which means `world`; `acceleration` None: all of it.
     """
 
     motion: Motion
-    target: Expression | None
+    target: Expression | Axes | None
     frame: str | None = None
     speed: Expression | None = None
+    via: Expression | None = None
+    acceleration: Expression | None = None
     frame_span: Span | None = field(default=None, compare=False, repr=False)
     span: Span = field(default=GENERATED, compare=False, repr=False)
 

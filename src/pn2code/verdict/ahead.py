@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import astuple
 from pathlib import Path
+from typing import cast
 
 from pn2code.arms import Arms
 from pn2code.cell.config import CellConfig
@@ -18,7 +20,7 @@ from pn2code.input_files import begin
 from pn2code.robot import codes, scene
 from pn2code.robot.backend import BackendUnavailableError
 from pn2code.robot.choose_backend import open_backend
-from pn2code.robot.commands import MoveJoint, MoveLinear
+from pn2code.robot.commands import Move, MoveAxes, MoveCircular, MoveJoint, MoveLinear
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.parts import PartFault
@@ -115,16 +117,19 @@ def _reach(arms: Arms, ir: RobotIR, d: Diagnostics) -> None:
     for origin, command in _constant_poses(ir):
         problem = arms.why_unreachable(ir.name, command)
         if problem:
+            what = "joint position" if isinstance(command, MoveAxes) else "pose"
             d.error(
                 codes.ROBOT_REACH,
-                f"a constant pose cannot be reached: {problem}",
+                f"a constant {what} cannot be reached: {problem}",
                 origin,
-                hint=f"change the pose (mm and degrees), or `base` of robot `{ir.name}` in cell.toml (m and degrees)",
+                hint="change its angles (degrees), or where they come from"
+                if isinstance(command, MoveAxes)
+                else f"change the pose (mm and degrees), or `base` of robot `{ir.name}` in cell.toml (m and degrees)",
             )
 
 
-def _constant_poses(ir: RobotIR) -> Iterator[tuple[Origin, MoveJoint | MoveLinear]]:
-    """The poses of a program that are known before it runs: those of moves to constants in the world's frame."""
+def _constant_poses(ir: RobotIR) -> Iterator[tuple[Origin, Move]]:
+    """The moves of a program to where is known before it runs: to constants, but not in the frame of the tool."""
     declared = (c.declaration for c in ir.constants)
     constants = _Constants({c.name: c.value for c in declared if isinstance(c, t.Const)})
     bodies = (ir.body, *(body for _, body in ir.procedures))
@@ -132,13 +137,28 @@ def _constant_poses(ir: RobotIR) -> Iterator[tuple[Origin, MoveJoint | MoveLinea
         if move.target is None or move.frame == "tool":
             continue
         try:
-            value = evaluate(move.target, constants)
+            yield origin, _constant(move, constants)
         except ScriptError:
             continue  # it depends on what the program is told, or cannot be computed: the run says so
-        if isinstance(value, ScriptPose):
-            is_line = move.motion is t.Motion.LINEAR
-            pose = to_si(value)
-            yield origin, MoveLinear(pose) if is_line else MoveJoint(pose)
+
+
+def _constant(move: t.Move, constants: _Constants) -> Move:
+    """Where a move leads; ScriptError where that is not known."""
+    if isinstance(move.target, t.Axes):
+        angles = [float(cast(float, evaluate(a, constants))) for a in move.target.angles]
+        return MoveAxes(tuple(map(math.radians, angles)))
+    assert move.target is not None, "it was asked"
+    value = evaluate(move.target, constants)
+    if not isinstance(value, ScriptPose) or not all(map(math.isfinite, astuple(value))):
+        raise ScriptError("this is no pose")
+    pose, frame = to_si(value), move.frame or "world"
+    match move.motion:
+        case t.Motion.JOINT:
+            return MoveJoint(pose, frame=frame)
+        case t.Motion.LINEAR:
+            return MoveLinear(pose, frame)
+        case t.Motion.CIRCULAR:
+            return MoveCircular(pose, pose, frame)  # of an arc only its end is looked at
 
 
 def _moves(nodes: Iterable[Node], origin: Origin) -> Iterator[tuple[Origin, t.Move]]:

@@ -186,7 +186,7 @@ def test_the_manual_has_all_keys(root: Path) -> None:
     """`python -m helpers.manual` writes them."""
     assert between(root / "docs/cell.md") == listing.markdown()
     robots = (root / "docs/robots.md").read_text()
-    for name in ("robots", "motion", "scene", "parts", "places"):
+    for name in ("robots", "motion", "scene", "parts", "places", "frames"):
         inner = FILE[name].inner
         assert inner is not None
         missing = [k.name for k in declared(inner) if k.name not in robots]

@@ -13,7 +13,7 @@ from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.sweeps import _between, _gaps
 from pn2code.geometry.tracks import ArmShape, Track
 from pn2code.robot.bullet import BulletBackend
-from pn2code.robot.commands import MoveHome, MoveJoint, MoveLinear
+from pn2code.robot.commands import MoveCircular, MoveHome, MoveJoint, MoveLinear
 from pn2code.robot.robot_cell import RobotCell
 
 pytestmark = pytest.mark.bullet
@@ -33,15 +33,17 @@ def shapes(cell: RobotCell) -> dict[str, ArmShape]:
 
 
 def legs(cell: RobotCell) -> list[Leg]:
-    """A joint move, lines that go and turn, one that ends near a straight elbow, and the way home."""
+    """A joint move, lines that go and turn, one that ends near a straight elbow, the way home, and an arc."""
     planner = Planner(cell)
     first = planner.leg(planner.home("robot2"), MoveJoint(pose_mm(5750.0, 5995.4, 2109.2, 75.0)))
     down = planner.leg(first.end, MoveLinear(pose_mm(0, 0, 100.0), "tool"))
     turned = planner.leg(first.end, MoveLinear(pose_mm(50.0, 0, -80.0, 0, 12.0, 9.0), "tool"))
     far = planner.leg(first.end, MoveLinear(pose_mm(1000.0, 0, 0), "tool"))
     home = planner.leg(far.end, MoveHome())
-    out = [first, down, turned, far, home]
-    assert [x.fault for x in out] == [None] * 5
+    over = MoveCircular(pose_mm(60.0, 0, -90.0), pose_mm(150.0, 0, -40.0, 0, 9.0, 0), "tool")
+    arc = planner.leg(first.end, over)
+    out = [first, down, turned, far, home, arc]
+    assert [x.fault for x in out] == [None] * 6
     return out
 
 
@@ -58,7 +60,7 @@ def corners(track: Track, q: np.ndarray) -> np.ndarray:
     return out
 
 
-@pytest.mark.parametrize("number", range(5))
+@pytest.mark.parametrize("number", range(6))
 def test_no_point_is_further_off_than_the_spread(
     cell: RobotCell, shapes: dict[str, ArmShape], number: int
 ) -> None:

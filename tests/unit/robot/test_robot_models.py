@@ -18,7 +18,15 @@ def test_files_are_up_to_date():
 
 
 def test_library_names():
-    assert known_arms() == ("kr120_r2500", "kr210_r2700", "ur10e", "ur5e")
+    assert known_arms() == (
+        "gp25",
+        "irb6700_200_260",
+        "kr120_r2500",
+        "kr210_r2700",
+        "tx2_90",
+        "ur10e",
+        "ur5e",
+    )
     assert known_tools() == ("counterpoint", "drill_riveter", "vacuum_gripper")
 
 

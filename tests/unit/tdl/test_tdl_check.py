@@ -148,6 +148,45 @@ ERRORS = [
         "17:21 error[tdl-frame] `home` is a joint position and has no frame",
     ),
     ("move $linear home", "17:1 error[tdl-frame] `home` is a joint position"),
+    ("move $circular home via p", "17:1 error[tdl-frame] `home` is a joint position"),
+    (
+        "move $joint axes(a, a, a, a, a)",
+        "17:13 error[tdl-arguments] `axes` takes 6 angles, but 5 are given",
+    ),
+    (
+        "move $joint axes(a, a, x, a, a, a)",
+        "17:24 error[tdl-unit] the angle of axis 3 must be of type `angle`, but this is `length`",
+    ),
+    (
+        "move $joint axes(a, a, a, a, a, a) in world",
+        "17:39 error[tdl-frame] `axes(...)` is a joint position and has no frame",
+    ),
+    (
+        "move $linear axes(a, a, a, a, a, a)",
+        "17:1 error[tdl-frame] `axes(...)` is a joint position",
+    ),
+    ("move $circular p", "17:1 error[tdl-via] a circular move needs a pose on the way"),
+    ("move $linear p via p", "17:20 error[tdl-via] only a circular move goes by way of a pose"),
+    (
+        "move $circular p via x",
+        "17:22 error[tdl-type] the pose on the way must be of type `pose`, but this is `length`",
+    ),
+    (
+        "move $joint p acceleration 120 %",
+        "17:28 error[tdl-speed] the acceleration must be above zero and at most 100 %",
+    ),
+    (
+        "move $linear p acceleration v",
+        "17:29 error[tdl-unit] acceleration must be of type `real`, but this is `speed`",
+    ),
+    (
+        "speed $circular v",
+        "17:1 error[tdl-speed] circular moves have the speed of linear moves",
+    ),
+    (
+        "p := before(p, 3)",
+        "17:16 error[tdl-unit] the distance of `before` must be of type `length`, but this is `int`",
+    ),
     (
         "speed $joint 150 %",
         "17:14 error[tdl-speed] the joint speed must be above zero and at most 100 %",

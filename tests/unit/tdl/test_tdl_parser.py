@@ -180,8 +180,8 @@ def test_the_examples_of_the_documentation_are_right(root: object) -> None:
             ["1:24 error[tdl-unknown-unit] there is no unit `furlong`"],
         ),
         (
-            "program p begin move $circular q end program",
-            ["1:22 error[tdl-unknown-motion] there is no motion `$circular`"],
+            "program p begin move $spline q end program",
+            ["1:22 error[tdl-unknown-motion] there is no motion `$spline`"],
         ),
         (
             "program p var n : number begin end program",

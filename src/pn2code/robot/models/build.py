@@ -25,6 +25,7 @@ from pn2code.robot.models.shapes import (
     slab,
     square,
 )
+from pn2code.robot.models.spherical import spherical
 from pn2code.robot.models.urdf_text import (
     HEAD,
     Parts,
@@ -416,6 +417,7 @@ def files() -> dict[str, str]:
     for spec in ARMS:
         _arm(spec, out)
     cobots(out)
+    spherical(out)
     _tool("drill_riveter", 0.5, _drill(), out)
     _tool("counterpoint", 0.5, _counterpoint(), out)
     _tool("vacuum_gripper", 0.2, _vacuum_gripper(), out)

@@ -26,7 +26,7 @@ from pn2code.ml.core import terms as core
 from pn2code.net.flat import ArcKind, FlatTransition
 from pn2code.net.uses import NetVariables
 from pn2code.primitive_calls import Calls, Listener
-from pn2code.robot.commands import MoveJoint, MoveLinear
+from pn2code.robot.commands import Move, MoveAxes, MoveCircular, MoveJoint, MoveLinear, without_pace
 from pn2code.semantics.evaluation.effects import Effect, Effects, effects_of
 from pn2code.semantics.game.marking import Binding, Marking, place_of
 from pn2code.semantics.game.token_game import Game, GameError
@@ -38,7 +38,7 @@ MOST_WAYS = 20_000
 """Ways to take tokens that are tried for one transition."""
 MOST_COPIES = 100
 """Of one colour; a page of a robot that takes more at once is no program (`robot_scripts.machine`)."""
-_MOVES = frozenset({"move_joint", "move_linear"})
+_MOVES = frozenset({"move_joint", "move_axes", "move_linear", "move_circular"})
 _OUTSIDE = frozenset({Effect.DRAW, Effect.LOOK, Effect.READ, Effect.COUNT})
 
 
@@ -49,8 +49,8 @@ class Arms(Protocol):
     def robots(self) -> Collection[str]:
         """The names of those with an arm."""
 
-    def why_unreachable(self, robot: str, command: MoveJoint | MoveLinear) -> str:
-        """Why the arm cannot come to the pose of a command, with its name; "": it can."""
+    def why_unreachable(self, robot: str, command: Move) -> str:
+        """Why the arm cannot come to where a command leads, with its name; "": it can."""
 
 
 @frozen
@@ -233,7 +233,7 @@ class Poses:
             seen.add(values)
             for command in self._commands(game, t, binding, listener):
                 why = self._arms.why_unreachable(robot, command)
-                poses[bool(why)].add((robot, command.target))
+                poses[bool(why)].add((robot, _goal(command)))
                 if why:
                     told.bad.append(Bad(t.index, values, why))
                     break
@@ -249,8 +249,8 @@ class Poses:
     @staticmethod
     def _commands(
         game: Game, t: FlatTransition, binding: Binding, listener: Listener
-    ) -> Sequence[MoveJoint | MoveLinear]:
-        """The moves to poses of the world, up to an exception: one that can occur is found by the exploration."""
+    ) -> Sequence[Move]:
+        """The moves to joint positions and to poses, but no increments, up to an exception (exploring finds it)."""
         calls = Calls()
         game.evaluator.now = game.start
         with suppress(GameError), listener.noting(calls):
@@ -258,8 +258,18 @@ class Poses:
         return [
             c
             for c in calls
-            if isinstance(c, MoveJoint) or (isinstance(c, MoveLinear) and c.frame == "world")
+            if isinstance(c, MoveJoint | MoveAxes)
+            or (isinstance(c, MoveLinear | MoveCircular) and c.frame != "tool")
         ]
+
+
+def _goal(command: Move) -> object:
+    """Where a move leads, whatever kind of move it is."""
+    match command:
+        case MoveJoint(target=pose, frame="world") | MoveLinear(target=pose, frame="world"):
+            return pose
+        case _:
+            return without_pace(command)
 
 
 _TAKING = (ArcKind.INPUT, ArcKind.BOTH)

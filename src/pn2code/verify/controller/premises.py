@@ -32,7 +32,7 @@ _MOVING = (
 
 _REACHED = (
     "arms get to where they are told to go, and nothing is in their way (limits and singularities on the way, "
-    "increments and collisions show in a run)"
+    "{arcs}increments and collisions show in a run)"
 )
 _PARTS = (
     "tools find the parts that they take, hold them until they release them, and put them down where they can stand, "
@@ -42,7 +42,9 @@ IN_TURNS = (
     "the programs are looked at in turns, so that each run is seen in one of its orders: the states are those of the "
     "reduced space (docs/reductions.md)"
 )
-_MOTIONS = frozenset({"move_joint", "move_linear", "move_home", "measure"})
+_MOTIONS = frozenset(
+    {"move_joint", "move_axes", "move_linear", "move_circular", "move_home", "measure"}
+)
 
 _SENSORS = "each possible value of a sensor occurs from time to time"
 
@@ -57,7 +59,8 @@ class Premises:
         durations: whether timers and commands go on side by side: what comes first depends on how long they take.
         sensors: whether programs ask sensors.
         moving: whether a run in lock-step might do too much in one moment if moves took no time.
-        moves: whether programs move arms: a move that is not possible stops its program.
+        moves: whether programs move arms: a move that is not possible stops its program; arcs: whether some go on arcs,
+            which need not be there.
         parts: whether programs do something to parts: what is not possible stops its program.
     """
 
@@ -67,6 +70,7 @@ class Premises:
     sensors: bool = False
     moving: bool = False
     moves: bool = False
+    arcs: bool = False
     parts: bool = False
 
     @staticmethod
@@ -92,6 +96,7 @@ class Premises:
             partition.net.timed or bool(used),
             bool(config.sensors),
             moves=not _MOTIONS.isdisjoint(used.values()),
+            arcs="move_circular" in used.values(),
             parts=any(config.primitives[name].handling for name in used),
         )
 
@@ -122,7 +127,7 @@ class Premises:
         """Those of an answer that needs the cell to go on."""
         return [
             *([_MOVING] if self.moving else []),
-            *([_REACHED] if self.moves else []),
+            *([_REACHED.format(arcs="arcs, " if self.arcs else "")] if self.moves else []),
             *([_PARTS] if self.parts else []),
         ]
 

@@ -119,13 +119,12 @@ class _Refusal:
 
     def _of_argument(self, value: core.Exp, primitive: Primitive) -> list[core.Exp]:
         match value.type:
-            case TRecord((("1", pose), ("2", speed))):
+            case TRecord(fields) if fields and fields[0][0] == "1":
                 at = value.span
-                own = core.Select("2", value, speed, at)
-                return [
-                    *self._of_argument(core.Select("1", value, pose, at), primitive),
-                    *_of_speed(own, primitive),
-                ]
+                parts = [core.Select(label, value, t, at) for label, t in fields]
+                takes = 2 if primitive.command == "move_circular" else 1
+                out = [x for part in parts[:takes] for x in self._of_argument(part, primitive)]
+                return out + [x for own in parts[takes:] for x in _of_speed(own, primitive)]
             case TVar() if primitive.command in ("move_joint", "move_linear", "measure"):
                 assert isinstance(value, core.Var | core.Select)
                 parts = [
@@ -216,7 +215,7 @@ def _of_speed(value: core.Exp, primitive: Primitive) -> list[core.Exp]:
         return core.Lit(float(number) if is_real else number, value.type, value.span)
 
     out = [_compared(f"{name}.>", value, literal(0), value.type)]
-    if primitive.command == "move_joint":
+    if not primitive.is_linear:
         out.append(_compared(f"{name}.<=", value, literal(100), value.type))
     return [*out, _is_finite(value)] if is_real else out
 
