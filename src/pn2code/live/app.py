@@ -11,6 +11,7 @@ from __future__ import annotations
 import asyncio
 import json
 import secrets
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -28,6 +29,9 @@ PREPARING = (
     '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><meta http-equiv="refresh" content="1">'
     "<title>pn2code</title></head><body><p>The cell is being built. This page comes by itself.</p></body></html>"
 )
+PATIENCE_S = 60.0
+"""A page that is asked for before it is there waits so long."""
+_LOOK_S = 0.1
 _CLOSED = "default-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
 _WRONG_S = 0.5
 """After a wrong token."""
@@ -69,7 +73,9 @@ def application(show: Callable[[], Served | None], hall: Hall, stopping: Stoppin
     desk = _Desk(hall, stopping)
 
     async def index(request: Request) -> Response:
-        made = show()
+        until = time.monotonic() + PATIENCE_S
+        while (made := show()) is None and not hall.is_over and time.monotonic() < until:
+            await asyncio.sleep(_LOOK_S)
         if made is None:
             return HTMLResponse(PREPARING, headers={"content-security-policy": _CLOSED})
         return HTMLResponse(made.html, headers={"content-security-policy": made.policy})
