@@ -27,6 +27,8 @@ from pn2code.replay.served import Served
 from pn2code.web.guard import HOSTS, Guard
 from pn2code.web.serving import serve
 
+_NICE = 10
+"""Supervisor and robots go first."""
 LAST_S = 1.5
 """How long pages may take for the last update."""
 
@@ -91,6 +93,7 @@ class Server:
 def main(arguments: list[str]) -> None:
     """Serves until standard input ends. Ctrl-C is the run's business."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    os.nice(_NICE)
     stream = sys.stdin.buffer
     start = taken(stream)
     if not isinstance(start, Start):
