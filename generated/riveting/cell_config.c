@@ -12,8 +12,7 @@
  * channels: yes; at most 1 message in each of 8 channels
  * messages: yes; each of the 14 values that come into channels can be written into its file and read back
  * memory: yes; no list or string needs memory while the supervisor runs
- * reach: yes; each of the 2 poses that arms are told can be reached; 8 more that are on their way as something else are never moved to,
- * which was looked up in another exploration
+ * reach: yes; each of the 2 poses that arms are told can be reached
  * ownership: yes; all 255 arcs keep to places of their owner and channels in their direction
  * Assumed:
  * a measurement gives the result of `measure` in the net

@@ -250,7 +250,9 @@ def agrees(
         Game(flat, {}, files=Files(None))
     except GameError:
         return "exception"  # in an initial marking: there is nothing to explore
-    found = explorers.explore(flat, "--max-states", nodes, *options, width=width)
+    transitions = ",".join(str(t.index) for t in flat.transitions)
+    told = ("--bindings", transitions) if transitions else ()
+    found = explorers.explore(flat, "--max-states", nodes, *told, *options, width=width)
     report = found.report
     if report["why"] in ("states", "seconds") or report["arcs"] > arcs:
         assert report["why"] == "complete" or found.code == 3
@@ -296,6 +298,15 @@ def compare_graph(flat: FlatNet, space: StateSpace, found: Explored) -> None:
     assert Counter(found.nodes) == Counter(nodes)
     theirs = Counter((found.nodes[a], found.nodes[b], element) for a, b, element in found.arcs)
     assert theirs == arcs
+    if flat.transitions:
+        told = found.report["bindings"]
+        of_net = {(a.element.transition, _text(binding_to_json(a.element))) for a in space.arcs}
+        assert of_net == {(int(t), _text(b)) for t, all_ in told.items() for b in all_}
+        assert sum(map(len, told.values())) == len(of_net), "a binding twice"
+
+
+def _text(binding: object) -> str:
+    return json.dumps(binding, sort_keys=True)
 
 
 def compare_facts(flat: FlatNet, space: StateSpace, report: Mapping[str, Any]) -> None:

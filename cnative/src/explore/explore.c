@@ -21,6 +21,7 @@
 
 #include "explore_error.h"
 #include "explore_bounds.h"
+#include "graph/explore_bindings.h"
 #include "query/explore_query.h"
 #include "search/explore_reduce.h"
 #include "pn/pn_file.h"
@@ -71,6 +72,7 @@ static void print_help(void)
         "  --still             traces say that these are the same at each step\n"
         "  --multiset-limit N  colours of a multi-set bound that are printed (default: all)\n"
         "  --whole P,Q,..      places of which all colours are printed\n"
+        "  --bindings T,U,..   transitions of which all bindings are printed, if the graph is not large\n"
         "  --ends-in PHASE     for tests: the time is over when explore, graph, components, properties or questions "
         "begins\n"
         "  --parent PID        end at once when this process, which started it, has ended\n"
@@ -178,6 +180,7 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
            || ((strcmp(option, "--ends-in") == 0) && read_text(value, &options->ends_in))
            || ((strcmp(option, "--multiset-limit") == 0) && read_number(value, UINT64_MAX, &options->multiset_limit))
            || ((strcmp(option, "--whole") == 0) && read_text(value, &options->whole))
+           || ((strcmp(option, "--bindings") == 0) && read_text(value, &options->bindings))
            || ((strcmp(option, "--heaps") == 0) && read_text(value, &options->heaps))
            || ((strcmp(option, "--most-heaped") == 0) && read_number(value, UINT64_MAX, &options->most_heaped))
            || ((strcmp(option, "--initial") == 0) && read_text(value, &options->initial))
@@ -455,6 +458,9 @@ static void print_report(ex_run_t *run)
         ex_bounds_json(run, stdout);
         (void)printf(",\n ");
     }
+    (void)printf("\"bindings\": ");
+    ex_bindings_json(run, stdout);
+    (void)printf(",\n ");
     ex_graph_json(run, stdout);
     ex_queries_json(run, stdout);
     (void)printf("}\n");
@@ -504,7 +510,9 @@ static int explore(ex_run_t *run)
     }
     run->is_seen_whole = is_explored && (atomic_load(&run->why) == (int)EX_COMPLETE);
     if (run->is_seen_whole && run->options.has_graph) {
-        (void)ex_graph(run);
+        if (ex_graph(run)) {
+            ex_bindings(run);
+        }
     }
     if (is_explored && is_exact && (atomic_load(&run->why) == (int)EX_ERROR)
         && (strcmp(run->error.kind, "exception") == 0)) {

@@ -48,6 +48,7 @@ typedef struct ex_options {
     const char *ends_in; /* phase in which the time ends as soon as it begins, whatever the clock says; NULL: none */
     uint64_t multiset_limit; /* colours of a multi-set bound that are printed */
     const char *whole;       /* places of which all are, numbers with commas between; NULL: none */
+    const char *bindings;    /* transitions of which all bindings are, likewise; NULL: none */
     const char *heaps;       /* places that need not hold more tokens than `most_heaped`, as in `whole`; NULL: none */
     uint64_t most_heaped;
     uint64_t parent; /* process that started it, and without which it is to end; 0: none */

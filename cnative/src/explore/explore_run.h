@@ -112,6 +112,7 @@ typedef struct ex_run {
     _Atomic bool has_choice;      /* they do, or it is not known */
     bool is_choiceless;           /* it has been looked in all states, and they never do: all orders are one */
     struct ex_graph *graph;       /* of explore_graph.c; NULL: none */
+    struct ex_bindings *bindings; /* of explore_bindings.c; NULL: none are told */
     bool is_seen_whole;           /* all states have been expanded, and none was taken for another one */
     bool has_arcs;                /* the graph of them has been made, with all arcs */
     bool has_components;          /* and gone through: components, home, liveness, fairness */

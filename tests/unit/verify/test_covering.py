@@ -13,6 +13,7 @@ import pytest
 
 from helpers.netbuilder import flat
 from helpers.random_nets import random_net
+from helpers.thorough import amount
 from pn2code.net.flat import FlatNet
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.graph import state_space
@@ -133,8 +134,8 @@ def test_the_search_can_be_ended() -> None:
 
 def test_random_nets_with_finitely_many_markings() -> None:
     """Where the token game has seen all markings, there is no covering run."""
-    finite = 0
-    for seed in range(160):
+    finite, nets = 0, amount(60, 600)
+    for seed in range(nets):
         net = flat(random_net(Random(seed)))
         try:
             space = state_space(Game(net, {}, files=Files(None)), max_nodes=150, max_arcs=1_500)
@@ -143,7 +144,7 @@ def test_random_nets_with_finitely_many_markings() -> None:
         if space.complete:
             finite += 1
             assert looked(net, walks=4) is None, seed
-    assert finite > 30
+    assert finite > nets / 6
 
 
 SPENDS = HEAD.replace(

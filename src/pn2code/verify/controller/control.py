@@ -208,6 +208,7 @@ def examine(
             sizes=Sizes.start(running.net, plan.storage),
             generated=made,
             traces=Path(name),
+            bindings=tuple(t.index for t in poses.moving) if poses else (),
             whole=(*(c.place for c in partition.channels), *(poses.places if poses else ())),
             graph=None,
             questions=of_cell(running, plan) + at_once,

@@ -4,18 +4,19 @@
     wanted.places               # of which all colours must be told
     wanted.told(found)          # in a space with all that the cell can reach: Told(poses=14, bad=(Bad(...), ...))
 
-The commands are those that the token game gives for the code segments of the robots' transitions, for each way to take
-tokens that are ever there. Not all of these are there together, so what is found is more than what happens: of poses
-that cannot be reached it is looked up once more whether the cell comes to them (`refusals.refusing`).
+The commands are those that the token game gives for the code segments of the robots' transitions: for each binding with
+which they occur where these are known, else for each way to take tokens that are ever there. Not all of these are there
+together, so what is found is then more than what happens: of poses that cannot be reached it is looked up once more
+whether the cell comes to them (`refusals.refusing`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import field, replace
 from itertools import islice
-from typing import Protocol
+from typing import Any, Protocol
 
 from pn2code.base.frozen import frozen, record
 from pn2code.cell.config import Primitive
@@ -143,6 +144,7 @@ class Poses:
         if found is None or not found.bounds:
             told.open = "no state of the cell was seen"
             return told
+        exact = found.bindings or {}
         # Inhibitor arcs look at one marking; tokens of many are put together here.
         net = self._partition.net
         free = replace(
@@ -153,7 +155,8 @@ class Poses:
             ),
         )
         game = Game(free, self._storage)
-        marking = self._together(game, found, told)
+        is_exact = exact.keys() >= {t.index for t in self.moving}
+        marking = game.own_initial_marking if is_exact else self._together(game, found, told)
         listener = Listener(game, self._primitives)
         effects = effects_of(net.program)
         poses: tuple[set[object], set[object]] = set(), set()
@@ -164,13 +167,18 @@ class Poses:
                     f"what `{t.name}` tells its arm depends on more than tokens: it {outside}"
                 )
                 continue
+            if t.index in exact:
+                self._of_bindings(game, t, _read(t, exact[t.index]), listener, told, poses)
+                continue
             own = free.transitions[t.index]
             if any(x.whole for a in own.arcs if a.inscription for x in a.inscription.terms):
                 told.open = f"`{t.name}` takes whatever is in a place at once"
                 continue
             if any(not len(tuple(marking.places[a.place])) for a in own.arcs if a.kind in _TAKING):
                 continue
-            self._of_transition(game, own, marking, listener, told, poses)
+            self._of_bindings(
+                game, own, self._bindings(game, own, marking, told), listener, told, poses
+            )
         told.poses, told.far = map(len, poses)
         return told
 
@@ -202,11 +210,11 @@ class Poses:
             places[index] = place_of(colset, tokens)
         return replace(game.own_initial_marking, places=tuple(places))
 
-    def _of_transition(
+    def _of_bindings(
         self,
         game: Game,
         t: FlatTransition,
-        marking: Marking,
+        bindings: Iterable[Binding],
         listener: Listener,
         told: Told,
         poses: tuple[set[object], set[object]],
@@ -215,7 +223,7 @@ class Poses:
         robot = self._partition.owners[self._partition.transition_owner[t.index]].name
         looked_at = set(self._uses.of(t.code.action))
         seen: set[tuple[tuple[core.Symbol, Value], ...]] = set()
-        for number, binding in enumerate(self._bindings(game, t, marking, told)):
+        for number, binding in enumerate(bindings):
             if number == MOST_WAYS:
                 told.open = f"`{t.name}` can take tokens in more than {MOST_WAYS:,} ways"
                 return
@@ -255,3 +263,14 @@ class Poses:
 
 
 _TAKING = (ArcKind.INPUT, ArcKind.BOTH)
+
+
+def _read(t: FlatTransition, told: Iterable[Mapping[str, Any]]) -> Iterator[Binding]:
+    """Bindings as the explorer tells them, without what the code segment gives."""
+    outputs = t.code.outputs if t.code else ()
+    for texts in told:
+        yield {
+            s: from_json(s.colset, texts[s.name])
+            for s in t.variables
+            if s.colset is not None and s not in outputs
+        }

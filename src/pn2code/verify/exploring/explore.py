@@ -97,6 +97,7 @@ class ExploreOptions:
         generated: what an exploration of the same net with the same predicates has generated; gets what this one has.
         quick: the space is likely to be small: it is compiled quickly, and better if it turns out to be large.
         turns: the table by which the programs of a cell are looked at in turns; None: they are not.
+        bindings: transitions of which it is told with which bindings they occur, if the graph is not large.
         heaps: places that need not be explored with more than `MOST_HEAPED` tokens: what is wrong has been seen then.
         covering: look for a run that shows that a place grows without bound, and end when there is one.
         pace: seconds between two tellings of progress.
@@ -118,6 +119,7 @@ class ExploreOptions:
     generated: Generated | None = None
     quick: bool = False
     turns: Turns | None = None
+    bindings: tuple[int, ...] = ()
     heaps: frozenset[int] = frozenset()
     covering: bool = False
     pace: float = 0.5
@@ -348,6 +350,7 @@ def _arguments(limits: Limits, chosen: Chosen, sizes: Sizes, options: ExploreOpt
         ("--write-limit", options.graph_limit),
         ("--multiset-limit", options.colours),
         ("--whole", ",".join(map(str, options.whole)) or None),
+        ("--bindings", ",".join(map(str, options.bindings)) or None),
         ("--heaps", ",".join(map(str, sorted(options.heaps))) or None),
         ("--most-heaped", MOST_HEAPED if options.heaps else None),
         ("--progress-every", options.pace),

@@ -115,6 +115,8 @@ class Exploration:
             how many; with "symmetry" a node stands for all markings that are symmetric to it.
         symmetries: for people, of "symmetry".
         answers: what the explorer says of each question, in order.
+        bindings: for each transition of `ExploreOptions.bindings` all with which it occurs, by variable, as in traces;
+            None: they are not known.
         arena: bytes for lists and strings: "start" (before the first marking), "firing" (one occurrence), "marking";
             None where bounds are not known.
         different: for each place, how many multi-sets it held; 0 where that is not counted, since its colours are few.
@@ -143,6 +145,7 @@ class Exploration:
     seen: Seen = Seen()
     symmetries: tuple[str, ...] = ()
     answers: tuple[Mapping[str, Any], ...] = ()
+    bindings: Mapping[int, Sequence[Mapping[str, Any]]] | None = None
     arena: Mapping[str, int] | None = None
     different: tuple[int, ...] = ()
     covering: Covering | None = None
@@ -195,6 +198,7 @@ class Exploration:
             reductions=tuple(found.get("reductions") or ()),
             seen=Seen(**(found.get("seen") or {})),
             answers=tuple(found.get("queries") or ()),
+            bindings=_bindings(found.get("bindings")),
             arena=found.get("arena"),
             different=tuple(found.get("different") or ()),
         )
@@ -226,6 +230,12 @@ def _error(net: FlatNet, found: Mapping[str, Any] | None) -> Mapping[str, Any] |
         if s.colset is not None and s not in outputs
     }
     return {**found, "binding": binding}
+
+
+def _bindings(
+    found: Mapping[str, Sequence[Mapping[str, Any]]] | None,
+) -> Mapping[int, Sequence[Mapping[str, Any]]] | None:
+    return None if found is None else {int(t): told for t, told in found.items()}
 
 
 def _bounds(found: Sequence[Mapping[str, Any]] | None) -> tuple[Bounds, ...] | None:
