@@ -84,7 +84,6 @@ NEVER = {
     "make misra": "test_misra does it",
     "make mutation": "twenty minutes; test_conform changes programs, too",
     "pn2code run mycell --realtime --live --port 8080 --speed 2": "test_live does the same",
-    "python -m tools.bench.live examples/riveting --runs 3 --speed 10": "minutes of real time",
     "pn2code play mynet.cpn": PLAYED,
     "pn2code play examples/philosophers/philosophers.cpn": PLAYED,
     "pn2code play mynet.cpn --trace mynet.dead-40.trace.jsonl": PLAYED,
