@@ -39,6 +39,11 @@ LONG = {
     "pn2code verify examples/timed": "31,014 markings with their times, and the medium",
     "pn2code check --geometry examples/shared-zone": "test_geometry looks at smaller cells; ./dev geometry at this one",
     "pn2code reach examples/riveting --layout paper --robot robot2": "10 seconds; test_reach_map has fewer bases",
+    "pn2code run examples/handover --backend fake -o run": CELLS,
+    "pn2code run examples/sorting --backend fake --cycles 50 --warm-up 5 --seed 1 --stops robot:600/30 -o many": "a "
+    "minute; test_many_cycles runs a smaller cell",
+    "pn2code time examples/handover --run run": "needs the line before",
+    "pn2code time examples/tending": "test_time_bounds asks about it",
     "./dev geometry": "two minutes; test_geometry looks at smaller cells",
     "pn2code conform examples/riveting": "10 seconds; test_riveting_net compares it",
     "pn2code conform examples/sorting": "all states of a larger cell: a minute",

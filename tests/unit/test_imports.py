@@ -64,11 +64,12 @@ ALLOWED: dict[str, set[str]] = {
     "live": {"cell", "diagnostics", "net", "reading", "replay", "robot", "run", "semantics", "trace", "web"},
     "geometry": {"cell", "diagnostics", "ml", "net", "primitive_calls", "robot", "semantics", "trace", "verdict",
         "verify"},
+    "timing": {"cell", "diagnostics", "geometry", "net", "robot", "semantics", "trace", "verdict", "verify"},
     "dossier": {"toolchain", "verify"},
     "cli": {"cell", "cell_file", "channels", "conform", "contest", "convert", "diagnostics", "division", "dossier",
         "drawing", "emission", "geometry", "input_files", "ir", "live", "lowering", "ml", "net", "new_cell", "pipeline",
         "play", "reading", "replay", "report", "robot", "robot_scripts", "run", "semantics", "simulate", "structure",
-        "tdl", "trace", "unfold", "verdict", "verify", "web"},
+        "tdl", "timing", "trace", "unfold", "verdict", "verify", "web"},
     "start": {"cli"},
 }  # fmt: skip
 EVERYWHERE = {"base"}

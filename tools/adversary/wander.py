@@ -6,6 +6,7 @@ import os
 import signal
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
+from enum import Enum
 from pathlib import Path
 from random import Random
 from typing import Any
@@ -92,6 +93,27 @@ class Crash:
     after: int
 
 
+class Pace(Enum):
+    """How long things take in a run."""
+
+    ANY = "any"
+    """whatever"""
+    PLANNED = "planned"
+    """commands what they say, all else nothing: an ordinary run"""
+    LATE = "late"
+    """commands at least what they say; everybody may come late"""
+    EARLY = "early"
+    """commands at most what they say, all else nothing"""
+
+
+_FACTORS = {
+    Pace.ANY: [0.2, 1.0, 1.0, 3.0],
+    Pace.PLANNED: [1.0],
+    Pace.LATE: [1.0, 1.0, 1.5, 3.0],
+    Pace.EARLY: [0.0, 0.2, 0.7, 1.0, 1.0],
+}
+
+
 class _Endless(Exception):  # noqa: N818
     """There have been enough events."""
 
@@ -105,6 +127,7 @@ class _Wanderer(Engine):
     most_events: int
     crash: Crash | None
     has_crashed: bool
+    pace: Pace
 
     def _supervisor_cycle(self) -> bool:
         self._perhaps_crash()
@@ -127,7 +150,8 @@ class _Wanderer(Engine):
         super()._begin_command(robot, command, line)
         assert robot.motion is not None
         # A wait is what the net asks for; what else takes time may take less than it says.
-        factors = [1.0, 1.0, 1.5, 3.0] if isinstance(command, Wait) else [0.2, 1.0, 1.0, 3.0]
+        is_wait = isinstance(command, Wait) and self.pace is Pace.ANY
+        factors = [1.0, 1.0, 1.5, 3.0] if is_wait else _FACTORS[self.pace]
         seconds = robot.motion.duration * self.random.choice(factors)
         robot.motion = replace(robot.motion, trajectory=Still(np.zeros(0), seconds))
 
@@ -151,7 +175,8 @@ class _Wanderer(Engine):
     def _hold(self, who: str, moved: bool) -> None:
         if len(self.record.events) > self.most_events:
             raise _Endless
-        if moved and self.random.random() < 0.5:
+        may_be_held = self.pace in (Pace.ANY, Pace.LATE)
+        if moved and may_be_held and self.random.random() < 0.5:
             self.held[who] = self.now + self.random.choice([0.1, 0.6, 1.0, 2.5])
 
     def _next_event(self) -> float:
@@ -165,7 +190,13 @@ class _Wanderer(Engine):
         return max(self.now, min(times))
 
 
-def run(built: Built, seed: int, shared: Path | None = None, crash: Crash | None = None) -> Run:
+def run(
+    built: Built,
+    seed: int,
+    shared: Path | None = None,
+    crash: Crash | None = None,
+    pace: Pace = Pace.ANY,
+) -> Run:
     """One run; the same seed gives the same.
 
     Args:
@@ -173,6 +204,7 @@ def run(built: Built, seed: int, shared: Path | None = None, crash: Crash | None
         seed: of all that is drawn.
         shared: the shared directory, with whatever an earlier run has left there; None: a fresh one.
         crash: who dies, and when.
+        pace: how long things take.
     """
     generated = built.generated
     config, partition = generated.config, generated.partition
@@ -208,6 +240,7 @@ def run(built: Built, seed: int, shared: Path | None = None, crash: Crash | None
         engine.random, engine.held, engine.most_firings = Random(seed), {}, 0
         engine.most_events = built.most_events
         engine.crash, engine.has_crashed = crash, False
+        engine.pace = pace
         sensors = load_sensors(config, partition.net, (built.folder,), seed, d)
         assert sensors is not None
         engine.sensors = sensors

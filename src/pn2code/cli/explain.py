@@ -29,6 +29,7 @@ REGISTERING = (
     "pn2code.convert.codes",
     "pn2code.drawing.codes",
     "pn2code.geometry.codes",
+    "pn2code.timing.codes",
     "pn2code.lowering.codes",
     "pn2code.robot_scripts.codes",
     "pn2code.ml.codes",

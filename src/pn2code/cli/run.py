@@ -40,6 +40,8 @@ EPILOG = """Examples:
   pn2code run examples/riveting --unchecked
 
   pn2code run examples/riveting --realtime --live
+
+  pn2code run examples/sorting --backend fake --cycles 50 --warm-up 5 --seed 1 --stops robot:600/30
 """
 
 
@@ -106,6 +108,34 @@ def run(
         int | None,
         typer.Option(metavar="K", help="The seed of the values that sensors draw at random."),
     ] = None,
+    cycles: Annotated[
+        int | None,
+        typer.Option(
+            metavar="N",
+            min=1,
+            max=1_000_000,
+            help="Run the cell N times, one run after the other, and report cycle times with their spread, and "
+            "throughput. Sensors go on from run to run.",
+        ),
+    ] = None,
+    warm_up: Annotated[
+        int,
+        typer.Option(
+            "--warm-up",
+            metavar="K",
+            min=0,
+            help="With --cycles: run K more before, which are not counted.",
+        ),
+    ] = 0,
+    stops: Annotated[
+        list[str],
+        typer.Option(
+            "--stops",
+            metavar="WHO:BETWEEN/LASTING",
+            help="With --cycles: a robot or device works BETWEEN seconds on average, then stands LASTING seconds on "
+            "average; both are drawn (exponential). This option may be given several times.",
+        ),
+    ] = [],  # noqa: B006 - typer reads the default only
     unchecked: UncheckedOption = False,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,
@@ -131,6 +161,16 @@ def run(
         raise typer.BadParameter("it has a meaning only with `--realtime`", param_hint="--live")
     if port and not live:
         raise typer.BadParameter("it has a meaning only with `--live`", param_hint="--port")
+    if cycles is None and (warm_up or stops):
+        raise typer.BadParameter(
+            "it has a meaning only with `--cycles`",
+            param_hint="--warm-up" if warm_up else "--stops",
+        )
+    if cycles is not None and (realtime or gui or video):
+        raise typer.BadParameter(
+            "many runs go on in lock-step and without pictures: not with `--realtime`, `--gui` or `--video`",
+            param_hint="--cycles",
+        )
     d = Diagnostics()
     console = Console(highlight=False)
     options = RunOptions(
@@ -142,10 +182,16 @@ def run(
         gui=gui,
         realtime=realtime,
         speed=speed,
-        looks=pictures or video,
+        looks=(pictures or video) and cycles is None,
         seed=seed,
         checked=not unchecked,
     )
+    if cycles is not None:
+        from pn2code.cli.run_cycles import rates, run_many
+        from pn2code.run.cycles import Plan
+
+        run_many(cell, options, Plan(cycles, warm_up, rates(stops)), form)
+        return
     album = Album(out, pictures=pictures, video=video)
     motion = Motion()
     view = _live_view(port, speed) if live else None

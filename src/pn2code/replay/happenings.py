@@ -102,6 +102,9 @@ def noted(line: Mapping[str, Any]) -> Json | None:
         case "sense":
             text = f"sensor {line['sensor']}: {line['value']}"
             return {"t": line["t"], "kind": "sense", "party": line["robot"], "text": text}
+        case "stand":
+            text = f"stands for {line['duration']:.2f} s"
+            return {"t": line["t"], "kind": "stand", "party": line["robot"], "text": text}
         case "part":
             text = f"{line['effect']} {line['part']}"
             return {"t": line["t"], "kind": "part", "party": line["robot"], "text": text}

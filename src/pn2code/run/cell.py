@@ -50,7 +50,9 @@ from pn2code.run.files import RobotFiles
 from pn2code.run.punctuality import Punctuality
 from pn2code.run.realtime import RealtimeEngine
 from pn2code.run.record import RunRecord, RunWarning
+from pn2code.run.sensors import Sensors
 from pn2code.run.sensors import load as load_sensors
+from pn2code.run.stops import Stops
 from pn2code.run.supervisor import EXIT_FINISHED, EXIT_USAGE, Exit, SupervisorProcess
 from pn2code.tdl.check import CheckedProgram, check
 from pn2code.tdl.parse import parse
@@ -210,19 +212,63 @@ def run_cell(
         ready(prepared)
     with ExitStack() as stack:
         inputs = stack.enter_context(folder_of(prepared.config, options.input))
-        sensors = load_sensors(
-            prepared.config,
-            prepared.generated.partition.net,
-            (inputs, prepared.config.folder),
-            options.seed,
-            d,
-        )
+        sensors = sensors_of(prepared, options, inputs, d)
         if sensors is None:
             return None
-        engine = _start(prepared, options, inputs, stack, d, observers or [])
+        record = run_once(
+            prepared, options, inputs, sensors, d, observers or [], interrupted=interrupted
+        )
+        if record is None:
+            return None
+    record.wall = time.perf_counter() - started
+    _warn(record, prepared.config)
+    summary = summary_of(record, prepared)
+    write_results(record, summary, prepared, options.out)
+    return RunResult(record, summary, prepared)
+
+
+def sensors_of(
+    prepared: Prepared, options: RunOptions, inputs: Path, d: Diagnostics
+) -> Sensors | None:
+    """The sensors of a cell at their start; None after an error that was reported."""
+    folders = (inputs, prepared.config.folder)
+    net = prepared.generated.partition.net
+    return load_sensors(prepared.config, net, folders, options.seed, d)
+
+
+def summary_of(record: RunRecord, prepared: Prepared) -> dict[str, Any]:
+    """The figures of a run."""
+    occurrences = counted(prepared.generated.partition.net, prepared.config)
+    return summarise(record, prepared.config.report, _names(prepared), occurrences)
+
+
+def run_once(
+    prepared: Prepared,
+    options: RunOptions,
+    inputs: Path,
+    sensors: Sensors,
+    d: Diagnostics,
+    observers: list[Observer],
+    stops: Stops | None = None,
+    interrupted: Callable[[], str] | None = None,
+) -> RunRecord | None:
+    """One run of programs that are built; None when it could not start.
+
+    Args:
+        prepared: the programs.
+        options: how.
+        inputs: the folder of the `[[input]]` files.
+        sensors: what they have said before stays said.
+        d: gets the errors.
+        observers: who watches.
+        stops: whose commands are held up, and when; None: nobody's.
+        interrupted: see `Engine`.
+    """
+    with ExitStack() as stack:
+        engine = _start(prepared, options, inputs, stack, d, observers)
         if engine is None:
             return None
-        engine.sensors = sensors
+        engine.sensors, engine.stops = sensors, stops
         if interrupted is not None:
             engine.interrupted = interrupted
         record = engine.run()
@@ -230,12 +276,7 @@ def run_cell(
             if record.verdict == "finished":
                 robot.files.finished()
         record.header = _header(engine.supervisor_trace.header)
-    record.wall = time.perf_counter() - started
-    _warn(record, prepared.config)
-    occurrences = counted(prepared.generated.partition.net, prepared.config)
-    summary = summarise(record, prepared.config.report, _names(prepared), occurrences)
-    _write_results(record, summary, prepared, options.out)
-    return RunResult(record, summary, prepared)
+    return record
 
 
 def _start(
@@ -400,9 +441,10 @@ def _nearness(a: str, b: str, gap: float) -> str:
     return f"`{a}` comes within {gap:.1f} mm of `{b}`"
 
 
-def _write_results(
+def write_results(
     record: RunRecord, summary: dict[str, Any], prepared: Prepared, out: Path
 ) -> None:
+    """Trace, rows, messages and summary of a run."""
     name = prepared.generated.partition.net.name
     texts = {
         f"{name}.trace.jsonl": trace_text(record.header, record.events),

@@ -18,7 +18,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, NoReturn, Protocol
 
 import numpy as np
@@ -56,6 +56,7 @@ from pn2code.run.record import (
     RunRecord,
 )
 from pn2code.run.sensors import Sensors
+from pn2code.run.stops import Stops
 from pn2code.run.supervisor import SupervisorProcess
 from pn2code.tdl.check import CheckedProgram
 from pn2code.tdl.interpret import MOST_AT_ONCE, Interpreter
@@ -167,6 +168,7 @@ class Engine:
         cell, backend: the arms and what shows them.
         monitor: what is checked at each sample.
         interrupted: asked again and again; not "": who wants the cell to stop, and it stops safely.
+        stops: whose commands are held up, and when; None: nobody's.
     """
 
     record: RunRecord
@@ -181,6 +183,7 @@ class Engine:
     sensors: Sensors = field(default_factory=Sensors)
     observers: list[Observer] = field(default_factory=list)
     interrupted: Callable[[], str] = _nobody
+    stops: Stops | None = None
     now: float = 0.0
     activity: str = ""
     parts: PartKeeper = field(init=False)
@@ -397,6 +400,8 @@ class Engine:
             where = robot.element_at(line)
             at = f" (net transition {where})" if where else ""
             raise CellStoppedError(f"{robot.script}:{line}{at}: {fault}") from None
+        if self.stops is not None:
+            motion = self._held_up(robot, motion, self.stops)
         robot.motion, robot.line = motion, line
         robot.activity = self._ordered_by.get(robot.name, self.activity)
         if isinstance(command, ToolAction):
@@ -409,6 +414,14 @@ class Engine:
                     "duration": command.duration,
                 }
             )
+
+    def _held_up(self, robot: RobotRunner, motion: Motion, stops: Stops) -> Motion:
+        """The motion with the stops that are drawn for it."""
+        held, seconds = stops.held_up(robot.name, motion.trajectory)
+        for stop in seconds:
+            event = {"t": self.now, "event": "stand", "robot": robot.name, "duration": stop}
+            self.record.events.append(event)
+        return replace(motion, trajectory=held) if seconds else motion
 
     # --- from instant to instant ---------------------------------------------------------------
 

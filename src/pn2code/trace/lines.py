@@ -21,6 +21,7 @@ _NOTES: Mapping[str, Mapping[str, type]] = {
     "end": {"t": float, "event": str, "why": str},
     "tool": {"t": float, "event": str, "robot": str, "action": str, "duration": float},
     "part": {"t": float, "event": str, "robot": str, "effect": str, "part": str},
+    "stand": {"t": float, "event": str, "robot": str, "duration": float},
     "sense": {"t": float, "event": str, "robot": str, "sensor": str, "value": object},
 }
 _MORE: Mapping[str, Mapping[str, type]] = {

@@ -1,0 +1,203 @@
+"""What is known of the durations of a cell: its commands, and its cycle."""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Literal
+
+from pn2code.base.frozen import frozen
+from pn2code.geometry.runs import Run
+from pn2code.timing.doings import NS
+from pn2code.timing.search import TIE
+
+Within = Literal["yes", "no", "unknown"]
+MS = NS // 1000
+
+
+@frozen
+class Command:
+    """A command of a robot or device, from all places where the arm can be then.
+
+    Args:
+        robot, transition: who does it, and the transition that commands it.
+        command: in words; kind: "ptp", "lin", "tool", ...
+        least, most: ns; `least_from`, `most_from`: the TCP pose from which (mm, degrees), "" of what has no arm.
+        places: from how many.
+    """
+
+    robot: str
+    transition: str
+    command: str
+    kind: str
+    least: int
+    most: int
+    least_from: str
+    most_from: str
+    places: int
+
+    def row(self) -> dict[str, Any]:
+        """For programs."""
+        return {
+            "robot": self.robot,
+            "transition": self.transition,
+            "command": self.command,
+            "kind": self.kind,
+            "least_s": round(self.least / NS, 6),
+            "most_s": round(self.most / NS, 6),
+            "least_from": self.least_from or None,
+            "most_from": self.most_from or None,
+            "places": self.places,
+        }
+
+
+@frozen
+class Fault:
+    """A transition whose commands cannot be done from somewhere, and why: a run stops there."""
+
+    transition: str
+    why: str
+
+
+@frozen
+class Ending:
+    """How long the cycles take that end in these final places.
+
+    Args:
+        places: their names.
+        least, most: ns, over all runs in which each command takes its planned time and everything else none; None: not
+            known, or there is no most.
+        fastest, slowest: such runs, if they were wanted.
+    """
+
+    places: str
+    least: int | None
+    most: int | None
+    fastest: Run | None = None
+    slowest: Run | None = None
+
+    def row(self) -> dict[str, Any]:
+        """For programs."""
+        return {
+            "final": self.places.split(", "),
+            "least_s": _down(self.least),
+            "most_s": _up(self.most),
+            "fastest": _file(self.fastest),
+            "slowest": _file(self.slowest),
+        }
+
+
+@frozen
+class Cycle:
+    """How long a cycle takes.
+
+    Args:
+        endings: by final places; [] if no end was found.
+        why: why they are not known; "": they are.
+        repeats: the transitions of a repetition that takes time and after which the cell can come to its end; so there
+            is no longest cycle.
+        at_least: ns, however late anybody is, if no command takes less than its time.
+        at_most: ns, in whatever order things end, if no command takes more than its time.
+        others: what runs may do that do not come to the end.
+        situations: how many there are.
+    """
+
+    endings: tuple[Ending, ...]
+    why: str
+    repeats: tuple[str, ...]
+    at_least: int | None
+    at_most: int | None
+    others: tuple[str, ...]
+    situations: int
+
+    @property
+    def least(self) -> int | None:
+        """ns: of all endings."""
+        found = [e.least for e in self.endings if e.least is not None]
+        return min(found) if found and len(found) == len(self.endings) else None
+
+    @property
+    def most(self) -> int | None:
+        """ns: of all endings; None: not known, or there is none."""
+        found = [e.most for e in self.endings if e.most is not None]
+        return max(found) if found and len(found) == len(self.endings) else None
+
+    def within(self, seconds: float) -> tuple[Within, str]:
+        """Whether each run comes to its end within so many seconds, and why not, or why it is not known."""
+        limit = math.floor(seconds * NS)
+        if self.repeats:
+            return "no", "the cell can repeat something for as long as it likes"
+        if self.why or self.most is None:
+            # What runs may do besides coming to their end is not known then, either, so `at_most` proves nothing.
+            return "unknown", self.why or "no run comes to the end"
+        if self.most - TIE > limit:
+            return "no", f"a run takes {seconds_up(self.most)} s"
+        if self.most + TIE > limit:
+            return "unknown", "the longest cycle is as long as that, to a millisecond"
+        if self.others:
+            return "unknown", f"each run that comes to its end does, but {'; '.join(self.others)}"
+        return "yes", ""
+
+    def row(self) -> dict[str, Any]:
+        """For programs."""
+        return {
+            "least_s": _down(self.least),
+            "most_s": _up(self.most),
+            "why": self.why or None,
+            "repeats": list(self.repeats),
+            "at_least_s": _down(self.at_least),
+            "at_most_s": _up(self.at_most),
+            "others": list(self.others),
+            "situations": self.situations,
+            "endings": [e.row() for e in self.endings],
+        }
+
+
+def _file(run: Run | None) -> str | None:
+    return None if run is None or run.file is None else str(run.file)
+
+
+def _down(ns: int | None) -> float | None:
+    return None if ns is None else max(0, ns - TIE) // MS / 1000
+
+
+def _up(ns: int | None) -> float | None:
+    return None if ns is None else -((-ns - TIE) // MS) / 1000
+
+
+def seconds_down(ns: int) -> str:
+    """A lower bound, rounded down."""
+    return f"{_down(ns):.3f}"
+
+
+def seconds_up(ns: int) -> str:
+    """An upper bound, rounded up."""
+    return f"{_up(ns):.3f}"
+
+
+@frozen
+class Layout:
+    """A layout.
+
+    Args:
+        name: "" if the cell has none.
+        states: of the cell.
+        open: why there may be more commands; "": there are not.
+    """
+
+    name: str
+    commands: tuple[Command, ...]
+    faults: tuple[Fault, ...]
+    cycle: Cycle
+    states: int
+    open: str
+
+    def row(self) -> dict[str, Any]:
+        """For programs."""
+        return {
+            "layout": self.name or None,
+            "states": self.states,
+            "open": self.open or None,
+            "commands": [c.row() for c in self.commands],
+            "faults": [{"transition": f.transition, "why": f.why} for f in self.faults],
+            "cycle": self.cycle.row(),
+        }

@@ -1,0 +1,124 @@
+"""How long what a transition tells an arm or device takes, from where the arm stands.
+
+    doings = Doings(graph, cell)
+    doings.of(element, stand)       # Doing(ns=2_430_112_000, end=Stand(...), ...); None: it tells nothing
+
+Moves are planned by the planner that a run uses, so they take what they take in a run. Durations are whole numbers of
+nanoseconds: sums of them are exact.
+"""
+
+from __future__ import annotations
+
+import math
+
+from pn2code.base.frozen import frozen
+from pn2code.cell.partition import OwnerKind
+from pn2code.geometry.graph import CellGraph
+from pn2code.geometry.legs import Planner, Stand
+from pn2code.robot.commands import Command, ToolAction, Wait
+from pn2code.robot.robot_cell import RobotCell
+
+NS = 1_000_000_000
+FOREVER = 10**18
+"""Nanoseconds of what never comes to its end."""
+
+
+@frozen(eq=False)
+class Part:
+    """One command: from where, and how long it takes (ns)."""
+
+    command: Command
+    kind: str
+    start: Stand | None
+    ns: int
+
+
+@frozen(eq=False)
+class Doing:
+    """All commands of a transition.
+
+    Args:
+        ns: how long they take; FOREVER: they are not done to their end.
+        end: where the arm stands afterwards; None: a device.
+        parts: each of them; with a fault those before it.
+        fault: why not all of them can be carried out.
+    """
+
+    ns: int
+    end: Stand | None
+    parts: tuple[Part, ...]
+    fault: str = ""
+
+
+class Doings:
+    """Works them out, each once.
+
+    Args:
+        arms: the owners that have an arm, in the order of the cell's robots.
+        why: why not all durations are known; "": they are.
+    """
+
+    def __init__(self, graph: CellGraph, cell: RobotCell) -> None:
+        self.graph, self.cell = graph, cell
+        self.planner = Planner(cell)
+        owners = {o.name: o.index for o in graph.partition.owners}
+        self.arms = tuple(owners[r.name] for r in cell.robots)
+        self.homes = tuple(self.planner.home(r.name) for r in cell.robots)
+        self.arm_of = {owner: i for i, owner in enumerate(self.arms)}
+        self.why = ""
+        self._known: dict[tuple[int, int], Doing | None] = {}
+
+    def is_told(self, element: int) -> bool:
+        """Whether somebody who is not the supervisor lets it occur."""
+        e = self.graph.elements[element]
+        if e.is_step or e.owner < 0:
+            return False
+        return self.graph.partition.owners[e.owner].kind is not OwnerKind.SUPERVISOR
+
+    def of(self, element: int, stand: Stand | None) -> Doing | None:
+        """What it takes; None: nothing is told."""
+        key = (element, -1 if stand is None else stand.number)
+        if key not in self._known:
+            self._known[key] = self._worked_out(element, stand)
+        return self._known[key]
+
+    def _worked_out(self, element: int, stand: Stand | None) -> Doing | None:
+        e = self.graph.elements[element]
+        commands = self.graph.commands(element)
+        if not commands:
+            return None
+        if self.graph.outside.get(e.transition):
+            self.why = self.why or "outside"
+        parts: list[Part] = []
+        for command in commands:
+            if stand is not None:
+                leg = self.planner.leg(stand, command)
+                if leg.fault is not None or leg.path is None:
+                    message = leg.fault.message if leg.fault is not None else ""
+                    return Doing(FOREVER, stand, tuple(parts), message)
+                parts.append(Part(command, leg.kind, stand, _ns(leg.path.duration)))
+                stand = leg.end
+                continue
+            fault = self._without_arm(e.owner, command)
+            if fault:
+                return Doing(FOREVER, None, tuple(parts), fault)
+            assert isinstance(command, ToolAction | Wait)
+            kind = "tool" if isinstance(command, ToolAction) else "wait"
+            parts.append(Part(command, kind, None, _ns(command.duration)))
+        return Doing(sum(p.ns for p in parts), stand, tuple(parts))
+
+    def _without_arm(self, owner: int, command: Command) -> str:
+        """Why a device, or a robot without an arm in cell.toml, cannot do it; "": it can."""
+        who = self.graph.partition.owners[owner]
+        if not isinstance(command, ToolAction | Wait):
+            if who.kind is OwnerKind.ROBOT:
+                self.why = self.why or "armless"
+            return f"{who.phrase} has no arm"
+        seconds = command.duration
+        if not (seconds >= 0.0 and math.isfinite(seconds)):
+            return f"{who.phrase}: a duration of {seconds:g} s is not possible"
+        return ""
+
+
+def _ns(seconds: float) -> int:
+    return round(seconds * NS)

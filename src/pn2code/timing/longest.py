@@ -1,0 +1,248 @@
+"""Shortest and longest ways in a graph with times on its arcs, to where something ends.
+
+    ways = Ways(successors, ends)
+    ways.longest()          # Longest(ns=58_120_000_000, way=[(0, 3), ...]); None: there is no way
+    ways.cycle              # nodes of a cycle that takes time, from which an end can be reached: no way is longest
+
+`successors[n]` are (node, ns, mark) of node `n`; node 0 is the start. What takes no time may go round.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Callable, Collection, Sequence
+
+from pn2code.base.frozen import frozen
+
+Arc = tuple[int, int, int]
+"""To which node, how long (ns), and a mark for whoever reads the way."""
+
+
+@frozen
+class Way:
+    """A way from the start: how long it is, and the node and mark of each of its arcs."""
+
+    ns: int
+    way: tuple[tuple[int, int], ...]
+
+    @property
+    def last(self) -> int:
+        """Where it ends."""
+        return self.way[-1][0] if self.way else 0
+
+
+def shortest(
+    successors: Sequence[Sequence[Arc]],
+    ends: Collection[int],
+    weigh: Callable[[int, int], int] = lambda ns, _mark: ns,
+) -> Way | None:
+    """The shortest way to an end; None: there is none.
+
+    Args:
+        weigh: how long an arc counts, by its time and mark.
+    """
+    best = {0: 0}
+    before: dict[int, tuple[int, int]] = {}
+    todo = [(0, 0)]
+    while todo:
+        ns, node = heapq.heappop(todo)
+        if ns > best[node]:
+            continue
+        if node in ends:
+            return Way(ns, tuple(_back(before, node)))
+        for target, more, mark in successors[node]:
+            total = ns + weigh(more, mark)
+            if total < best.get(target, total + 1):
+                best[target] = total
+                before[target] = (node, mark)
+                heapq.heappush(todo, (total, target))
+    return None
+
+
+class Ways:
+    """The ways to the ends, as long as they can be."""
+
+    def __init__(self, successors: Sequence[Sequence[Arc]], ends: Collection[int]) -> None:
+        self.successors, self.ends = successors, ends
+        self.leading = _leading(successors, ends)
+        """by node: whether an end can be reached"""
+        self._component, self._order = components(successors)
+        self.cycle = self._cycle_that_takes_time()
+
+    def never_end(self) -> bool:
+        """Whether a run may go round for ever, with or without time."""
+        sizes = [0] * (max(self._component, default=-1) + 1)
+        for c in self._component:
+            sizes[c] += 1
+        return any(
+            sizes[self._component[n]] > 1 or any(target == n for target, *_ in arcs)
+            for n, arcs in enumerate(self.successors)
+        )
+
+    def longest(self, ends: Collection[int] | None = None) -> Way | None:
+        """The longest way; None: there is none, or, with a cycle, no longest one.
+
+        Args:
+            ends: to one of these ends; None: to any.
+        """
+        if self.cycle or not self.leading[0]:
+            return None
+        best: dict[int, int] = {self._component[0]: 0}
+        entry: dict[int, tuple[int, int, int]] = {}
+        members: dict[int, list[int]] = {}
+        for n, c in enumerate(self._component):
+            members.setdefault(c, []).append(n)
+        for c in self._order:
+            if c not in best:
+                continue
+            for node in members[c]:
+                for target, ns, mark in self.successors[node]:
+                    other = self._component[target]
+                    if other == c or not self.leading[target]:
+                        continue
+                    total = best[c] + ns
+                    if total > best.get(other, -1):
+                        best[other] = total
+                        entry[other] = (node, target, mark)
+        wanted = self.ends if ends is None else ends
+        there = [n for n in sorted(wanted) if self._component[n] in best]
+        if not there:
+            return None
+        end = max(there, key=lambda n: best[self._component[n]])
+        return Way(best[self._component[end]], tuple(self._way(entry, end)))
+
+    def _way(self, entry: dict[int, tuple[int, int, int]], end: int) -> list[tuple[int, int]]:
+        out: list[tuple[int, int]] = []
+        node = end
+        while True:
+            component = self._component[node]
+            found = entry.get(component)
+            first = found[1] if found is not None else 0
+            out += reversed(self._inside(first, node))
+            if found is None:
+                return out[::-1]
+            node, target, mark = found
+            out.append((target, mark))
+
+    def _inside(self, first: int, last: int) -> list[tuple[int, int]]:
+        """A way inside a component, where nothing takes time."""
+        if first == last:
+            return []
+        component = self._component[first]
+        before: dict[int, tuple[int, int]] = {}
+        todo = [first]
+        for node in todo:
+            for target, _, mark in self.successors[node]:
+                if (
+                    self._component[target] == component
+                    and target != first
+                    and target not in before
+                ):
+                    before[target] = (node, mark)
+                    todo.append(target)
+        out = []
+        node = last
+        while node != first:
+            parent, mark = before[node]
+            out.append((node, mark))
+            node = parent
+        return out[::-1]
+
+    def _cycle_that_takes_time(self) -> list[int]:
+        """The nodes of one, in order; []: there is none."""
+        component = self._component
+        for node, arcs in enumerate(self.successors):
+            for target, ns, _ in arcs:
+                if ns > 0 and component[target] == component[node] and self.leading[node]:
+                    if target == node:
+                        return [node]
+                    back = [n for n, _ in self._inside(target, node)]
+                    return [node, target, *back[:-1]]
+        return []
+
+
+def longest_inside(successors: Sequence[Sequence[Arc]], inside: Collection[int]) -> int | None:
+    """How long one can be among these nodes, until they are left (ns); None: as long as one likes."""
+    if not inside:
+        return 0
+    numbers = {node: i for i, node in enumerate(sorted(inside), 1)}
+    left = len(numbers) + 1
+    graph: list[list[Arc]] = [[(i, 0, 0) for i in numbers.values()]]
+    for node in numbers:
+        arcs = [(numbers.get(target, left), ns, 0) for target, ns, _ in successors[node]]
+        graph.append([*arcs, (left, 0, 0)])
+    graph.append([])
+    ways = Ways(graph, {left})
+    found = ways.longest()
+    return None if ways.cycle or found is None else found.ns
+
+
+def _back(before: dict[int, tuple[int, int]], node: int) -> list[tuple[int, int]]:
+    out = []
+    while node in before:
+        parent, mark = before[node]
+        out.append((node, mark))
+        node = parent
+    return out[::-1]
+
+
+def _leading(successors: Sequence[Sequence[Arc]], ends: Collection[int]) -> list[bool]:
+    into: list[list[int]] = [[] for _ in successors]
+    for node, arcs in enumerate(successors):
+        for target, *_ in arcs:
+            into[target].append(node)
+    out = [False] * len(successors)
+    todo = list(ends)
+    for node in todo:
+        out[node] = True
+    while todo:
+        for node in into[todo.pop()]:
+            if not out[node]:
+                out[node] = True
+                todo.append(node)
+    return out
+
+
+def components(successors: Sequence[Sequence[Arc]]) -> tuple[list[int], list[int]]:
+    """The strongly connected component of each node, and the components in an order in which arcs lead forwards."""
+    count = len(successors)
+    number = [-1] * count
+    low = [0] * count
+    component = [-1] * count
+    stack: list[int] = []
+    is_on = [False] * count
+    found = seen = 0
+    for root in range(count):
+        if number[root] >= 0:
+            continue
+        work = [(root, 0)]
+        while work:
+            node, i = work.pop()
+            if i == 0:
+                number[node] = low[node] = seen
+                seen += 1
+                stack.append(node)
+                is_on[node] = True
+            arcs = successors[node]
+            while i < len(arcs):
+                target = arcs[i][0]
+                i += 1
+                if number[target] < 0:
+                    work += [(node, i), (target, 0)]
+                    break
+                if is_on[target]:
+                    low[node] = min(low[node], number[target])
+            else:
+                if low[node] == number[node]:
+                    while True:
+                        top = stack.pop()
+                        is_on[top] = False
+                        component[top] = found
+                        if top == node:
+                            break
+                    found += 1
+                if work:
+                    parent = work[-1][0]
+                    low[parent] = min(low[parent], low[node])
+                continue
+    return component, list(range(found - 1, -1, -1))

@@ -1,0 +1,260 @@
+"""`pn2code time CELL`: durations of all commands, and of all cycles, in the layouts of a cell.
+
+found = look(opened, None, limits, folder, d)          # Times; None after an error that was reported
+found.layouts[0].cycle.most
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+from pn2code.base.frozen import frozen
+from pn2code.cell.config import CellConfig
+from pn2code.cell.divide import divide
+from pn2code.diagnostics import Diagnostics, Origin
+from pn2code.geometry.check import cells_of
+from pn2code.geometry.graph import CellGraph, explore_cell
+from pn2code.geometry.legs import Stand
+from pn2code.geometry.runs import Run, write
+from pn2code.geometry.words import numbers, reason, words
+from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.transforms import pose_of
+from pn2code.timing import codes
+from pn2code.timing.answers import Command, Cycle, Ending, Fault, Layout
+from pn2code.timing.anyhow import Anyhow
+from pn2code.timing.doings import NS, Doings
+from pn2code.timing.longest import Way, longest_inside
+from pn2code.timing.search import TIE, Search
+from pn2code.verdict.opened import OpenNet
+from pn2code.verify.controller.running import NotModelledError
+from pn2code.verify.exploring.limits import Limits
+
+_OPEN = {
+    "timed": "the net is timed, and when its time stamps are reached is not followed",
+    "armless": "a robot has no arm in cell.toml, so that nobody knows how long its moves take",
+    "situations": "the cell can come to more situations than were looked at",
+}
+
+
+@frozen(eq=False)
+class Times:
+    """What is known of a cell.
+
+    Args:
+        why: why nothing is known; "": something is.
+        reply_timeout_s: how long the supervisor waits for an answer before it stops the cell.
+    """
+
+    layouts: tuple[Layout, ...]
+    reply_timeout_s: float
+    why: str = ""
+
+    def row(self) -> dict[str, Any]:
+        """For programs (docs/time.md)."""
+        return {
+            "why": self.why or None,
+            "reply_timeout_s": self.reply_timeout_s,
+            "layouts": [x.row() for x in self.layouts],
+        }
+
+
+def look(
+    opened: OpenNet,
+    layout: str | None,
+    limits: Limits,
+    folder: Path | None,
+    d: Diagnostics,
+    stage: Callable[[str], None] = lambda _text: None,
+) -> Times | None:
+    """Measures everything; None after an error that was reported.
+
+    Args:
+        opened: the cell.
+        layout: only this one; None: all of them.
+        limits: of the exploration.
+        folder: where a fastest and a slowest run are written; None: nowhere.
+        d: gets the errors.
+        stage: hears in words what is done.
+    """
+    config = opened.config
+    if config is None:
+        d.error(
+            codes.TIME_NO_CELL,
+            "only a cell has durations, and there is no cell.toml",
+            Origin(opened.flat.file),
+            hint="give a cell.toml or its folder; a net alone is played by `pn2code simulate`",
+        )
+        return None
+    partition = divide(opened.flat, config, d)
+    cells = cells_of(config, layout, d)
+    if partition is None or cells is None:
+        return None
+    timeout = config.supervisor.reply_timeout_s
+    stage("exploring the cell as its programs run ...")
+    try:
+        graph = explore_cell(partition, opened.storage, limits, d, opened.initial)
+    except NotModelledError as problem:
+        return Times((), timeout, f"the cell as it runs cannot be modelled: {problem}")
+    if graph is None:
+        return None
+    if not graph.arcs:
+        return Times((), timeout, reason(graph.why))
+    made = []
+    for name, cell in cells:
+        stage("measuring commands and cycles ...")
+        made.append(_Look(graph, cell, config, name, folder, opened).layout())
+    return Times(tuple(made), timeout)
+
+
+class _Look:
+    """One layout."""
+
+    def __init__(
+        self,
+        graph: CellGraph,
+        cell: RobotCell,
+        config: CellConfig,
+        name: str,
+        folder: Path | None,
+        opened: OpenNet,
+    ) -> None:
+        self.graph, self.cell, self.config, self.name = graph, cell, config, name
+        self.folder, self.opened = folder, opened
+        self.doings = Doings(graph, cell)
+        self.anyhow = Anyhow(self.doings)
+        self.search = Search(self.doings)
+        owners = graph.partition.owners
+        self.owner = {o.index: o.name for o in owners}
+
+    def layout(self) -> Layout:
+        """All that is known."""
+        self.anyhow.explore()
+        self.search.explore()
+        return Layout(
+            self.name,
+            tuple(self._commands()),
+            tuple(self._faults()),
+            self._cycle(),
+            len(self.graph.arcs),
+            _clause(self.anyhow.why),
+        )
+
+    def _transition(self, element: int) -> str:
+        return self.graph.running.net.transitions[self.graph.elements[element].transition].name
+
+    def _commands(self) -> Iterator[Command]:
+        found: dict[tuple[str, str, str, str], list[tuple[int, str]]] = {}
+        for (element, _), stand in self.anyhow.met.items():
+            doing = self.doings.of(element, stand)
+            robot = self.owner[self.graph.elements[element].owner]
+            for part in doing.parts if doing is not None else ():
+                key = (robot, self._transition(element), words(part.command), part.kind)
+                found.setdefault(key, []).append((part.ns, self._pose(robot, part.start)))
+        order = {name: i for i, name in enumerate(self.owner.values())}
+        for key in sorted(found, key=lambda k: order[k[0]]):
+            times = sorted(set(found[key]))
+            (least, least_from), (most, most_from) = times[0], times[-1]
+            places = len({pose for _, pose in times})
+            yield Command(*key, least, most, least_from, most_from, places)
+
+    def _pose(self, robot: str, stand: Stand | None) -> str:
+        if stand is None:
+            return ""
+        return numbers(pose_of(self.cell.robot(robot).T_world_base @ stand.T_base_tcp))
+
+    def _faults(self) -> Iterator[Fault]:
+        for (element, _), why in self.anyhow.faults.items():
+            yield Fault(self._transition(element), why)
+
+    def _cycle(self) -> Cycle:
+        search, anyhow = self.search, self.anyhow
+        is_known = not search.why
+        repeats = tuple(dict.fromkeys(map(self._transition, search.around()))) if is_known else ()
+        at_least = at_most = None
+        if not anyhow.why:
+            at_least = anyhow.least()
+            if not self.graph.partition.net.timed:
+                way, _ = anyhow.most()
+                at_most = None if way is None else way.ns
+        return Cycle(
+            tuple(self._endings()),
+            _clause(search.why),
+            tuple(n for n in repeats if not n.startswith("cell.")),
+            at_least,
+            at_most,
+            tuple(self._others()),
+            len(search.situations),
+        )
+
+    def _endings(self) -> Iterator[Ending]:
+        search = self.search
+        is_known = not search.why
+        # What was seen before a limit is all that there is before that time; of other reasons nothing is certain.
+        is_first = is_known or (search.why == "situations" and not self.doings.why)
+        several = len(search.endings) > 1
+        for places, ending in search.endings.items():
+            best = ending.best if is_first else None
+            worst = ending.worst if is_known else None
+            short = "-" + places.replace(", ", "+").split(".")[-1] if several else ""
+            yield Ending(
+                places,
+                None if best is None else best.ns,
+                None if worst is None else worst.ns,
+                self._run(best if is_known else None, f"fastest{short}"),
+                self._run(worst, f"slowest{short}"),
+            )
+
+    def _others(self) -> Iterator[str]:
+        """What runs may do that do not come to the end."""
+        search = self.search
+        yield from (f"a run may stop: {why}" for why in search.faults)
+        if len(search.stuck) > len(search.faults):
+            yield "a run may come to where nothing more happens, before its end"
+        for channel in self.graph.partition.channels:
+            if any(marked.get(channel.place, 0) > 1 for marked in self.graph.marked):
+                yield (
+                    f"channel `{channel.name}` may come to hold two messages, and then the cell stops"
+                )
+        if not search.why:
+            yield from self._late()
+        if search.halts:
+            yield "a script may come to where none of its transitions is possible, and stop the cell"
+        if search.is_endless and not search.cycle:
+            yield "a run may go on for ever, and never come to its end"
+        if not search.ends and not search.why:
+            yield "no run comes to its end"
+
+    def _late(self) -> Iterator[str]:
+        """Who may owe an answer for longer than the supervisor waits for it."""
+        timeout = self.config.supervisor.reply_timeout_s
+        places = {p.name: p.index for p in self.graph.running.net.places}
+        situations = self.search.situations
+        for owner in self.graph.partition.owners:
+            place = places.get(f"cell.{owner.name}.owes")
+            if place is None:
+                continue
+            marked = self.graph.marked
+            owing = [i for i, (state, *_) in enumerate(situations) if place in marked[state]]
+            ns = longest_inside(self.search.successors, owing)
+            if ns is None or ns + TIE > timeout * NS:
+                after = "at any time" if ns is None else f"after {ns / NS:.3f} s"
+                yield (
+                    f"an answer of {owner.phrase} may come {after}, later than reply_timeout_s "
+                    f"({timeout:g} s) allows"
+                )
+
+    def _run(self, way: Way | None, which: str) -> Run | None:
+        if way is None or self.folder is None:
+            return None
+        stem = re.sub(r"[^A-Za-z0-9_.-]+", "_", self.opened.flat.name) or "net"
+        layout = f"-{self.name}" if self.name else ""
+        file = self.folder / f"{stem}.{which}{layout}.trace.jsonl"
+        elements = self.search.elements(way)
+        return write(self.graph, elements, (), file, self.opened.initial)
+
+
+def _clause(why: str) -> str:
+    return _OPEN.get(why) or reason(why)

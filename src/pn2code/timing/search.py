@@ -1,0 +1,286 @@
+"""All runs of a cell in which each command takes its planned time, and everything else none.
+
+    search = Search(doings)
+    search.explore()
+    search.endings["Top.Supervisor.Finished"].best      # Way; ...worst: None: there is no longest one
+    search.why                          # why not all runs are known; "": they are
+
+A situation is a state of the cell, where its arms stand, and what is under way with the time that it still takes. At
+an instant everything happens that can, in each order that the net permits; then what can be under way begins; then
+time goes by until the first of it ends. A sensor says anything. A cycle ends when the supervisor has finished and the
+arms rest, as a run does.
+
+What ends within `TIE` of what ends first may as well end first: how long a move takes is known to some microseconds.
+"""
+
+from __future__ import annotations
+
+import heapq
+import itertools
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import field
+
+from pn2code.base.frozen import record
+from pn2code.geometry.legs import Stand
+from pn2code.timing.doings import FOREVER, Doing, Doings
+from pn2code.timing.longest import Arc, Way, Ways
+from pn2code.timing.steps import Kind, kinds, stops
+
+TIE = 1_000_000
+"""ns: what ends within this time may end in either order. Results are as accurate as that."""
+MOST = 250_000
+"""Situations that are looked at."""
+BEGINS = -1
+"""The mark of an arc on which something begins."""
+UnderWay = tuple[tuple[int, int, int], ...]
+"""By owner in order: (owner, element, ns that it still takes)."""
+Situation = tuple[int, tuple[Stand, ...], UnderWay]
+
+
+@record
+class Ending:
+    """One way for a cycle to end: in these final places.
+
+    Args:
+        nodes: the situations; best, worst: ways to them. None: not known, or there is no worst.
+    """
+
+    nodes: list[int] = field(default_factory=list)
+    best: Way | None = None
+    worst: Way | None = None
+
+
+class Search:
+    """Goes through the situations in the order of their times.
+
+    Args:
+        why: why not all are known: "timed", "situations", "overtaken", or what the graph says; "": they are.
+        seen_until: ns: all situations before this time have been seen.
+        stuck: situations in which nothing more happens, though the cell is not at its end.
+        faults: why the cell stops at some of them.
+        halts: a script may find no transition that is possible, and stop the cell.
+    """
+
+    def __init__(self, doings: Doings, most: int = MOST) -> None:
+        self.doings, self.graph, self.most = doings, doings.graph, most
+        self.why = self.graph.why
+        self.situations: list[Situation] = []
+        self.successors: list[list[Arc]] = []
+        self.ends: set[int] = set()
+        self.stuck: list[int] = []
+        self.faults: dict[str, int] = {}
+        self.halts = False
+        self.endings: dict[str, Ending] = {}
+        self.cycle: list[int] = []
+        self.is_endless = False
+        self.seen_until = 0
+        self._numbers: dict[tuple[object, ...], int] = {}
+        self._from: list[tuple[int, int]] = []
+        self._kinds = kinds(self.graph)
+        self._stopped = stops(self.graph)
+        self._told: dict[int, frozenset[int]] = {}
+
+    def explore(self) -> None:
+        """Goes through all of them, and finds the best and the worst."""
+        if self.graph.partition.net.timed:
+            self.why = self.why or "timed"
+            return
+        self._number((0, self.doings.homes, ()))
+        self._from.append((-1, BEGINS))
+        times = [0]
+        todo = [(0, 0)]
+        done: set[int] = set()
+        while todo:
+            now, node = heapq.heappop(todo)
+            if node in done:
+                continue
+            done.add(node)
+            self.seen_until = now
+            arcs = self._after(node)
+            self.successors[node] = arcs
+            if node in self.ends:
+                self._note_end(node, now)
+            for target, ns, mark in arcs:
+                if target == len(times):
+                    times.append(now + ns)
+                    self._from.append((node, mark))
+                elif now + ns < times[target]:
+                    times[target] = now + ns
+                    self._from[target] = (node, mark)
+                else:
+                    continue
+                heapq.heappush(todo, (now + ns, target))
+            if len(self.situations) > self.most:
+                self.why = self.why or "situations"
+                return
+        self.why = self.why or self.doings.why
+        ways = Ways(self.successors, self.ends)
+        self.cycle = ways.cycle
+        for ending in self.endings.values():
+            ending.worst = ways.longest(ending.nodes)
+        self.is_endless = ways.never_end()
+
+    def _note_end(self, node: int, now: int) -> None:
+        state = self.situations[node][0]
+        marked = self.graph.marked[state]
+        places = self.graph.partition.net.places
+        finals = sorted(p for p in self.graph.partition.final_places if p in marked)
+        ending = self.endings.setdefault(", ".join(places[p].name for p in finals), Ending())
+        ending.nodes.append(node)
+        if ending.best is None:
+            ending.best = Way(now, tuple(self._way(node)))
+
+    def _way(self, node: int) -> list[tuple[int, int]]:
+        out = []
+        while node > 0:
+            parent, mark = self._from[node]
+            out.append((node, mark))
+            node = parent
+        return out[::-1]
+
+    def around(self) -> list[int]:
+        """The elements of a repetition that takes time, from which an end can be reached."""
+        out = []
+        for node, target in zip(self.cycle, [*self.cycle[1:], *self.cycle[:1]], strict=True):
+            marks = [mark for to, _, mark in self.successors[node] if to == target]
+            out.append(max(marks))
+        return [m for m in out if m >= 0]
+
+    def elements(self, way: Way) -> list[int]:
+        """What occurs on a way."""
+        return [mark for _, mark in way.way if mark >= 0]
+
+    # --- one situation ---------------------------------------------------------------------------
+
+    def _after(self, node: int) -> list[Arc]:
+        state, stands, under_way = self.situations[node]
+        busy = {owner: element for owner, element, _ in under_way}
+        at_once: list[tuple[int, int]] = []
+        begins: dict[int, list[tuple[int, Doing]]] = {}
+        ending: dict[int, list[int]] = {}
+        mixed: set[int] = set()
+        for element, target in self.graph.arcs[state]:
+            kind = self._kinds[element]
+            if kind is Kind.ENDS:
+                continue
+            if target in self._stopped:
+                self.halts = True
+                continue
+            owner = self.graph.elements[element].owner
+            if owner in busy and kind is Kind.TOLD:
+                if busy[owner] == element:
+                    ending.setdefault(owner, []).append(target)
+                continue
+            doing = None
+            if kind is Kind.TOLD:
+                arm = self.doings.arm_of.get(owner)
+                doing = self.doings.of(element, None if arm is None else stands[arm])
+            if doing is not None:
+                begins.setdefault(owner, []).append((element, doing))
+                continue
+            at_once.append((element, target))
+            if kind is Kind.TOLD:
+                mixed.add(owner)
+        out = list(self._at_once(state, stands, under_way, at_once, begins))
+        for owner in mixed & begins.keys():  # it may choose what takes time
+            out += self._begun(state, stands, under_way, {owner: begins[owner]})
+        now = [u for u in under_way if u[2] == 0]
+        if not at_once and self._rests(state, busy, begins):
+            self.ends.add(node)
+        out += self._ended(state, stands, under_way, ending, now)
+        if out or node in self.ends:
+            return out
+        if begins:
+            return list(self._begun(state, stands, under_way, begins))
+        going = [u for u in under_way if u[2] < FOREVER // 2]
+        if not going:
+            self._stop(node, stands, under_way)
+            return []
+        first = min(u[2] for u in going)
+        those = [u for u in going if u[2] <= first + TIE]
+        return list(self._ended(state, stands, under_way, ending, those))
+
+    def _rests(self, state: int, busy: Iterable[int], begins: Iterable[int]) -> bool:
+        """Whether the cycle is over: the supervisor has finished, and no arm does anything."""
+        if state not in self.graph.over:
+            return False
+        return not any(owner in self.doings.arm_of for owner in (*busy, *begins))
+
+    def _at_once(
+        self,
+        state: int,
+        stands: tuple[Stand, ...],
+        under_way: UnderWay,
+        elements: Sequence[tuple[int, int]],
+        begins: dict[int, list[tuple[int, Doing]]],
+    ) -> Iterator[Arc]:
+        for element, target in elements:
+            owner = self.graph.elements[element].owner
+            for other, choices in begins.items():
+                if other != owner and not self._enabled(target).issuperset(e for e, _ in choices):
+                    self.why = self.why or "overtaken"
+            yield (self._number((target, stands, under_way)), 0, element)
+
+    def _enabled(self, state: int) -> frozenset[int]:
+        if state not in self._told:
+            self._told[state] = frozenset(element for element, _ in self.graph.arcs[state])
+        return self._told[state]
+
+    def _begun(
+        self,
+        state: int,
+        stands: tuple[Stand, ...],
+        under_way: UnderWay,
+        begins: dict[int, list[tuple[int, Doing]]],
+    ) -> Iterator[Arc]:
+        """Everybody who can begin something does; who has a choice begins any of it."""
+        for choice in itertools.product(*begins.values()):
+            new = [(o, e, doing.ns) for o, (e, doing) in zip(begins, choice, strict=True)]
+            together = tuple(sorted((*under_way, *new)))
+            yield (self._number((state, stands, together)), 0, BEGINS)
+
+    def _ended(
+        self,
+        state: int,
+        stands: tuple[Stand, ...],
+        under_way: UnderWay,
+        ending: dict[int, list[int]],
+        those: Sequence[tuple[int, int, int]],
+    ) -> Iterator[Arc]:
+        """One of those ends, when it does; what should have ended before ends then."""
+        for owner, element, ns in those:
+            left = tuple(
+                (o, e, more if more >= FOREVER // 2 else max(0, more - ns))
+                for o, e, more in under_way
+                if o != owner
+            )
+            after = stands
+            arm = self.doings.arm_of.get(owner)
+            if arm is not None:
+                doing = self.doings.of(element, stands[arm])
+                assert doing is not None
+                if doing.end is not None:
+                    after = (*stands[:arm], doing.end, *stands[arm + 1 :])
+            if owner not in ending:
+                self.why = self.why or "overtaken"
+            for target in ending.get(owner, ()):
+                yield (self._number((target, after, left)), ns, element)
+
+    def _stop(self, node: int, stands: tuple[Stand, ...], under_way: UnderWay) -> None:
+        """Nothing more happens, and the cell is not at its end."""
+        self.stuck.append(node)
+        for owner, element, _ in under_way:
+            arm = self.doings.arm_of.get(owner)
+            doing = self.doings.of(element, None if arm is None else stands[arm])
+            if doing is not None and doing.fault:
+                self.faults.setdefault(doing.fault, node)
+
+    def _number(self, s: Situation) -> int:
+        state, stands, under_way = s
+        key = (state, under_way, *(x.number for x in stands))
+        found = self._numbers.get(key)
+        if found is None:
+            found = self._numbers[key] = len(self.situations)
+            self.situations.append(s)
+            self.successors.append([])
+        return found

@@ -1,0 +1,29 @@
+"""Whether each run ends within so many seconds."""
+
+from __future__ import annotations
+
+import pytest
+
+from pn2code.timing.answers import Cycle, Ending
+
+S = 1_000_000_000
+
+
+def cycle(most: int | None, why: str = "", *others: str) -> Cycle:
+    return Cycle((Ending("Done", S, most),), why, (), S, 9 * S, others, 100)
+
+
+@pytest.mark.parametrize(
+    ("found", "answer"),
+    [
+        (cycle(8 * S), "yes"),
+        (cycle(11 * S), "no"),
+        (cycle(10 * S), "unknown"),
+        (cycle(8 * S, "", "a run may go on for ever"), "unknown"),
+        (cycle(None, "the cell can come to more situations than were looked at"), "unknown"),
+        (cycle(None), "unknown"),
+    ],
+)
+def test_within_ten_seconds(found: Cycle, answer: str) -> None:
+    """Where not all runs were looked at one of them may stop on its way, however short all those are that end."""
+    assert found.within(10.0)[0] == answer
