@@ -13,6 +13,9 @@ const THREE = /** @type {any} */ (globalThis).THREE;
 /** Seconds of a path that are bright behind the tool. */
 const SLOW_MS = 70;
 const FIELD = 38;
+/** Of a run that goes on: samples of a path that are drawn, and how often they are drawn anew. */
+const LIVE_SAMPLES = 600;
+const PATHS_MS = 500;
 const ARM_COLOURS = [0x0072b2, 0xcc79a7, 0x009e73, 0xe69f00, 0x56b4e9, 0xd55e00];
 
 export class CellView {
@@ -227,23 +230,44 @@ export class CellView {
     this.trails = this.cell?.robots.map((/** @type {any} */ { robot }, /** @type {number} */ i) => {
       const path = this.paths[i];
       if (!path || path.t.length < 2) return null;
+      const first = this.run.live ? Math.max(path.t.length - LIVE_SAMPLES, 0) : 0;
+      const count = path.t.length - first;
       const condition = curves.find((/** @type {any} */ c) => c.kind === "condition" && c.of === robot.name);
-      const points = new Float32Array(3 * path.t.length);
-      const colours = new Float32Array(3 * path.t.length);
-      for (let s = 0; s < path.t.length; s++) {
-        const q = path.q.subarray(s * path.axes, (s + 1) * path.axes);
+      const points = new Float32Array(3 * count);
+      const colours = new Float32Array(3 * count);
+      for (let n = 0; n < count; n++) {
+        const s = first + n;
+        const q = path.q.slice(s * path.axes, (s + 1) * path.axes);
         const tcp = frames(robot, q)[robot.tcp];
-        points.set([tcp[3], tcp[7], tcp[11]], 3 * s);
-        colours.set(conditionColour(condition ? valueAt(condition, path.t[s]) : NaN, condition?.limit ?? 50, i), 3 * s);
+        points.set([tcp[3], tcp[7], tcp[11]], 3 * n);
+        colours.set(conditionColour(condition ? valueAt(condition, path.t[s]) : NaN, condition?.limit ?? 50, i), 3 * n);
       }
-      return this.trail(points, colours, path.t);
+      return this.trail(points, colours, path.t.slice(first));
     });
+  }
+
+  /** A run goes on: more samples, parts and marks. The paths, of which the last minute is shown, follow now and then. */
+  grow() {
+    if (!this.renderer) return;
+    this.cell?.grow();
+    const now = performance.now();
+    if (now < (this.pathsAt ?? 0) + PATHS_MS) return;
+    this.pathsAt = now;
+    for (const trail of this.trails ?? []) {
+      if (!trail) continue;
+      for (const line of [trail.behind, trail.ahead]) {
+        this.cell?.scene.remove(line);
+        line.geometry.dispose();
+        line.material.dispose();
+      }
+    }
+    this.makePaths();
   }
 
   /**
    * @param {Float32Array} points
    * @param {Float32Array} colours
-   * @param {Float64Array} t
+   * @param {ArrayLike<number>} t
    */
   trail(points, colours, t) {
     const geometry = new THREE.LineGeometry();

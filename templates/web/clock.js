@@ -17,6 +17,8 @@ export class Clock {
     this.t = 0;
     this.k = course.stepAt(0);
     this.isPlaying = false;
+    /** Whether it stays at the end of a run that goes on. */
+    this.isLive = false;
     this.speed = 1;
     /** @type {Set<(clock: Clock) => void>} */
     this.listeners = new Set();
@@ -74,6 +76,11 @@ export class Clock {
   setSpeed(speed) {
     this.speed = Math.min(Math.max(speed, SLOWEST), FASTEST);
     this.tell();
+  }
+
+  /** Whether the moment goes on by itself, and how fast. */
+  pace() {
+    return { isPlaying: this.isPlaying, speed: this.speed };
   }
 
   /** @param {number} now */

@@ -35,6 +35,7 @@ export class Course {
     this.keys = course.keys;
     this.binding = course.binding;
     const sizes = this.net.transitions.map((/** @type {any} */ t) => t.variables.length);
+    /** @type {any} */
     this.bindingStart = new Uint32Array(this.steps + 1);
     for (let k = 0; k < this.steps; k++) this.bindingStart[k + 1] = this.bindingStart[k] + sizes[this.transition[k]];
     /** The step after which the marking is the one that is held. */
@@ -109,10 +110,10 @@ export class Course {
   text(place) {
     const held = this.held[place];
     if (!held.size) return "empty";
-    const { text, stamp } = this.tokens;
+    const { text, stamp, rank } = this.tokens;
     const joint = this.net.places[place].timed ? "+++\n" : "++\n";
     return [...held.keys()]
-      .sort((a, b) => a - b)
+      .sort((a, b) => (rank ? rank[a] - rank[b] : a - b))
       .map((i) => `${held.get(i)}\`${this.texts[text[i]]}${stamp[i] ? `@${this.texts[stamp[i] - 1]}` : ""}`)
       .join(joint);
   }
@@ -184,4 +185,40 @@ export class Course {
     }
     return rows;
   }
+
+  /**
+   * More steps of a run that goes on; its arrays are plain ones, and its tokens have ranks.
+   * @param {any} added
+   */
+  grow(added) {
+    const { changes, tokens } = this;
+    push(this.texts, added.texts);
+    for (const name of ["place", "text", "stamp", "rank"]) push(tokens[name], added.tokens[name]);
+    for (const [token, rank] of added.tokens.again) tokens.rank[token] = rank;
+    push(/** @type {any} */ (this.time), added.time);
+    push(this.transition, added.transition);
+    push(this.binding, added.binding);
+    if (added.clock) push(this.clock, added.clock);
+    if (!Array.isArray(this.bindingStart)) this.bindingStart = Array.from(this.bindingStart);
+    for (const transition of added.transition) {
+      this.bindingStart.push(this.bindingStart[this.bindingStart.length - 1] + this.net.transitions[transition].variables.length);
+    }
+    for (const row of added.changes) {
+      for (let i = 0; i < row.length; i += 2) {
+        changes.token.push(row[i]);
+        changes.count.push(row[i + 1]);
+      }
+      changes.offset.push(changes.token.length);
+    }
+    this.steps = added.steps;
+  }
+}
+
+/**
+ * Adds many entries to an array.
+ * @param {any[]} array
+ * @param {any[]} more
+ */
+export function push(array, more) {
+  for (const entry of more) array.push(entry);
 }

@@ -48,7 +48,7 @@ export class Gaps {
     for (let i = upperBound(gaps.t, t + 1e-9) - 1; i >= 0 && gaps.t[i] >= from; i--) {
       const pair = gaps.pair[i];
       if (found.has(pair)) continue;
-      found.set(pair, { pair: gaps.pairs[pair], distance: gaps.distance[i], points: gaps.points.subarray(6 * i, 6 * i + 6) });
+      found.set(pair, { pair: gaps.pairs[pair], distance: gaps.distance[i], points: gaps.points.slice(6 * i, 6 * i + 6) });
     }
     return [...found.values()].sort((a, b) => a.distance - b.distance).slice(0, MOST);
   }

@@ -94,7 +94,7 @@ export class Path {
    */
   at(now) {
     const last = this.t.length - 1;
-    const row = (/** @type {number} */ i) => Array.from(this.q.subarray(i * this.axes, (i + 1) * this.axes));
+    const row = (/** @type {number} */ i) => Array.from(this.q.slice(i * this.axes, (i + 1) * this.axes));
     if (now <= this.t[0]) return row(0);
     if (now >= this.t[last]) return row(last);
     const i = upperBound(this.t, now) - 1;

@@ -22,7 +22,8 @@ export class Messages {
     this.clock = clock;
     this.messages = run.happenings?.messages ?? [];
     this.parties = run.happenings?.parties ?? [];
-    this.times = Float64Array.from(this.messages, (/** @type {any} */ m) => m.t);
+    /** @type {number[]} */
+    this.times = Array.from(this.messages, (/** @type {any} */ m) => m.t);
     const heads = this.parties.map((/** @type {any} */ p) => el("span", { class: "party", text: p.name, title: p.name }));
     host.append(el("div", { class: "parties", "aria-hidden": "true" }, el("span", { class: "when" }), ...heads));
     this.list = new LongList(host, {
@@ -72,6 +73,13 @@ export class Messages {
     return this.times[i] ?? NaN;
   }
 
+  /** There are more messages. */
+  grow() {
+    if (this.times.length === this.messages.length) return;
+    for (let i = this.times.length; i < this.messages.length; i++) this.times.push(this.messages[i].t);
+    this.list.resize(this.messages.length);
+  }
+
   update() {
     const last = this.count() - 1;
     if (last !== this.list.current) this.list.go(last);
@@ -103,6 +111,11 @@ export class Steps {
       el("span", { class: "when", text: String(i + 1) }), el("span", { class: "when", text: course.run.clock === "seconds" || course.clock ? time : "" }),
       el("span", { class: "said" }, el("b", { text: t.short.replace(/\s+/g, " ") }), ` ${shorten(bound, 160)}`),
     );
+  }
+
+  /** There are more steps. */
+  grow() {
+    if (this.list.rows.count !== this.clock.course.steps) this.list.resize(this.clock.course.steps);
   }
 
   update() {

@@ -75,6 +75,8 @@ export class CellScene {
   constructor(cell) {
     this.cell = cell;
     this.scene = new THREE.Scene();
+    /** How many marks have their place. */
+    this.placed = 0;
     /** @type {Map<number, any>} */
     this.geometries = new Map();
     /** @type {Map<string, any>} */
@@ -86,12 +88,7 @@ export class CellScene {
       this.scene.add(group);
     }
     this.robots = cell.robots.map((/** @type {any} */ r) => this.robot(r));
-    this.parts = cell.parts.map((/** @type {any} */ p) => {
-      const group = this.group(cell.kinds[p.kind] ?? []);
-      group.visible = false;
-      this.scene.add(group);
-      return group;
-    });
+    this.parts = cell.parts.map((/** @type {any} */ p) => this.part(p));
     this.marks = this.markMesh();
     this.box = this.extent();
   }
@@ -156,22 +153,49 @@ export class CellScene {
     return { robot, links };
   }
 
+  /** @param {any} part */
+  part(part) {
+    const group = this.group(this.cell.kinds[part.kind] ?? []);
+    group.visible = false;
+    this.scene.add(group);
+    return group;
+  }
+
+  /** There are more parts, or more marks. */
+  grow() {
+    for (const part of this.cell.parts.slice(this.parts.length)) this.parts.push(this.part(part));
+    const { marks } = this.cell;
+    if (marks.length <= this.placed) return;
+    if (marks.length > this.marks.instanceMatrix.count) {
+      this.scene.remove(this.marks);
+      this.marks.geometry.dispose();
+      this.marks = this.markMesh();
+    } else this.placeMarks(this.marks);
+  }
+
   /** A small dome where a counted action of a tool has ended; as many are shown as have been made. */
   markMesh() {
     const geometry = new THREE.SphereGeometry(0.014, 14, 8, 0, Math.PI * 2, 0, Math.PI / 2);
     geometry.rotateX(-Math.PI / 2);
     geometry.scale(1, 1, 0.7);
     const material = new THREE.MeshPhongMaterial({ color: 0xd9a520, specular: 0x775511, shininess: 60, side: THREE.DoubleSide });
-    const mesh = new THREE.InstancedMesh(geometry, material, Math.max(this.cell.marks.length, 1));
-    this.cell.marks.forEach((/** @type {any} */ mark, /** @type {number} */ i) => {
-      const frame = new THREE.Matrix4();
-      frame.set(.../** @type {[any]} */ (mark.frame));
-      mesh.setMatrixAt(i, frame);
-    });
+    const mesh = new THREE.InstancedMesh(geometry, material, Math.max(2 * this.cell.marks.length, 1));
+    this.placed = 0;
+    this.placeMarks(mesh);
     mesh.count = 0;
     mesh.frustumCulled = false;
     this.scene.add(mesh);
     return mesh;
+  }
+
+  /** @param {any} mesh */
+  placeMarks(mesh) {
+    for (; this.placed < this.cell.marks.length; this.placed++) {
+      const frame = new THREE.Matrix4();
+      frame.set(.../** @type {[any]} */ (this.cell.marks[this.placed].frame));
+      mesh.setMatrixAt(this.placed, frame);
+    }
+    mesh.instanceMatrix.needsUpdate = true;
   }
 
   /** The box around what stands here, without the floor. */

@@ -129,6 +129,39 @@ export class Timeline {
     return charts;
   }
 
+  /**
+   * A run goes on: more bars (`bars` by party, activities are those of party 0), steps, and values of curves.
+   * @param {{bars: any[], activities: any[], from: number}} more `from`: the first step that is new
+   */
+  grow({ bars, activities, from }) {
+    const { owners } = this.run.happenings;
+    const course = this.clock.course;
+    for (let k = from; k <= course.steps; k++) {
+      const lane = this.lanes[owners[course.transition[k - 1]]];
+      lane.steps.push(k);
+      /** @type {number[]} */ (lane.ticks).push(course.time[k - 1]);
+    }
+    for (const lane of this.lanes) while (lane.bars[lane.bars.length - 1]?.isOpen) lane.bars.pop();
+    for (const a of activities) this.lanes[0].bars.push({ ...a, kind: "activity", label: a.name, transition: -1, party: 0 });
+    for (const bar of bars) this.lanes[bar.party].bars.push(bar);
+    for (const chart of this.curves) {
+      for (const curve of chart.curves) {
+        const v = curve.v[curve.v.length - 1] * chart.scale;
+        if (!Number.isFinite(v)) continue;
+        chart.low = Math.min(chart.low, Math.max(v * 0.85, 1));
+        chart.high = Math.max(chart.high, v * 1.15);
+      }
+    }
+    this.canvas.setAttribute("aria-valuemax", this.clock.end.toFixed(2));
+  }
+
+  /** The window moves with the moment, which stays near its right end. */
+  slide() {
+    const span = this.to - this.from;
+    this.to = Math.max(this.clock.t + 0.04 * span, span);
+    this.from = this.to - span;
+  }
+
   /** @param {number} t */
   x(t) {
     return LEFT + ((t - this.from) / (this.to - this.from)) * (this.width() - LEFT - 10);
@@ -247,7 +280,8 @@ export class Timeline {
     this.canvas.setAttribute("aria-valuenow", t.toFixed(2));
     this.canvas.setAttribute("aria-valuetext", `${t.toFixed(2)}, step ${this.clock.k}`);
     const span = this.to - this.from;
-    if (span < this.clock.end * 0.999 && !this.isDragging && (t < this.from || t > this.from + 0.9 * span)) {
+    if (this.clock.isLive && !this.isDragging) this.slide();
+    else if (span < this.clock.end * 0.999 && !this.isDragging && (t < this.from || t > this.from + 0.9 * span)) {
       this.from = Math.min(Math.max(t - 0.15 * span, 0), this.clock.end - span);
       this.to = this.from + span;
     }

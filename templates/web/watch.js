@@ -60,6 +60,12 @@ export class Watch {
     this.empty.hidden = this.places.size > 0;
   }
 
+  /** There are more steps. */
+  grow() {
+    const { course } = this.clock;
+    for (const [place, row] of this.places) row.history = course.history(place);
+  }
+
   update() {
     const { course } = this.clock;
     for (const [place, row] of this.places) {

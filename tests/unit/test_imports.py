@@ -61,14 +61,15 @@ ALLOWED: dict[str, set[str]] = {
     "web": set(),
     "play": {"cell", "diagnostics", "drawing", "ml", "monitors", "net", "properties", "reading", "replay", "semantics",
         "simulate", "trace", "verdict", "verify", "web"},
+    "live": {"cell", "diagnostics", "net", "reading", "replay", "robot", "run", "semantics", "trace", "web"},
     "geometry": {"cell", "diagnostics", "ml", "net", "primitive_calls", "robot", "semantics", "trace", "verdict",
         "verify"},
     "timing": {"cell", "diagnostics", "geometry", "net", "robot", "semantics", "trace", "verdict", "verify"},
     "dossier": {"toolchain", "verify"},
     "cli": {"cell", "cell_file", "channels", "conform", "contest", "convert", "diagnostics", "division", "dossier",
-        "drawing", "emission", "geometry", "input_files", "ir", "lowering", "ml", "net", "new_cell", "pipeline", "play",
-        "reading", "replay", "report", "robot", "robot_scripts", "run", "semantics", "simulate", "structure", "tdl",
-        "timing", "trace", "unfold", "verdict", "verify", "web"},
+        "drawing", "emission", "geometry", "input_files", "ir", "live", "lowering", "ml", "net", "new_cell", "pipeline",
+        "play", "reading", "replay", "report", "robot", "robot_scripts", "run", "semantics", "simulate", "structure",
+        "tdl", "timing", "trace", "unfold", "verdict", "verify", "web"},
     "start": {"cli"},
 }  # fmt: skip
 EVERYWHERE = {"base"}

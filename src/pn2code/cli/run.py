@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -26,6 +27,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.emission.write import OutputFolderError
 
 if TYPE_CHECKING:
+    from pn2code.live.view import LiveView
     from pn2code.replay.motion import Motion
     from pn2code.run.cell import RunResult
 
@@ -36,6 +38,8 @@ EPILOG = """Examples:
   pn2code run examples/riveting --layout paper --backend fake --out /tmp/run
 
   pn2code run examples/riveting --unchecked
+
+  pn2code run examples/riveting --realtime --live
 
   pn2code run examples/sorting --backend fake --cycles 50 --warm-up 5 --seed 1 --stops robot:600/30
 """
@@ -83,6 +87,23 @@ def run(
             help="With --realtime, run this many times as fast as real time.",
         ),
     ] = 1.0,
+    live: Annotated[
+        bool,
+        typer.Option(
+            "--live",
+            help="With --realtime, show the run in a page of this machine while it happens, with a Stop button.",
+        ),
+    ] = False,
+    port: Annotated[
+        int,
+        typer.Option(
+            "--port",
+            metavar="P",
+            min=0,
+            max=65535,
+            help="With --live, the port of the page. 0 is any that is free.",
+        ),
+    ] = 0,
     seed: Annotated[
         int | None,
         typer.Option(metavar="K", help="The seed of the values that sensors draw at random."),
@@ -136,6 +157,10 @@ def run(
 
     if speed != 1.0 and not realtime:
         raise typer.BadParameter("it has a meaning only with `--realtime`", param_hint="--speed")
+    if live and not realtime:
+        raise typer.BadParameter("it has a meaning only with `--realtime`", param_hint="--live")
+    if port and not live:
+        raise typer.BadParameter("it has a meaning only with `--live`", param_hint="--port")
     if cycles is None and (warm_up or stops):
         raise typer.BadParameter(
             "it has a meaning only with `--cycles`",
@@ -169,13 +194,28 @@ def run(
         return
     album = Album(out, pictures=pictures, video=video)
     motion = Motion()
-    with Progress(console) as progress:
+    view = _live_view(port, speed) if live else None
+    with ExitStack() as stack:
+        if view is not None:
+            stack.enter_context(view)
+        progress = stack.enter_context(Progress(console))
         progress.say("generating and building")
         observers: list[Observer] = [progress, motion]
         if backend is BackendChoice.BULLET:
             observers.append(album)
+        if view is not None:
+            observers.append(view)
         try:
-            result = run_cell(cell, options, d, observers)
+            result = run_cell(
+                cell,
+                options,
+                d,
+                observers,
+                ready=view.ready if view is not None else None,
+                interrupted=view.interrupted if view is not None else None,
+            )
+            if view is not None and view.has_failed:
+                typer.echo("pn2code: the live page has ended before the run did", err=True)
         except (OutputFolderError, BackendUnavailableError) as problem:
             typer.echo(f"pn2code: {problem}", err=True)
             raise typer.Exit(Exit.USAGE) from None
@@ -212,6 +252,22 @@ def run(
     console.print(f"results in {out}/", style="dim")
     if result.record.verdict != "finished":
         raise typer.Exit(Exit.MODEL)
+
+
+def _live_view(port: int, speed: float) -> LiveView:
+    """The live page; its address and the token of its Stop button are printed."""
+    from pn2code.live.view import LiveView
+    from pn2code.web.serving import PortTaken
+
+    try:
+        view = LiveView(port, speed)
+    except PortTaken as why:
+        typer.echo(f"pn2code: {why}; give another one, or leave --port out", err=True)
+        raise typer.Exit(Exit.USAGE) from None
+    typer.echo(f"live: {view.address}")
+    typer.echo(f"with a Stop button that needs no token: {view.stop_address}")
+    typer.echo(f"token of the Stop button: {view.stop_token}")
+    return view
 
 
 def _write_replay(result: RunResult, motion: Motion, out: Path, *, wanted: bool) -> None:

@@ -5,6 +5,7 @@ described = describe(record, partition, config, limit)
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
 from pathlib import PurePath
 from typing import Any
 
@@ -15,7 +16,7 @@ from pn2code.cell.partition import Partition
 from pn2code.cell.scalars import scalars_of
 from pn2code.channels.scalars import format_scalars
 from pn2code.replay.arrays import packed_reals
-from pn2code.run.record import RunRecord
+from pn2code.run.record import ActionRecord, MessageRecord, RunRecord
 
 Json = dict[str, Any]
 
@@ -31,15 +32,16 @@ def describe(record: RunRecord, partition: Partition, config: CellConfig, near: 
     return {
         "parties": [{"name": o.name, "kind": o.kind.value} for o in partition.owners],
         "owners": list(partition.transition_owner),
-        "bars": _bars(record, partition),
+        "bars": bars(record.actions, partition),
         "activities": [{"name": a.name, "start": a.start, "end": a.end} for a in record.activities],
-        "messages": _messages(record, partition),
+        "messages": messages(record.traffic, partition),
         "events": _events(record),
         "curves": _curves(record, config, near),
     }
 
 
-def _bars(record: RunRecord, partition: Partition) -> list[Json]:
+def bars(actions: Iterable[ActionRecord], partition: Partition) -> list[Json]:
+    """Commands of robots, done or cut short."""
     transition = {t.name: t.index for t in partition.net.transitions}
     party = {o.name: o.index for o in partition.owners}
     return [
@@ -53,14 +55,15 @@ def _bars(record: RunRecord, partition: Partition) -> list[Json]:
             "transition": transition.get(a.transition, -1),
             "activity": a.activity,
         }
-        for a in record.actions
+        for a in actions
     ]
 
 
-def _messages(record: RunRecord, partition: Partition) -> list[Json]:
+def messages(traffic: Iterable[tuple[str, MessageRecord]], partition: Partition) -> list[Json]:
+    """What robots and devices have taken and written."""
     channels = {PurePath(c.file).stem: c for c in partition.channels}
     rows = []
-    for what, m in record.traffic:
+    for what, m in traffic:
         channel = channels[m.channel]
         scalars = scalars_of(partition.net.places[channel.place].colset) or ()
         text = format_scalars(scalars, m.values) or " ".join(map(str, m.values))
@@ -83,22 +86,29 @@ def _events(record: RunRecord) -> list[Json]:
         {"t": w.t, "kind": "warning", "party": w.robot, "text": w.text} for w in record.warnings
     ]
     for line in record.events:
-        match line.get("event"):
-            case "sense":
-                text = f"sensor {line['sensor']}: {line['value']}"
-                rows.append({"t": line["t"], "kind": "sense", "party": line["robot"], "text": text})
-            case "stand":
-                text = f"stands for {line['duration']:.2f} s"
-                rows.append({"t": line["t"], "kind": "stand", "party": line["robot"], "text": text})
-            case "part":
-                text = f"{line['effect']} {line['part']}"
-                rows.append({"t": line["t"], "kind": "part", "party": line["robot"], "text": text})
-            case "end":
-                good = record.verdict == "finished"
-                text = record.reason or ", ".join(record.final) or record.verdict
-                kind = "end" if good else "fault"
-                rows.append({"t": line["t"], "kind": kind, "party": "", "text": text})
+        if (note := noted(line)) is not None:
+            rows.append(note)
+        elif line.get("event") == "end":
+            good = record.verdict == "finished"
+            text = record.reason or ", ".join(record.final) or record.verdict
+            kind = "end" if good else "fault"
+            rows.append({"t": line["t"], "kind": kind, "party": "", "text": text})
     return sorted(rows, key=lambda row: float(row["t"]))
+
+
+def noted(line: Mapping[str, Any]) -> Json | None:
+    """A line of a trace as an event of a robot or device; None: it is none."""
+    match line.get("event"):
+        case "sense":
+            text = f"sensor {line['sensor']}: {line['value']}"
+            return {"t": line["t"], "kind": "sense", "party": line["robot"], "text": text}
+        case "stand":
+            text = f"stands for {line['duration']:.2f} s"
+            return {"t": line["t"], "kind": "stand", "party": line["robot"], "text": text}
+        case "part":
+            text = f"{line['effect']} {line['part']}"
+            return {"t": line["t"], "kind": "part", "party": line["robot"], "text": text}
+    return None
 
 
 def _curves(record: RunRecord, config: CellConfig, near: float) -> list[Json]:

@@ -14,10 +14,10 @@ import re
 import shutil
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import field
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any
 
 from pn2code import pipeline
@@ -47,6 +47,7 @@ from pn2code.robot.robot_cell import RobotCell
 from pn2code.run.device import DeviceExecutor
 from pn2code.run.engine import Engine, Observer
 from pn2code.run.files import RobotFiles
+from pn2code.run.punctuality import Punctuality
 from pn2code.run.realtime import RealtimeEngine
 from pn2code.run.record import RunRecord, RunWarning
 from pn2code.run.sensors import Sensors
@@ -191,19 +192,32 @@ def run_cell(
     options: RunOptions,
     d: Diagnostics,
     observers: list[Observer] | None = None,
+    *,
+    ready: Callable[[Prepared], None] | None = None,
+    interrupted: Callable[[], str] | None = None,
 ) -> RunResult | None:
-    """Runs a cell in lock-step and writes trace, rows and summary; None when it could not start."""
+    """Runs a cell and writes trace, rows and summary; None when it could not start.
+
+    Args:
+        observers: who watches.
+        ready: is called with what will run, before anything runs.
+        interrupted: see `Engine`.
+    """
     started = time.perf_counter()
     expect_writable(options.out)
     prepared = prepare(path, options, d)
     if prepared is None:
         return None
+    if ready is not None:
+        ready(prepared)
     with ExitStack() as stack:
         inputs = stack.enter_context(folder_of(prepared.config, options.input))
         sensors = sensors_of(prepared, options, inputs, d)
         if sensors is None:
             return None
-        record = run_once(prepared, options, inputs, sensors, d, observers or [])
+        record = run_once(
+            prepared, options, inputs, sensors, d, observers or [], interrupted=interrupted
+        )
         if record is None:
             return None
     record.wall = time.perf_counter() - started
@@ -236,6 +250,7 @@ def run_once(
     d: Diagnostics,
     observers: list[Observer],
     stops: Stops | None = None,
+    interrupted: Callable[[], str] | None = None,
 ) -> RunRecord | None:
     """One run of programs that are built; None when it could not start.
 
@@ -247,12 +262,15 @@ def run_once(
         d: gets the errors.
         observers: who watches.
         stops: whose commands are held up, and when; None: nobody's.
+        interrupted: see `Engine`.
     """
     with ExitStack() as stack:
         engine = _start(prepared, options, inputs, stack, d, observers)
         if engine is None:
             return None
         engine.sensors, engine.stops = sensors, stops
+        if interrupted is not None:
+            engine.interrupted = interrupted
         record = engine.run()
         for robot in engine.robots:
             if record.verdict == "finished":
@@ -366,7 +384,11 @@ def _engine(
         "observers": observers,
     }
     if options.realtime:
-        return RealtimeEngine(**common, speed=options.speed)
+        parties = {
+            PurePath(c.file).stem: partition.owners[max(c.writer, c.reader)].name
+            for c in partition.channels
+        }
+        return RealtimeEngine(**common, speed=options.speed, punctuality=Punctuality(parties))
     return Engine(**common)
 
 

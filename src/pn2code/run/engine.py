@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, NoReturn, Protocol
 
@@ -147,6 +147,14 @@ class CellStoppedError(Exception):
     """The cell must stop; the message says why, in full."""
 
 
+class StoppedByHand(CellStoppedError):  # noqa: N818
+    """Somebody wants the cell to stop."""
+
+
+def _nobody() -> str:
+    return ""
+
+
 @dataclass(slots=True)
 class Engine:
     """Runs a cell to its end.
@@ -161,6 +169,7 @@ class Engine:
         partition: the net and its owners.
         cell, backend: the arms and what shows them.
         monitor: what is checked at each sample.
+        interrupted: asked again and again; not "": who wants the cell to stop, and it stops safely.
         stops: whose commands are held up, and when; None: nobody's.
     """
 
@@ -175,6 +184,7 @@ class Engine:
     robots: list[RobotRunner] = field(default_factory=list)
     sensors: Sensors = field(default_factory=Sensors)
     observers: list[Observer] = field(default_factory=list)
+    interrupted: Callable[[], str] = _nobody
     stops: Stops | None = None
     now: float = 0.0
     activity: str = ""
@@ -219,6 +229,7 @@ class Engine:
             self._begin_run()
             without_time = 0
             while True:
+                self._heed()
                 self._exchange_messages()
                 if self._finished and self._at_rest():
                     self.record.verdict = "finished"
@@ -229,8 +240,13 @@ class Engine:
                 if without_time > MOST_AT_ONCE:
                     self._repeats_without_time()
         except CellStoppedError as why:
-            self._stop(str(why))
+            self._stop(why)
         return self._close()
+
+    def _heed(self) -> None:
+        """Stops the cell if somebody wants so."""
+        if who := self.interrupted():
+            raise StoppedByHand(f"stopped by {who}; {self._doing()}")
 
     def _repeats_without_time(self) -> NoReturn:
         busy = [r for r in self.robots if r.waiting is None and not r.finished]
@@ -520,7 +536,7 @@ class Engine:
     def _note_action(self, robot: RobotRunner, end: float) -> None:
         motion = robot.motion
         assert motion is not None
-        kind, label = _kind(motion.command)
+        kind, label = kind_and_label(motion.command)
         self.record.actions.append(
             ActionRecord(
                 robot.name,
@@ -561,9 +577,10 @@ class Engine:
             parts.append(f"{r.script}:{r.line}{at}: {r.name}: {_words(r.motion.command)}")
         return "under way: " + "; ".join(parts)
 
-    def _stop(self, why: str) -> None:
+    def _stop(self, problem: CellStoppedError) -> None:
         """Everybody comes to rest; what was under way is recorded as cut short."""
-        self.record.verdict = "failed"
+        why = str(problem)
+        self.record.verdict = "stopped" if isinstance(problem, StoppedByHand) else "failed"
         self.record.reason = why
         for robot in self.robots:
             if robot.motion is not None:
@@ -574,7 +591,8 @@ class Engine:
         self.supervisor.stop(why)
 
 
-def _kind(command: Command) -> tuple[str, str]:
+def kind_and_label(command: Command) -> tuple[str, str]:
+    """What a command is, and what a chart writes: the tool action, or the kind."""
     match command:
         case MoveJoint():
             return "joint", "joint"
@@ -603,7 +621,7 @@ def _words(command: Command) -> str:
             deg = " ".join(f"{np.degrees(v):.4f}" for v in (p.rx, p.ry, p.rz))
             frame = "world" if isinstance(command, Measure) else command.frame
             within = "" if frame in ("world", "tool") else f" in {frame}"
-            return f"{_kind(command)[1]} {mm} mm, {deg} deg{within}"
+            return f"{kind_and_label(command)[1]} {mm} mm, {deg} deg{within}"
         case MoveAxes(axes=axes):
             return f"axes {' '.join(f'{np.degrees(v):.4f}' for v in axes)} deg"
         case MoveHome():

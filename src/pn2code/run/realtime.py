@@ -15,7 +15,9 @@ from typing import Any
 from pn2code.channels import LOOK_S, PeerState
 from pn2code.robot.commands import Command
 from pn2code.run.engine import CellStoppedError, Engine, RobotRunner
+from pn2code.run.punctuality import Punctuality
 from pn2code.run.record import RunRecord
+from pn2code.tdl.requests import Event, MessageConsumed, MessageWritten
 from pn2code.trace.merge import merge
 
 PAUSE_S = 0.001
@@ -28,20 +30,27 @@ class RealtimeEngine(Engine):
 
     Args:
         speed: seconds of the arms, and of model time, per second of the wall clock.
+        punctuality: how long the supervisor took for its answers, and how late ends of commands were noticed.
+        fired: what the supervisor has done so far, as lines of a trace.
+        noted: what robots and devices have done so far, in the same form.
     """
 
     speed: float = 1.0
+    punctuality: Punctuality = field(default_factory=Punctuality)
+    fired: list[dict[str, Any]] = field(default_factory=list)
+    noted: list[dict[str, Any]] = field(default_factory=list)
     _looked: float = 0.0
     _began: float = 0.0
     _sampled: float = 0.0
-    _fired: list[dict[str, Any]] = field(default_factory=list)
 
     def run(self) -> RunRecord:
         """Until the supervisor has finished and the robots rest; or until something stops the cell."""
         self._began = time.perf_counter()
+        self.noted = self.record.events
         try:
             self._begin_run()
             while True:
+                self._heed()
                 self._look_at_the_clock()
                 self._end_commands()
                 moved = [self._robot_turn(robot) for robot in self.robots]
@@ -56,14 +65,14 @@ class RealtimeEngine(Engine):
                 if not any(moved):
                     time.sleep(PAUSE_S)
         except CellStoppedError as why:
-            self._stop(str(why))
+            self._stop(why)
         return self._close()
 
     def _close(self) -> RunRecord:
         """Waits for the supervisor's last words, then puts both traces into one order."""
         self.supervisor.close()
         self._read_trace()
-        merged = merge(self.partition, (self._fired, self.record.events))
+        merged = merge(self.partition, (self.fired, self.noted))
         occurrences = itertools.count(1)
         self.record.events = [
             {**line, "step": next(occurrences)} if "transition" in line else line for line in merged
@@ -74,7 +83,7 @@ class RealtimeEngine(Engine):
         for line in self.supervisor_trace.complete_lines():
             if "transition" in line:
                 t = float(line["t"]) * self.speed
-                self._fired.append({**line, "t": t})
+                self.fired.append({**line, "t": t})
                 self._enter_activity(line, t)
 
     def _look_at_the_clock(self) -> None:
@@ -85,9 +94,21 @@ class RealtimeEngine(Engine):
         self._look_at_the_clock()
         Engine._begin_command(self, robot, command, line)
 
+    def _heard(self, event: Event) -> None:
+        """A message to the supervisor begins an answer, the next message from it ends it."""
+        match event:
+            case MessageWritten(file=channel):
+                self.punctuality.asked(channel)
+            case MessageConsumed(file=channel):
+                self.punctuality.answered(channel)
+            case _:
+                pass
+        Engine._heard(self, event)
+
     def _end_commands(self) -> None:
         for robot in self.robots:
             if robot.motion is not None and robot.motion.ends <= self.now:
+                self.punctuality.noticed((self.now - robot.motion.ends) / self.speed)
                 self._finish(robot)
 
     def _look_at_supervisor(self) -> bool:

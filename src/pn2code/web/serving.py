@@ -57,13 +57,21 @@ def url(port: int, token: str) -> str:
     return f"http://{HOST}:{port}/{token}/"
 
 
-def serve(app: Any, on: socket.socket, *, begun: Callable[[], None]) -> None:
+def serve(
+    app: Any,
+    on: socket.socket,
+    *,
+    begun: Callable[[], None],
+    fed: Callable[[Callable[[], None]], None] | None = None,
+) -> None:
     """Answers until SIGINT or SIGTERM comes; a second one does not wait for what is going on.
 
     Args:
         app: an ASGI application.
         on: from `listening`.
         begun: is called when pages can be opened.
+        fed: for a server that ends when somebody says so, and not by SIGINT: is called with what ends it (from any
+            thread) when pages can be opened.
     """
     import uvicorn
 
@@ -81,6 +89,7 @@ def serve(app: Any, on: socket.socket, *, begun: Callable[[], None]) -> None:
     )
     server = _Server(config)
     server.begun = begun
+    server.fed = fed
     asyncio.run(server.play(on))
 
 
@@ -91,6 +100,7 @@ def _server_class() -> Any:
         """Leaves signals to us: Ctrl-C is how it ends."""
 
         begun: Callable[[], None]
+        fed: Callable[[Callable[[], None]], None] | None
 
         @contextmanager
         def capture_signals(self) -> Iterator[None]:
@@ -98,7 +108,8 @@ def _server_class() -> Any:
 
         async def play(self, on: socket.socket) -> None:
             loop = asyncio.get_running_loop()
-            for number in (signal.SIGINT, signal.SIGTERM):
+            self._loop = loop
+            for number in (signal.SIGTERM,) if self.fed else (signal.SIGINT, signal.SIGTERM):
                 loop.add_signal_handler(number, self._end)
             await self.serve(sockets=[on])
 
@@ -109,6 +120,11 @@ def _server_class() -> Any:
         async def startup(self, sockets: list[socket.socket] | None = None) -> None:
             await super().startup(sockets)
             self.begun()
+            if self.fed is not None:
+                self.fed(self._end_from_elsewhere)
+
+        def _end_from_elsewhere(self) -> None:
+            self._loop.call_soon_threadsafe(self._end)
 
     return Server
 

@@ -43,7 +43,7 @@ def test_what_cannot_be_bundled_is_refused(sources: dict[str, str], why: str) ->
 
 def test_all_modules_of_the_pages_are_used() -> None:
     sources = modules(resources.templates_folder() / "web")
-    text = bundle(sources, "main.js") + bundle(sources, "play.js")
+    text = "".join(bundle(sources, main) for main in ("main.js", "play.js", "live.js"))
     assert [name for name in sources if f'modules["{name}"] = ' not in text] == []
     assert "</script" not in text.lower() and "<!--" not in text
     assert ".innerHTML" not in text and "insertAdjacentHTML" not in text and "eval(" not in text

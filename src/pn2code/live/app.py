@@ -1,0 +1,151 @@
+"""The application of the live view: the page, and a WebSocket for each page.
+
+    app = application(show, hall, stopping)
+
+`/` is the page. `/ws?at=N` gives all updates after the first N as lists of JSON objects, as they come; all that
+pages say is `{"do": "stop", "token": ...}`, which stops the cell if the token is the one that the terminal has printed.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import secrets
+import time
+from collections.abc import Callable
+from typing import Any
+
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import HTMLResponse, Response
+from starlette.routing import Route, WebSocketRoute
+from starlette.websockets import WebSocket, WebSocketDisconnect
+
+from pn2code.live.hall import Hall, text_of
+from pn2code.replay.served import Served
+
+MOST_PAGES = 64
+PREPARING = (
+    '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><meta http-equiv="refresh" content="1">'
+    "<title>pn2code</title></head><body><p>The cell is being built. This page comes by itself.</p></body></html>"
+)
+PATIENCE_S = 60.0
+"""A page that is asked for before it is there waits so long."""
+_LOOK_S = 0.1
+_CLOSED = "default-src 'none'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+_WRONG_S = 0.5
+"""After a wrong token."""
+
+
+class Stopping:
+    """Who may stop the cell: whoever has the token.
+
+    Args:
+        token: what the terminal has printed; "": nobody may.
+        stop: does it.
+    """
+
+    def __init__(self, token: str, stop: Callable[[], None]) -> None:
+        self._token = token
+        self._stop = stop
+        self.is_wanted = False
+
+    def ask(self, token: object) -> bool:
+        """Stops the cell; False: the token is another one."""
+        if not self._token or not isinstance(token, str):
+            return False
+        if not secrets.compare_digest(token.encode("utf-8", "replace"), self._token.encode()):
+            return False
+        if not self.is_wanted:
+            self.is_wanted = True
+            self._stop()
+        return True
+
+
+def application(show: Callable[[], Served | None], hall: Hall, stopping: Stopping) -> Starlette:
+    """The application.
+
+    Args:
+        show: the page; None while it is not known yet.
+        hall: what is told.
+        stopping: who may stop the cell.
+    """
+    desk = _Desk(hall, stopping)
+
+    async def index(request: Request) -> Response:
+        until = time.monotonic() + PATIENCE_S
+        while (made := show()) is None and not hall.is_over and time.monotonic() < until:
+            await asyncio.sleep(_LOOK_S)
+        if made is None:
+            return HTMLResponse(PREPARING, headers={"content-security-policy": _CLOSED})
+        return HTMLResponse(made.html, headers={"content-security-policy": made.policy})
+
+    return Starlette(routes=[Route("/", index), WebSocketRoute("/ws", desk.serve)])
+
+
+class _Desk:
+    """The pages that are open."""
+
+    def __init__(self, hall: Hall, stopping: Stopping) -> None:
+        self._hall, self._stopping = hall, stopping
+        self._pages = 0
+
+    async def serve(self, socket: WebSocket) -> None:
+        """One page, from its first word to its last."""
+        await socket.accept()
+        if self._pages >= MOST_PAGES:
+            await socket.send_text(text_of({"broken": "there are too many pages already"}))
+            await socket.close()
+            return
+        self._pages += 1
+        telling = asyncio.create_task(self._tell(socket, _number(socket.query_params.get("at"))))
+        hearing = asyncio.create_task(self._hear(socket))
+        try:
+            await asyncio.wait((telling, hearing), return_when=asyncio.FIRST_COMPLETED)
+        finally:
+            self._pages -= 1
+            for task in (telling, hearing):
+                task.cancel()
+            await asyncio.gather(telling, hearing, return_exceptions=True)
+
+    async def _tell(self, socket: WebSocket, at: int) -> None:
+        while True:
+            rows, at = await self._hall.after(at)
+            if not rows:
+                await socket.send_text(text_of({"over": True}))
+                await socket.close()
+                return
+            await socket.send_text(
+                f'{{"at":{at},"pages":{self._pages},"updates":[{",".join(rows)}]}}'
+            )
+
+    async def _hear(self, socket: WebSocket) -> None:
+        while True:
+            try:
+                text = await socket.receive_text()
+            except (WebSocketDisconnect, KeyError, RuntimeError):  # KeyError: a message of bytes
+                return
+            said = _object(text)
+            if said.get("do") != "stop":
+                await socket.send_text(text_of({"stop": "what is not understood is not done"}))
+            elif self._stopping.ask(said.get("token")):
+                await socket.send_text(text_of({"stop": "stopping"}))
+            else:
+                await asyncio.sleep(_WRONG_S)
+                await socket.send_text(text_of({"stop": "wrong token"}))
+
+
+def _object(text: str) -> dict[str, Any]:
+    try:
+        data = json.loads(text)
+    except (ValueError, RecursionError):
+        return {}
+    return data if isinstance(data, dict) else {}
+
+
+def _number(text: str | None) -> int:
+    return (
+        int(text)
+        if text is not None and text.isascii() and text.isdigit() and len(text) < 12
+        else 0
+    )

@@ -1,0 +1,73 @@
+"""What does not change while a cell runs: net, programs, arms, parties. The rest of a description comes in updates."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from pn2code.reading.document import Document
+from pn2code.replay import cell, net, programs
+from pn2code.replay.description import VERSION
+from pn2code.robot.parts import Parts
+from pn2code.run.cell import Prepared
+from pn2code.run.record import GAP_S
+
+Json = dict[str, Any]
+
+
+def describe(prepared: Prepared, document: Document, speed: float) -> Json:
+    """A description (docs/replay.md) of a run in which nothing has happened yet.
+
+    Args:
+        prepared: what will run.
+        document: its net as drawn.
+        speed: seconds of the run in a second of the wall clock.
+    """
+    partition, robot_cell = prepared.generated.partition, prepared.robot_cell
+    described: Json = {
+        "pn2code": {"run": VERSION},
+        "kind": "run",
+        "title": partition.net.name,
+        "clock": "seconds",
+        "speed": speed,
+        "end": 0.0,
+        "verdict": {"word": "", "reason": "", "final": []},
+        "facts": [["layout", str(prepared.config.layout)]],
+        "net": net.describe(document, partition.net),
+        "happenings": {
+            "parties": [{"name": o.name, "kind": o.kind.value} for o in partition.owners],
+            "owners": list(partition.transition_owner),
+            "bars": [],
+            "activities": [],
+            "messages": [],
+            "events": [],
+            "curves": [],
+        },
+        "programs": programs.describe(prepared.generated.files, partition.net),
+        "cell": None,
+        "motion": None,
+    }
+    if robot_cell.robots:
+        described["cell"] = {
+            **cell.describe(robot_cell),
+            "parts": [
+                {
+                    "name": part.name,
+                    "kind": part.name.split(".")[0],
+                    "states": [{"t": 0.0, "frame": cell.frame(part.frame), "holder": ""}],
+                }
+                for part in Parts(robot_cell).present.values()
+            ],
+            "gaps": {
+                "pairs": [],
+                "lasts": GAP_S,
+                "t": [],
+                "pair": [],
+                "distance": [],
+                "points": [],
+            },
+            "marks": [],
+        }
+        described["motion"] = {
+            r.name: {"t": [0.0], "q": [float(v) for v in r.home]} for r in robot_cell.robots
+        }
+    return described

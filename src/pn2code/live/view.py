@@ -1,0 +1,133 @@
+"""The live view as a run sees it: a server beside it, which is told what happens, and may say that it shall stop.
+
+    with LiveView(port) as live:
+        print(live.address, live.stop_address)
+        run_cell(path, options, d, [live], ready=live.ready, interrupted=live.interrupted)
+
+Whatever becomes of the server, the run goes on.
+"""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from collections.abc import Mapping
+from contextlib import ExitStack, suppress
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pn2code.base.closing import Closing
+from pn2code.diagnostics import Diagnostics
+from pn2code.live.described import describe
+from pn2code.live.handing import Handing
+from pn2code.live.server import Cell, Start
+from pn2code.live.tap import Tap
+from pn2code.net.source import read
+from pn2code.robot.transforms import Array
+from pn2code.web.guard import new_token
+from pn2code.web.serving import listening, url
+
+if TYPE_CHECKING:
+    from pn2code.run.cell import Prepared
+    from pn2code.run.engine import Engine
+
+WHO = "the live page"
+_BUILDING_S = 20.0
+"""How long the server may take for the description, before anything runs."""
+_END_S = 6.0
+
+
+class LiveView(Closing):
+    """An observer of a run (`run.engine.Observer`) with a server.
+
+    Args:
+        port: of the page; 0 takes any that is free. `PortTaken` when it cannot be had.
+        speed: seconds of the run in a second of the wall clock.
+    """
+
+    def __init__(self, port: int, speed: float = 1.0) -> None:
+        self._speed = speed
+        self._tap: Tap | None = None
+        self._heard = b""
+        self._is_stopping = False
+        with ExitStack() as stack:
+            on, found = stack.enter_context(listening(port))
+            token, stop_token = new_token(), new_token()
+            number = on.fileno()
+            self._process = subprocess.Popen(
+                [sys.executable, "-m", "pn2code.live.server", str(number)],
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                pass_fds=(number,),
+            )
+        self.address = url(found, token)
+        self.stop_token = stop_token
+        assert self._process.stdin is not None and self._process.stdout is not None
+        self._answers = self._process.stdout.fileno()
+        os.set_blocking(self._answers, False)
+        self._handing = Handing(self._process.stdin.fileno())
+        self._handing.give(Start(found, token, stop_token))
+
+    @property
+    def stop_address(self) -> str:
+        """The address of a page that may stop the cell."""
+        return f"{self.address}#stop={self.stop_token}"
+
+    @property
+    def has_failed(self) -> bool:
+        """Whether the server has ended by itself."""
+        return self._handing.is_broken or self._process.poll() is not None
+
+    def ready(self, prepared: Prepared) -> None:
+        """What will run; nothing runs yet, so this may wait."""
+        partition, config = prepared.generated.partition, prepared.config
+        document = read(Path(partition.net.file), Diagnostics(), drawn=True)
+        if document is None:  # the file has changed meanwhile
+            return
+        near = prepared.robot_cell.scene.warning_clearance
+        described = describe(prepared, document, self._speed)
+        self._tap = Tap(self._handing, prepared.robot_cell, dict(config.report.count))
+        if self._handing.finish(_BUILDING_S):
+            self._handing.give(Cell(partition, config, near, described))
+            self._handing.finish(_BUILDING_S)
+
+    def interrupted(self) -> str:
+        """Who wants the run to stop; "": nobody."""
+        if not self._is_stopping:
+            with suppress(BlockingIOError):
+                self._heard += os.read(self._answers, 64)
+            self._is_stopping = b"stop\n" in self._heard
+        return WHO if self._is_stopping else ""
+
+    def begun(self, engine: Engine) -> None:
+        """The run begins."""
+        if self._tap is not None:
+            self._tap.begun(engine)
+
+    def advanced(self, engine: Engine) -> None:
+        """Time has moved."""
+        if self._tap is not None:
+            self._tap.advanced(engine)
+
+    def sampled(self, engine: Engine, t: float, joints: Mapping[str, Array]) -> None:
+        """The arms stood like this."""
+        if self._tap is not None:
+            self._tap.sampled(engine, t, joints)
+
+    def ended(self, engine: Engine) -> None:
+        """The run is over."""
+        if self._tap is not None:
+            self._tap.ended(engine)
+
+    def close(self) -> None:
+        """Ends the server, after the pages have heard of the end."""
+        for stream in (self._process.stdin, self._process.stdout):
+            assert stream is not None
+            with suppress(OSError):
+                stream.close()
+        try:
+            self._process.wait(_END_S)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+            self._process.wait()

@@ -1,0 +1,202 @@
+// @ts-check
+/** The live page: the page of a run, to which is added what happens. */
+
+import { load } from "./data.js";
+import { byId, el } from "./dom.js";
+import { LiveClock } from "./liveclock.js";
+import { LiveLink, addTo } from "./livelink.js";
+import { ReplayPage, probes } from "./replaypage.js";
+import { Sides } from "./sides.js";
+
+const WINDOW_S = 30;
+const WATCH_MS = 1000;
+const KEY = "pn2code-stop";
+
+class LivePage extends ReplayPage {
+  /** @param {any} data */
+  constructor(data) {
+    super(data);
+    this.timeline.from = 0;
+    this.timeline.to = WINDOW_S * this.run.speed;
+    this.clock.seek(this.clock.end);
+  }
+
+  makeClock() {
+    return new LiveClock(this.course, this.run.end, this.run.speed);
+  }
+
+  /** @param {(name: string) => any} add */
+  firstPanel(add) {
+    this.sides = new Sides(add("State"), (t) => this.clock.seek(t));
+  }
+
+  /** The address keeps no moments: it is that of what happens now. */
+  address() {}
+
+  fromAddress() {
+    return false;
+  }
+
+  /**
+   * @param {any} update
+   * @param {number} pages
+   */
+  add(update, pages) {
+    const from = this.course.steps + 1;
+    this.course.grow(update.course);
+    const more = addTo(this.run, update);
+    /** @type {LiveClock} */ (this.clock).grow(update.t);
+    this.timeline.grow({ ...more, from });
+    this.sides?.add(update.events);
+    this.latest = { update, pages };
+  }
+
+  /** After a batch of updates. */
+  added() {
+    if (!this.latest) return;
+    this.messages?.grow();
+    this.steps?.grow();
+    this.cell?.grow();
+    const now = performance.now();
+    if (now > (this.watchedAt ?? 0) + WATCH_MS) {
+      this.watchedAt = now;
+      this.watch?.grow();
+    }
+    this.sides?.update(this.latest.update, this.latest.pages, this.course.steps);
+    if (this.latest.update.verdict) this.head();
+    this.update();
+  }
+
+  update() {
+    super.update();
+    const { clock } = this;
+    const live = byId("live");
+    const isOver = /** @type {LiveClock} */ (clock).isOver;
+    live.disabled = isOver;
+    live.setAttribute("aria-pressed", String(clock.isLive));
+  }
+}
+
+/** @type {LivePage | null} */
+let page = null;
+/** News that have come before the page could take them. */
+/** @type {{updates: any[], pages: number}[]} */
+const queue = [];
+const started = load();
+const token = new URLSearchParams(location.hash.slice(1)).get("stop") ?? "";
+if (token) {
+  sessionStorage.setItem(KEY, token);
+  history.replaceState(null, "", location.pathname);
+}
+
+/**
+ * @param {any} data
+ * @param {any} first the first update
+ */
+function begin(data, first) {
+  const [run] = data.runs;
+  run.live = true;
+  const { tokens, texts, first: held } = first.course;
+  const keys = { step: [0], offset: [0, held.length], token: held.map((/** @type {number[]} */ h) => h[0]), count: held.map((/** @type {number[]} */ h) => h[1]) };
+  run.course = {
+    steps: 0, time: [], clock: run.net.timed ? [] : null, transition: [], binding: [], changes: { offset: [0], token: [], count: [] }, keys,
+    tokens: { place: [...tokens.place], text: [...tokens.text], stamp: [...tokens.stamp], rank: [...tokens.rank] }, texts: [...texts],
+    refused: null, loop: null,
+  };
+  // What is needed before the first step must not be added again.
+  for (const name of ["place", "text", "stamp", "rank"]) tokens[name] = [];
+  texts.length = 0;
+  addTo(run, { ...first, bars: [], activities: [], messages: [], events: [], marks: [], parts: [], doing: [], activity: "", gaps: { pairs: [], t: [], pair: [], distance: [], points: [] } });
+  page = new LivePage(data);
+  const live = byId("live");
+  live.addEventListener("click", () => /** @type {LiveClock | undefined} */ (page?.clock)?.goLive());
+  /** @type {any} */ (globalThis).live = { ...probes(page), link };
+}
+
+/**
+ * @param {string} text
+ * @param {string} kind
+ */
+function say(text, kind) {
+  const said = byId("said");
+  said.className = kind;
+  said.hidden = !text;
+  said.replaceChildren(el("span", { text }));
+}
+
+/** @type {LiveLink} */
+const link = new LiveLink({
+  onNews: async (updates, pages) => {
+    queue.push({ updates, pages });
+    await started;
+    drain(await started);
+  },
+  onLost: () => say("The connection is lost: what is shown is no longer what happens. The page tries again.", "bad"),
+  onBack: () => say("", ""),
+  onOver: () => finish(),
+  onSaid: (text) => said(text),
+});
+/** @param {any} data */
+function drain(data) {
+  const batches = queue.splice(0);
+  for (const { updates, pages } of batches) {
+    for (const update of updates) {
+      if (update.fresh && page) {
+        location.reload();
+        return;
+      }
+      if (!page) begin(data, update);
+      page?.add(update, pages);
+    }
+  }
+  page?.added();
+  document.body.dataset.ready = "true";
+  if (link.isOver) finish();
+}
+
+function finish() {
+  if (queue.length) return;
+  /** @type {LiveClock | undefined} */ (page?.clock)?.finish();
+  byId("stop").disabled = true;
+  const word = page?.run.verdict.word;
+  say(word ? `The run has ${word === "finished" ? "finished" : `ended: ${word}`}. Its records are in its folder.` : "The run has ended.", word === "finished" ? "note" : "bad");
+  page?.update();
+}
+
+/** @param {string} answer */
+function said(answer) {
+  if (answer === "stopping") say("The cell is stopping.", "note");
+  else if (answer === "wrong token") {
+    sessionStorage.removeItem(KEY);
+    say("The cell goes on: this is not the token that the terminal has printed.", "bad");
+  } else say(answer, "bad");
+}
+
+/** @param {string} given */
+function stop(given) {
+  if (!link.stop(given)) say("The cell goes on: there is no connection. Use Ctrl-C in the terminal.", "bad");
+}
+
+function askToStop() {
+  const known = sessionStorage.getItem(KEY);
+  if (known) {
+    stop(known);
+    return;
+  }
+  const field = el("input", { type: "password", autocomplete: "off", "aria-label": "Token", required: true });
+  const dialogue = el(
+    "dialog", { "aria-label": "Stop the cell" }, el("h2", { text: "Stop the cell" }),
+    el("p", { text: "Supervisor and robots stop safely. This needs the token that the terminal has printed." }),
+    el("form", { method: "dialog", onsubmit: () => {
+      sessionStorage.setItem(KEY, field.value);
+      stop(field.value);
+    } }, field, el("p", { class: "buttons" },
+      el("button", { class: "stop", text: "Stop the cell" }), el("button", { type: "button", text: "Cancel", onclick: () => dialogue.close() }))),
+  );
+  dialogue.addEventListener("close", () => dialogue.remove());
+  document.body.append(dialogue);
+  dialogue.showModal();
+}
+
+byId("stop").addEventListener("click", askToStop);
+started.catch((problem) => say(`This page cannot be shown: ${problem.message}`, "bad"));

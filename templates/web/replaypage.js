@@ -1,0 +1,308 @@
+// @ts-check
+/** The page of a run: builds the views, and lets them move together. */
+
+import { CellView } from "./cellview.js";
+import { Clock } from "./clock.js";
+import { Code } from "./code.js";
+import { Course } from "./course.js";
+import { byId, el } from "./dom.js";
+import { Frame } from "./frame.js";
+import { frames } from "./kinematics.js";
+import { Messages, Steps } from "./messages.js";
+import { NetView } from "./netview.js";
+import { Search } from "./search.js";
+import { Timeline } from "./timeline.js";
+import { Transport, help } from "./transport.js";
+import { Watch } from "./watch.js";
+
+export class ReplayPage {
+  /** @param {{runs: any[], difference: any, generator: string, missing: string}} data */
+  constructor(data) {
+    this.data = data;
+    this.run = data.runs[0];
+    this.course = new Course(this.run);
+    this.clock = this.makeClock();
+    this.transition = -1;
+    this.place = -1;
+    document.body.dataset.kind = data.runs.length > 1 ? "compare" : this.run.cell ? "cell" : "net";
+    this.head();
+    this.frame = new Frame({
+      help, onTheme: () => (this.cell?.theme(), this.update()), onPane: () => this.update(),
+    });
+    const actions = {
+      onTransition: (/** @type {number} */ t) => this.selectTransition(t, true),
+      onPlace: (/** @type {number} */ p) => this.selectPlace(p),
+    };
+    this.net = new NetView(byId("net"), this.course, actions);
+    if (data.runs.length > 1) this.other(data.runs[1], actions);
+    else if (this.run.cell) this.cell = new CellView(byId("cell"), this.run, data.missing);
+    this.timeline = new Timeline(byId("timeline"), this.run, this.clock, {
+      onBar: (bar) => this.onBar(bar), onStep: (k) => this.clock.step(k),
+    });
+    this.panels(actions);
+    this.search = new Search(byId("search"), this.clock, actions);
+    this.transport = new Transport(byId("transport"), this.clock, {
+      message: (by) => this.toMessage(by), mark: (by) => this.toMark(by),
+      hasMessages: Boolean(this.messages), hasMarks: this.run.live || this.moments().length > 0,
+    });
+    this.clock.listen(() => this.update());
+    addEventListener("keydown", (e) => this.key(e));
+    addEventListener("hashchange", () => this.fromAddress());
+    this.fromAddress() || this.update();
+  }
+
+  /** @returns {Clock} */
+  makeClock() {
+    return new Clock(this.course, this.run.end);
+  }
+
+  head() {
+    const { verdict, title, course } = this.run;
+    byId("title").textContent = title;
+    const words = /** @type {Record<string, string>} */ ({ steps: "more would be possible", cut: "shown in part" });
+    const word = course.refused ? "not possible" : words[verdict.word] ?? verdict.word;
+    if (word) {
+      const isGood = ["finished", "steps", "cut"].includes(verdict.word) && !course.refused;
+      // A run that has finished may have done so in a place that means failure: the place is named as well.
+      const places = verdict.final.map((/** @type {string} */ p) => p.split(".").pop()).join(", ");
+      const text = places ? `${word} in ${places}` : word;
+      byId("verdict").replaceChildren(el("span", { class: isGood ? "chip good" : "chip bad", text, title: verdict.reason }));
+    }
+  }
+
+  /** @param {{onTransition: (t: number) => void, onPlace: (p: number) => void}} actions */
+  panels(actions) {
+    const host = byId("panels");
+    const bar = el("div", { class: "tabs", role: "tablist", "aria-label": "Beside the time" });
+    host.append(bar);
+    /** @type {{name: string, tab: any, body: any}[]} */
+    const tabs = [];
+    const add = (/** @type {string} */ name) => {
+      const body = el("div", { class: `panel ${name.toLowerCase()}`, role: "tabpanel", "aria-label": name, id: `panel-${name}` });
+      const tab = el("button", { role: "tab", text: name, "aria-controls": `panel-${name}`, onclick: () => this.tab(name) });
+      bar.append(tab);
+      host.append(body);
+      tabs.push({ name, tab, body });
+      return body;
+    };
+    this.tabs = tabs;
+    this.firstPanel(add);
+    if (this.run.happenings?.messages.length || this.run.live) {
+      this.messages = new Messages(add("Messages"), this.run, this.clock, (m) => this.onMessage(m));
+    }
+    this.steps = new Steps(add("Steps"), this.clock);
+    if (this.run.programs) this.code = new Code(add("Code"), this.run, this.clock, actions.onTransition);
+    this.watch = new Watch(add("Watch"), this.clock, actions.onPlace);
+    this.about(add("Run"));
+    this.tab(tabs[0].name);
+  }
+
+  /**
+   * A panel before the others, for pages that have one.
+   * @param {(name: string) => any} add
+   */
+  firstPanel(add) {
+    void add;
+  }
+
+  /** @param {string} name */
+  tab(name) {
+    for (const { name: own, tab, body } of this.tabs ?? []) {
+      tab.setAttribute("aria-selected", String(own === name));
+      body.hidden = own !== name;
+    }
+    this.code?.update(true);
+    this.watch?.update();
+  }
+
+  /** @param {any} host */
+  about(host) {
+    const { facts, verdict, course, happenings, cell } = this.run;
+    const row = (/** @type {string} */ name, /** @type {string} */ value) => [el("dt", { text: name }), el("dd", { text: value })];
+    const list = el("dl", {}, ...facts.flatMap((/** @type {string[]} */ f) => row(f[0], f[1])));
+    if (verdict.reason) list.append(...row("reason", verdict.reason));
+    if (verdict.final.length) list.append(...row("ended in", verdict.final.join(", ")));
+    if (course.refused) list.append(...row(`step ${course.refused.step}`, `${course.refused.transition}: ${course.refused.why}`));
+    if (course.loop !== null) list.append(...row("lasso", `after the last step the run goes on after step ${course.loop}`));
+    for (const note of cell?.notes ?? []) list.append(...row("shapes", note));
+    list.append(...row("made by", this.data.generator));
+    host.append(list);
+    const shown = (happenings?.events ?? []).filter((/** @type {any} */ e) => ["warning", "fault", "part"].includes(e.kind));
+    if (!shown.length) return;
+    host.append(
+      el("h3", { text: "Moments" }),
+      el("ul", { class: "moments" }, ...shown.map((/** @type {any} */ e) =>
+        el("li", {}, el("button", {
+          class: e.kind, text: `${e.t.toFixed(2)} s  ${e.party} ${e.text}`, onclick: () => this.clock.seek(e.t),
+        })))),
+    );
+  }
+
+  /**
+   * A second run, beside the first.
+   * @param {any} run
+   * @param {{onTransition: (t: number) => void, onPlace: (p: number) => void}} actions
+   */
+  other(run, actions) {
+    this.second = new Course(run);
+    this.otherNet = new NetView(byId("cell"), this.second, { onTransition: () => {}, onPlace: () => {} });
+    const { difference } = this.data;
+    const banner = byId("difference");
+    banner.hidden = false;
+    if (!difference) {
+      banner.append("Both runs have the same steps.");
+      return;
+    }
+    banner.append(
+      el("b", { text: `First difference: step ${difference.step}. ` }), el("span", { text: difference.what[0], class: "what" }), " · ",
+      el("span", { text: difference.what[1], class: "what" }), " ",
+      el("button", { text: "Show it", onclick: () => this.toStep(difference.step) }));
+  }
+
+  /** @param {number} k */
+  toStep(k) {
+    this.clock.step(k);
+    this.otherNet?.update(Math.min(k, this.second?.steps ?? 0), this.clock.t, this.clock);
+  }
+
+  // --- moves ---------------------------------------------------------------------------------
+
+  /** Moments to go to: marks, parts, warnings, faults. */
+  moments() {
+    const events = (this.run.happenings?.events ?? []).filter((/** @type {any} */ e) => e.kind !== "sense" && e.kind !== "end");
+    const times = [...(this.run.cell?.marks ?? []), ...events].map((/** @type {any} */ e) => e.t);
+    return times.sort((a, b) => a - b);
+  }
+
+  /** @param {number} by */
+  toMark(by) {
+    const { t } = this.clock;
+    const times = this.moments();
+    const next = by > 0 ? times.find((x) => x > t + 1e-9) : times.filter((x) => x < t - 1e-9).pop();
+    if (next !== undefined) this.clock.seek(next);
+  }
+
+  /** @param {number} by */
+  toMessage(by) {
+    const t = this.messages?.next(by) ?? NaN;
+    if (Number.isFinite(t)) this.clock.seek(t);
+  }
+
+  /** @param {any} bar */
+  onBar(bar) {
+    if (this.clock.t < bar.start || this.clock.t >= bar.end) this.clock.seek(bar.start);
+    if (bar.transition >= 0) this.selectTransition(bar.transition, false);
+  }
+
+  /** @param {any} message */
+  onMessage(message) {
+    this.clock.seek(message.t);
+    this.selectPlace(message.place);
+  }
+
+  /**
+   * @param {number} t
+   * @param {boolean} isJumping to its next occurrence
+   */
+  selectTransition(t, isJumping) {
+    this.transition = t;
+    this.place = -1;
+    if (isJumping) {
+      const k = this.course.nextOf(t, this.clock.k) || this.course.nextOf(t, this.clock.k + 1, -1);
+      if (k) this.clock.step(k);
+    }
+    this.net.show(this.run.net.transitions[t].instance);
+    this.net.mark(t, -1);
+    this.update();
+  }
+
+  /** @param {number} p */
+  selectPlace(p) {
+    this.place = p;
+    this.transition = -1;
+    this.watch?.select(p);
+    const members = this.run.net.places[p].members.map((/** @type {any} */ m) => m[0]);
+    if (members.length && !members.includes(this.net.current)) this.net.show(members[0]);
+    this.net.mark(-1, p);
+  }
+
+  fromAddress() {
+    const words = new URLSearchParams(location.hash.slice(1));
+    if (words.has("step")) this.clock.step(Number(words.get("step")) || 0);
+    else if (words.has("t")) this.clock.seek(Number(words.get("t")));
+    else return false;
+    return true;
+  }
+
+  /** @param {KeyboardEvent} e */
+  key(e) {
+    const target = /** @type {HTMLElement} */ (e.target);
+    if (e.ctrlKey || e.metaKey || e.altKey || document.querySelector("dialog[open]")) return;
+    if (target.matches("input:not([type=range]), select, textarea")) return;
+    if (target.matches("input[type=range]") && e.key.startsWith("Arrow")) return;
+    if (e.key === " " && target.matches("button, [role=button]")) return;
+    const { clock } = this;
+    const step = { ArrowLeft: -1, ArrowRight: 1 }[e.key];
+    /** @type {Record<string, () => void>} */
+    const keys = {
+      " ": () => clock.toggle(), Home: () => clock.seek(0), End: () => clock.seek(clock.end),
+      ",": () => clock.setSpeed(clock.speed / 1.25), ".": () => clock.setSpeed(clock.speed * 1.25),
+      "[": () => this.toMark(-1), "]": () => this.toMark(1), "/": () => this.search.focus(), "?": help,
+      f: () => this.net.setFollowing(!this.net.isFollowing), d: () => this.frame.dark(),
+      p: () => this.cell?.showPaths(!this.cell.hasPaths),
+      w: () => this.place >= 0 && (this.watch?.add(this.place), this.tab("Watch")),
+      n: () => this.transition >= 0 && this.selectTransition(this.transition, true),
+    };
+    if (step) {
+      if (e.shiftKey) this.toMessage(step);
+      else clock.step(clock.k + step);
+    } else if (/^[1-9]$/.test(e.key)) this.cell?.view(Number(e.key) - 1);
+    else if (keys[e.key]) keys[e.key]();
+    else return;
+    e.preventDefault();
+  }
+
+  update() {
+    const { clock } = this;
+    this.net.update(clock.k, clock.t, clock.pace());
+    if (this.second) {
+      const k = this.run.clock === "seconds" ? this.second.stepAt(clock.t) : Math.min(clock.k, this.second.steps);
+      this.otherNet?.update(k, clock.t, clock);
+    }
+    this.cell?.update(clock.t);
+    this.timeline.update();
+    this.transport.update();
+    this.messages?.update();
+    this.steps?.update();
+    this.code?.update();
+    this.watch?.update();
+    if (!clock.isPlaying) this.address();
+  }
+
+  /** The address of the moment, so that it can be sent to somebody. */
+  address() {
+    const { clock } = this;
+    const isAlone = clock.k === this.course.stepAt(clock.t);
+    const hash = this.run.clock === "seconds" && isAlone ? `#t=${+clock.t.toFixed(3)}` : `#step=${clock.k}`;
+    if (location.hash === hash || (!location.hash && clock.t === 0)) return;
+    clearTimeout(this.later);
+    this.later = setTimeout(() => history.replaceState(null, "", hash), 250);
+  }
+}
+
+/**
+ * What tests ask of a page.
+ * @param {ReplayPage} page
+ */
+export function probes(page) {
+  return {
+    page,
+    seek: (/** @type {number} */ t) => page.clock.seek(t),
+    step: (/** @type {number} */ k) => page.clock.step(k),
+    marking: () => page.course.net.places.map((/** @type {any} */ p, /** @type {number} */ i) => [p.name, page.course.text(i)]),
+    tcp: (/** @type {number} */ robot, /** @type {number} */ t) => {
+      const r = page.run.cell.robots[robot];
+      return frames(r, page.cell?.joints(robot, t) ?? r.home)[r.tcp];
+    },
+  };
+}

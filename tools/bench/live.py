@@ -1,0 +1,151 @@
+"""What pages that watch a cell cost its supervisor: how long its answers take without a live view and with ten pages.
+
+    python -m tools.bench.live examples/riveting --pages 10 --runs 4 --speed 10
+
+Runs without and with the live view take turns, so that both meet the same machine. An answer is the time from a robot's
+message to the next one that it takes (`pn2code.run.punctuality`). A page is a WebSocket that reads all it is told; what
+a browser draws is not measured.
+"""
+
+from __future__ import annotations
+
+import argparse
+import secrets
+import shutil
+import socket
+import statistics
+import subprocess
+import sys
+import tempfile
+from collections.abc import Mapping
+from contextlib import ExitStack
+from pathlib import Path
+from urllib.parse import urlsplit
+
+from pn2code.diagnostics import Diagnostics
+from pn2code.live.view import LiveView
+from pn2code.robot.transforms import Array
+from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.engine import Engine
+from pn2code.run.realtime import RealtimeEngine
+
+_LEAST = 10_000
+"""Bytes that each page must have been told."""
+_READERS = """
+import socket, sys, threading
+host, port, request, count = sys.argv[1], int(sys.argv[2]), sys.argv[3], int(sys.argv[4])
+def read():
+    with socket.create_connection((host, port)) as s:
+        s.sendall(request.encode())
+        n = 0
+        while part := s.recv(1 << 16):
+            n += len(part)
+        sys.stdout.write(f"{n}\\n")
+threads = [threading.Thread(target=read) for _ in range(count)]
+[t.start() for t in threads]
+[t.join() for t in threads]
+"""
+
+
+class _Answers:
+    """An observer that keeps the answers."""
+
+    def __init__(self) -> None:
+        self.seconds: list[float] = []
+
+    def begun(self, engine: Engine) -> None:
+        """Nothing."""
+
+    def advanced(self, engine: Engine) -> None:
+        """Nothing."""
+
+    def sampled(self, engine: Engine, t: float, joints: Mapping[str, Array]) -> None:
+        """Nothing."""
+
+    def ended(self, engine: Engine) -> None:
+        """All answers are there."""
+        assert isinstance(engine, RealtimeEngine)
+        self.seconds = list(engine.punctuality.answers)
+
+
+def answers(cell: Path, pages: int | None, speed: float) -> list[float]:
+    """The answers of one run; None: without a live view."""
+    seen = _Answers()
+    out = Path(tempfile.mkdtemp(prefix="pn2code-live-"))
+    options = RunOptions(
+        out, backend="fake", looks=False, realtime=True, speed=speed, checked=False
+    )
+    try:
+        with ExitStack() as stack:
+            if pages is None:
+                run_cell(cell, options, Diagnostics(), [seen])
+            else:
+                view = stack.enter_context(LiveView(0, speed))
+                readers = _open(view.address, pages)
+                run_cell(cell, options, Diagnostics(), [seen, view], ready=view.ready)
+                view.close()
+                _expect_told(readers, pages)
+    finally:
+        shutil.rmtree(out, ignore_errors=True)
+    return seen.seconds
+
+
+def _expect_told(readers: subprocess.Popen[str], pages: int) -> None:
+    """A page that was told nothing has cost nothing: then the figures would say nothing."""
+    told = [int(line) for line in readers.communicate()[0].split()]
+    if len(told) != pages or min(told) < _LEAST:
+        raise SystemExit(f"the pages were told too little: {told} bytes")
+
+
+def _open(address: str, pages: int) -> subprocess.Popen[str]:
+    at = urlsplit(address)
+    assert at.hostname is not None and at.port is not None
+    key = f"{secrets.token_hex(8)}{'A' * 6}=="
+    request = (
+        f"GET {at.path}ws?at=0 HTTP/1.1\r\nHost: {at.netloc}\r\nOrigin: http://{at.netloc}\r\nUpgrade: websocket\r\n"
+        f"Connection: Upgrade\r\nSec-WebSocket-Key: {key}\r\nSec-WebSocket-Version: 13\r\n\r\n"
+    )
+    _wait_for(at.hostname, at.port)
+    return subprocess.Popen(
+        [sys.executable, "-c", _READERS, at.hostname, str(at.port), request, str(pages)],
+        stdout=subprocess.PIPE,
+        text=True,
+    )
+
+
+def _wait_for(host: str, port: int) -> None:
+    with socket.create_connection((host, port), timeout=30):
+        pass
+
+
+def figures(seconds: list[float]) -> list[float]:
+    """10 %, median, 90 %, 99 %."""
+    cuts = statistics.quantiles(seconds, n=100, method="inclusive")
+    return [cuts[9], cuts[49], cuts[89], cuts[98]]
+
+
+def main() -> None:
+    """Measures, and prints a table."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("cell", type=Path)
+    parser.add_argument("--pages", type=int, default=10)
+    parser.add_argument("--runs", type=int, default=4)
+    parser.add_argument("--speed", type=float, default=10.0)
+    asked = parser.parse_args()
+    without: list[float] = []
+    watched: list[float] = []
+    for _ in range(asked.runs):
+        without += answers(asked.cell, None, asked.speed)
+        watched += answers(asked.cell, asked.pages, asked.speed)
+    print(f"| answers | 10 % | median | 90 % | 99 % |  {len(without)} and {len(watched)} answers")
+    for name, rows in (
+        ("no live view", figures(without)),
+        (f"{asked.pages} pages", figures(watched)),
+    ):
+        print(f"| {name} | " + " | ".join(f"{1000 * v:.2f} ms" for v in rows) + " |")
+    ratios = [b / a for a, b in zip(figures(without), figures(watched), strict=True)]
+    print("| ratio | " + " | ".join(f"{r:.3f}" for r in ratios) + " |")
+
+
+if __name__ == "__main__":
+    main()
