@@ -320,9 +320,23 @@ class _Builder:
         # Large ones first, so that all processors are busy to the end.
         sources.sort(key=lambda name: -(room / name).stat().st_size)
 
+        # A build that is given up leaves what it has compiled to the next one, which gets further.
+        done_before = self.folder / f"{_BUILDS}{self.library.stem}"
+        done_before.mkdir(mode=0o700, exist_ok=True)
+
         def compiled(source: str) -> bool:
+            made, kept = (where / f"{Path(source).stem}.o" for where in (room, done_before))
+            with suppress(OSError):
+                os.link(kept, made)
+                return True
             own = self.host.own if self._is_own(source) else ()
-            return self._compiler(room, *own, "-Iruntime/include", "-c", source, d=d)
+            if not self._compiler(room, *own, "-Iruntime/include", "-c", source, d=d):
+                return False
+            with suppress(
+                OSError
+            ):  # no room, no links on this disk, or another process was as quick
+                os.link(made, kept)
+            return True
 
         with ThreadPoolExecutor(max(os.cpu_count() or 1, 1)) as pool:
             if not all(list(pool.map(compiled, sources))):
@@ -339,6 +353,7 @@ class _Builder:
             )
             return False
         made.replace(self.library)
+        shutil.rmtree(done_before, ignore_errors=True)
         return True
 
     def interrupted(self) -> bool:
