@@ -175,7 +175,9 @@ def _of_run(cell: Cell, said: Said, run: Run, found: list[Moment] | str) -> Iter
     whole = [m["answer"] for m in said.channel_model[:1]]
     # A script may stop by itself before anybody notices; only where non-blocking is yes that may not be.
     is_own = _SCRIPT.search(run.why) and _answer(said, "non-blocking") != "yes"
-    is_said = any(w in run.why for w in ("died", "dead", "ended", "gone", "has not answered"))
+    # One that has been killed may have said before that it has finished: then it owes what it never will answer.
+    said_so = ("died", "dead", "ended", "gone", "has not answered", "owes an answer")
+    is_said = any(w in run.why for w in said_so)
     if run.end == "crashed" and not (is_own or is_said):
         yield "a side died, but nobody says so"
     if run.end == "stuck":
