@@ -129,8 +129,8 @@ def do(where: Path, command: list[str], *more: str | Path) -> Done:
 def test_the_table_has_each_verb(root: Path) -> None:
     named = [v for verbs, _ in table(root) for v in verbs]
     assert set(VERBS) == {v.split()[0] for v in named if v != "./supervisor"}
-    tested = {*VERB, "check", "structure", "reach", "replay", "simulate --replay", "draw --trace"}
-    tested.add("play --trace")
+    tested = {*VERB, "check", "structure", "reach", "time", "replay", "simulate --replay"}
+    tested |= {"play --trace", "draw --trace"}
     assert set(named) - {"./supervisor", *UNREAD} == tested
 
 
