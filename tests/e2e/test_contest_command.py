@@ -276,3 +276,45 @@ def test_deep_formulas(folder: Path) -> None:
         done = CliRunner().invoke(app, ["contest", str(folder), "CTLCardinality"])
         assert done.exception is None or isinstance(done.exception, SystemExit), done.exception
         assert (done.exit_code, bool(done.stderr)) in ((0, False), (1, True))
+
+
+def test_what_is_said_of_the_initial_marking_alone(folder: Path) -> None:
+    """Formulas of linear time may have parts that speak of no path."""
+    none = f"<negation>{ONE_IN_Q}</negation>"
+    later = f"<all-paths><finally>{ONE_IN_Q}</finally></all-paths>"
+    write(folder, "LTLCardinality", ONE_IN_Q, none, f"<conjunction>{none}{later}</conjunction>")
+    lines = said(folder, "LTLCardinality", "--max-seconds", "20")
+    assert values(lines) == {"a": "FALSE", "b": "TRUE", "c": "TRUE"}
+
+
+def test_a_reduced_net_that_the_engine_cannot_read_is_not_asked(tmp_path: Path) -> None:
+    """Joined steps multiply weights, and put more tokens into a place than the engine counts."""
+    text = net(
+        place("p", "", "4000000"),
+        place("q"),
+        place("a", "", "1"),
+        place("b"),
+        transition("fill"),
+        transition("there"),
+        transition("back"),
+        arc("p", "fill"),
+        arc("fill", "q", "400"),
+        arc("q", "there"),
+        arc("a", "there"),
+        arc("there", "b"),
+        arc("b", "back"),
+        arc("back", "a"),
+        kind="ptnet",
+    )
+    (tmp_path / "model.pnml").write_text(text)
+    one_in_a = ONE_IN_Q.replace("q", "a")
+    write(
+        tmp_path,
+        "CTLCardinality",
+        f"<all-paths><finally><negation>{one_in_a}</negation></finally></all-paths>",
+        f"<exists-path><globally>{one_in_a}</globally></exists-path>",
+    )
+    lines = said(tmp_path, "CTLCardinality", "--max-seconds", "3")
+    assert set(values(lines)) == {"a", "b"}
+    assert Tables((1 << 30,), ({0: 1},), ({},), {}, {}).fits()
+    assert not Tables((0,), ({0: 1},), ({0: (1 << 30) + 1},), {}, {}).fits()

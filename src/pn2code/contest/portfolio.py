@@ -8,6 +8,7 @@ structural methods (structural.py) run beside the rounds; what they have reduced
 
 from __future__ import annotations
 
+import re
 import time
 from collections.abc import Iterator, Sequence
 from dataclasses import field, replace
@@ -21,7 +22,7 @@ from pn2code.contest.engine import Answer, Said, Space, Task, ask
 from pn2code.contest.examinations import Asked, Part
 from pn2code.contest.formulas import FormulaError
 from pn2code.contest.structural import REDUCTION, Question, Structural, question
-from pn2code.contest.tables import Tables
+from pn2code.contest.tables import MOST, Tables
 from pn2code.contest.temporal import Reach, Temporal, Wanted, Whole
 from pn2code.properties.ltl import TooLargeError
 
@@ -424,14 +425,18 @@ class _Portfolio:
             if asked is not None and asked.smaller is not None:
                 smaller[n] = (asked.kind, asked.smaller)
         nets = {id(s.tables): s.tables for _, s in smaller.values()}
-        if len(smaller) < len(numbers) or len(nets) != 1:
+        asked_of = {n: f"{n} {s.text(kind)}" for n, (kind, s) in smaller.items()}
+        is_told = all(t.fits() for t in nets.values()) and not any(
+            map(_too_large, asked_of.values())
+        )
+        if len(smaller) < len(numbers) or len(nets) != 1 or not is_told:
             tables, added, technique = self.tables, dict[int, int](), ""
             texts = [f"{n} {self.places[n].part.text}" for n in numbers]
         else:
             (tables,) = nets.values()
             added = {n: s.added for n, (_, s) in smaller.items()}
             technique = REDUCTION
-            texts = [f"{n} {s.text(kind)}" for n, (kind, s) in smaller.items()]
+            texts = list(asked_of.values())
         order = self._order(tables, which) if method == METHOD else ()
         return Task(method, tables.text(texts, order), 0.0, 0, added=added, technique=technique)
 
@@ -439,6 +444,11 @@ class _Portfolio:
         """One of the orders of the places of a net, which is this one or a reduced one."""
         orders = self.diagrams.setdefault(id(tables), Diagrams(tables)).orders
         return orders[which % len(orders)] if orders else ()
+
+
+def _too_large(question: str) -> bool:
+    """Whether a question about a reduced net has a factor that the engine does not read."""
+    return any(int(number) > MOST for number in re.findall(r"\d{10,}", question))
 
 
 def _until(ends: float, tasks: Sequence[Task]) -> Iterator[Task]:

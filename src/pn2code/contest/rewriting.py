@@ -192,7 +192,9 @@ def _until(quantifier: str, p: Formula, q: Formula) -> Formula:
 
 
 def linear(f: Formula, known: Known) -> Formula:
-    """A formula of LTL made simpler: formulas of all paths, joined."""
+    """A formula of LTL made simpler: formulas of all paths, and of the initial marking, joined."""
+    if is_plain(f) and not isinstance(f, Truth):
+        return _plain(f, known, True)
     match f:
         case Truth():
             return f

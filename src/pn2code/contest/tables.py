@@ -25,6 +25,9 @@ from pn2code.contest.formulas import (
 )
 from pn2code.unfold.net import Unfolding
 
+MOST = 1 << 30
+"""The largest number of tokens, and weight, that the engine reads (`cnative/src/tables/tables_read.c`)."""
+
 
 @frozen
 class Tables:
@@ -43,6 +46,11 @@ class Tables:
     post: tuple[Mapping[int, int], ...]
     places: Mapping[str, tuple[int, ...]]
     transitions: Mapping[str, tuple[int, ...]]
+
+    def fits(self) -> bool:
+        """Whether the engine can read it: reductions multiply weights, and put the tokens of places together."""
+        weights = (n for t in (*self.pre, *self.post) for n in t.values())
+        return max((*self.initial, *weights), default=0) <= MOST
 
     @staticmethod
     def of(unfolding: Unfolding) -> Tables:

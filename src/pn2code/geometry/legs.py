@@ -5,7 +5,8 @@
     leg = planner.leg(home, MoveJoint(pose))       # Leg(kind="ptp", path=..., end=Stand(...)), or with a fault
     planner.leg(leg.end, MoveLinear(step, "tool"))
 
-Equal commands from equal places are one leg. Places that differ by less than 1e-7 (rad, m) are one place.
+Equal commands from equal places are one leg. Places that differ by less than 1e-7 (rad, m) are one place, unless more
+digits are wanted: how long a short move takes goes by the third root of how far it leads.
 """
 
 from __future__ import annotations
@@ -19,8 +20,10 @@ from pn2code.robot.motion import MotionFault, Still, Trajectory
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array
 
-_DIGITS = 7
-"""Of numbers that tell places apart."""
+DIGITS = 7
+"""Of numbers that tell places apart where geometry is what counts ..."""
+DIGITS_OF_TIME = 12
+"""... and where time does."""
 
 
 @frozen(eq=False)
@@ -64,10 +67,15 @@ class Leg:
 
 
 class Planner:
-    """Plans commands of the arms of a cell, each once."""
+    """Plans commands of the arms of a cell, each once.
 
-    def __init__(self, cell: RobotCell) -> None:
+    Args:
+        digits: of the numbers (rad, m) that tell places apart.
+    """
+
+    def __init__(self, cell: RobotCell, digits: int = DIGITS) -> None:
         self.cell = cell
+        self._digits = digits
         self._executors = {r.name: RobotExecutor(r, cell.motion, cell.frames) for r in cell.robots}
         self.stands: list[Stand] = []
         self.legs: list[Leg] = []
@@ -113,8 +121,8 @@ class Planner:
     def _stand(self, robot: str, q: Array, T_base_tcp: Array) -> Stand:  # noqa: N803
         key = (
             robot,
-            *np.round(q, _DIGITS).tolist(),
-            *np.round(T_base_tcp, _DIGITS).ravel().tolist(),
+            *np.round(q, self._digits).tolist(),
+            *np.round(T_base_tcp, self._digits).ravel().tolist(),
         )
         if key not in self._stands:
             found = Stand(len(self.stands), robot, np.array(q), np.array(T_base_tcp))

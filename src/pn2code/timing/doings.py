@@ -14,7 +14,7 @@ import math
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import OwnerKind
 from pn2code.geometry.graph import CellGraph
-from pn2code.geometry.legs import Planner, Stand
+from pn2code.geometry.legs import DIGITS_OF_TIME, Planner, Stand
 from pn2code.robot.commands import Command, ToolAction, Wait
 from pn2code.robot.robot_cell import RobotCell
 
@@ -60,7 +60,7 @@ class Doings:
 
     def __init__(self, graph: CellGraph, cell: RobotCell) -> None:
         self.graph, self.cell = graph, cell
-        self.planner = Planner(cell)
+        self.planner = Planner(cell, DIGITS_OF_TIME)
         owners = {o.name: o.index for o in graph.partition.owners}
         self.arms = tuple(owners[r.name] for r in cell.robots)
         self.homes = tuple(self.planner.home(r.name) for r in cell.robots)

@@ -185,7 +185,7 @@ class Search:
         for owner in mixed & begins.keys():  # it may choose what takes time
             out += self._begun(state, stands, under_way, {owner: begins[owner]})
         now = [u for u in under_way if u[2] == 0]
-        if not at_once and self._rests(state, busy, begins):
+        if not at_once and self._rests(state, under_way, begins):
             self.ends.add(node)
         out += self._ended(state, stands, under_way, ending, now)
         if out or node in self.ends:
@@ -200,11 +200,13 @@ class Search:
         those = [u for u in going if u[2] <= first + TIE]
         return list(self._ended(state, stands, under_way, ending, those))
 
-    def _rests(self, state: int, busy: Iterable[int], begins: Iterable[int]) -> bool:
-        """Whether the cycle is over: the supervisor has finished, and no arm does anything."""
-        if state not in self.graph.over:
+    def _rests(self, state: int, under_way: UnderWay, begins: Iterable[int]) -> bool:
+        """Whether the cycle is over: the supervisor has finished, no arm does anything, and no device a thing that it
+        cannot do, which stops the cell."""
+        if state not in self.graph.over or any(ns >= FOREVER // 2 for *_, ns in under_way):
             return False
-        return not any(owner in self.doings.arm_of for owner in (*busy, *begins))
+        owners = (*(owner for owner, *_ in under_way), *begins)
+        return not any(owner in self.doings.arm_of for owner in owners)
 
     def _at_once(
         self,
