@@ -12,8 +12,10 @@ from tools.adversary import times, wander
 from tools.adversary.wander import Pace
 from typer.testing import CliRunner
 
+from helpers import meeting_cell
+from helpers.netbuilder import cpn
 from helpers.thorough import amount
-from helpers.timed_runs_cell import write
+from helpers.timed_runs_cell import NET, write
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.front import load
@@ -177,3 +179,45 @@ def test_why_a_run_takes_as_long_as_it_does(tmp_path: Path) -> None:
     assert done.exit_code == 1 and "cannot be read" in done.stderr
     done = CliRunner().invoke(app, ["time", str(cell), "--run", str(trace), "--within", "3"])
     assert done.exit_code == 2
+
+
+def test_short_moves_add_up(tmp_path: Path) -> None:
+    """Places that are a hundredth of a micrometre apart are as good as one, but the way there takes milliseconds."""
+    moves = "; ".join(f"moveLinear (at (1100.0{'' if i % 2 else '00003'}, rz))" for i in range(60))
+    text = meeting_cell.NET.replace("      TAKE\n", "").replace("      GIVE\n", "")
+    text = text.replace(
+        "  fun visit rz = (come rz; work (); moveLinear (at (1100.0, rz)); moveHome ());",
+        f"  fun visit rz = (moveJoint (at (1100.0, rz)); {moves});",
+    )
+    text = text.replace("action (visit 180.0)", "action (work ())").replace("= 1`2", "= 1`1")
+    cell = tmp_path / "cell"
+    cell.mkdir()
+    (cell / "cell.cpn").write_bytes(cpn(text))
+    (cell / "cell.toml").write_text(meeting_cell.TOML, encoding="utf-8")
+    (layout,) = asked(str(cell))["layouts"]
+    cycle = layout["cycle"]
+    assert cycle["least_s"] <= ran(cell, tmp_path / "run") <= cycle["most_s"], cycle
+
+
+def test_what_a_device_cannot_do_ends_no_cycle(tmp_path: Path) -> None:
+    """The press moves an arm that it does not have when the supervisor has finished already."""
+    cell = write(tmp_path / "cell")
+    text = NET.replace("AGAIN", "n + 1").replace(
+        "  fun press () = ();", "  fun press () = ();\n  fun home () = ();"
+    )
+    last = "      in Told : ()\n      out Waiting : ()\n      out d : ()\n"
+    assert text.count(last) == 1
+    text = text.replace(last, "      in Told : ()\n      out d : ()\n      out Pressed : ()\n")
+    before, told, after = text.rpartition("    place Told\n")
+    text = f"{before}{told}    place Pressed\n{after}"
+    text += """    trans Home code action home ()
+      in Pressed : ()
+      out Waiting : ()
+"""
+    (cell / "cell.cpn").write_bytes(cpn(text))
+    toml = (cell / "cell.toml").read_text()
+    toml = toml.replace("[devices.drill]", 'home = { command = "move_home" }\n[devices.drill]')
+    (cell / "cell.toml").write_text(toml)
+    found = asked(str(cell), "--within", "60", code=3)
+    assert [w["answer"] for w in found["within"]] == ["unknown"]
+    assert any("no arm" in other for other in found["layouts"][0]["cycle"]["others"])
