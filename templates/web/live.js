@@ -133,6 +133,7 @@ const link = new LiveLink({
   },
   onLost: () => say("The connection is lost: what is shown is no longer what happens. The page tries again.", "bad"),
   onBack: () => say("", ""),
+  onFailed: () => say("This page has failed and shows nothing new; the cell goes on. Stop still works, and so does Ctrl-C in the terminal.", "bad"),
   onOver: () => finish(),
   onSaid: (text) => said(text),
 });
@@ -159,7 +160,7 @@ function finish() {
   /** @type {LiveClock | undefined} */ (page?.clock)?.finish();
   byId("stop").disabled = true;
   const word = page?.run.verdict.word;
-  say(word ? `The run has ${word === "finished" ? "finished" : `ended: ${word}`}. Its records are in its folder.` : "The run has ended.", word === "finished" ? "note" : "bad");
+  say(word ? `The run has ${word === "finished" ? "finished" : `ended: ${word}`}. Its records are in its folder.` : "The live view has ended. How the run ends is in the terminal and in its folder.", word === "finished" ? "note" : "bad");
   page?.update();
 }
 

@@ -6,7 +6,7 @@ import { push } from "./course.js";
 const AGAIN_MS = 1000;
 
 export class LiveLink {
-  /** @param {{onNews: (updates: any[], pages: number) => void, onLost: () => void, onBack: () => void, onOver: () => void, onSaid: (text: string) => void}} ears */
+  /** @param {{onNews: (updates: any[], pages: number) => void, onLost: () => void, onBack: () => void, onOver: () => void, onFailed: () => void, onSaid: (text: string) => void}} ears */
   constructor(ears) {
     this.ears = ears;
     /** How many updates have come. */
@@ -43,6 +43,8 @@ export class LiveLink {
     } else if (said.over) {
       this.isOver = true;
       this.ears.onOver();
+    } else if (said.failed) {
+      this.ears.onFailed();
     } else if (said.broken) {
       this.isOver = true;
       this.ears.onSaid(said.broken);

@@ -111,6 +111,9 @@ class _Desk:
     async def _tell(self, socket: WebSocket, at: int) -> None:
         while True:
             rows, at = await self._hall.after(at)
+            if not rows and self._hall.has_failed and not self._hall.is_over:
+                await socket.send_text(text_of({"failed": True}))
+                await self._hall.ended()
             if not rows:
                 await socket.send_text(text_of({"over": True}))
                 await socket.close()

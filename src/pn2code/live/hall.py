@@ -29,6 +29,7 @@ class Hall:
 
     Attributes:
         is_over: there will be no more.
+        has_failed: there will be no more, though the run goes on.
     """
 
     def __init__(self, most_bytes: int = MOST_BYTES) -> None:
@@ -40,6 +41,7 @@ class Hall:
         self._loop: asyncio.AbstractEventLoop | None = None
         self._more: asyncio.Event | None = None
         self.is_over = False
+        self.has_failed = False
 
     def attach(self) -> None:
         """From the event loop: from now on pages can wait."""
@@ -63,20 +65,33 @@ class Hall:
         self.is_over = True
         self._wake()
 
+    def fail(self) -> None:
+        """There is no more, because of a mistake here: pages say so, and can still stop the run."""
+        self.has_failed = True
+        self._wake()
+
+    async def ended(self) -> None:
+        """Waits until it is over."""
+        while not self.is_over:
+            await self._news()
+
     def _wake(self) -> None:
         loop, more = self._loop, self._more
         if loop is not None and more is not None and not loop.is_closed():
             loop.call_soon_threadsafe(more.set)
 
     async def after(self, at: int) -> tuple[list[str], int]:
-        """What comes after so many updates, as soon as there is something; nothing when it is over."""
-        assert self._more is not None
-        while not (found := self._rows(at))[0] and not self.is_over:
-            more = self._more
-            await more.wait()
-            if more is self._more:
-                self._more = asyncio.Event()
+        """What comes after so many updates, as soon as there is something; nothing when there will be no more."""
+        while not (found := self._rows(at))[0] and not (self.is_over or self.has_failed):
+            await self._news()
         return found
+
+    async def _news(self) -> None:
+        more = self._more
+        assert more is not None
+        await more.wait()
+        if more is self._more:
+            self._more = asyncio.Event()
 
     def _rows(self, at: int) -> tuple[list[str], int]:
         rows, size = [], 0

@@ -37,7 +37,13 @@ class Handing:
         return not self.is_broken and not self._left
 
     def give(self, thing: Any) -> None:
-        """Hands something over; only when it is free."""
+        """Hands something over.
+
+        Raises:
+            RuntimeError: it is not free; what is on its way would be cut off.
+        """
+        if self._left:
+            raise RuntimeError("the pipe is not free")
         data = pickle.dumps(thing, pickle.HIGHEST_PROTOCOL)
         self._left = memoryview(_HEAD.pack(len(data)) + data)
         self._push()

@@ -12,6 +12,7 @@ import signal
 import socket
 import sys
 import threading
+import traceback
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -61,8 +62,15 @@ class Cell:
 class Server:
     """The application, and the thread that feeds it."""
 
-    def __init__(self, start: Start, things: Iterator[Any], stop: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        start: Start,
+        things: Iterator[Any],
+        stop: Callable[[], None],
+        rest: Callable[[], object],
+    ) -> None:
         self._things = things
+        self._rest = rest
         self._hosts = tuple(f"{host}:{start.port}" for host in HOSTS)
         self._page: Served | None = None
         self.hall = Hall()
@@ -83,6 +91,11 @@ class Server:
                 for update in news.updates(self._things):
                     if self.hall.tell(update):
                         news.begin_again()
+        except Exception:
+            # The run goes on, and so does the way to stop it, until the run has ended.
+            traceback.print_exc()
+            self.hall.fail()
+            self._rest()
         finally:
             self.hall.end()
             timer = threading.Timer(LAST_S, end)
@@ -106,7 +119,11 @@ def main(arguments: list[str]) -> None:
     def stop() -> None:
         os.write(1, b"stop\n")
 
-    server = Server(start, things(), stop)
+    def rest() -> None:
+        while stream.read(1 << 16):
+            pass
+
+    server = Server(start, things(), stop, rest)
     with socket.socket(fileno=int(arguments[0])) as listening:
         serve(server.app, listening, begun=lambda: None, fed=server.begin)
 

@@ -52,10 +52,12 @@ class Tap:
         self._left_out = 0
         self._frames: dict[tuple[str, int], Json | None] = {}
         self._seen = {"actions": 0, "parts": 0}
+        self._first: Json = {}
 
     def begun(self, engine: Engine) -> None:
         """The header of the trace says with what the net begins."""
-        self._picture(engine, {"header": {**engine.supervisor_trace.header, "by": "run"}})
+        self._first = {"header": {**engine.supervisor_trace.header, "by": "run"}}
+        self.advanced(engine)
 
     def sampled(self, engine: Engine, t: float, joints: Mapping[str, Array]) -> None:
         """The arms stood like this."""
@@ -96,6 +98,7 @@ class Tap:
     def _picture(self, engine: Engine, more: Json) -> bool:
         """Hands a picture over; whether it has all that there is."""
         assert isinstance(engine, RealtimeEngine)
+        first_of_all, self._first = self._first, {}
         record = engine.record
         lists: dict[str, Sequence[Any]] = {
             "fired": engine.fired,
@@ -110,6 +113,7 @@ class Tap:
         new = {name: self._since(name, rows) for name, rows in lists.items()}
         first = {n: self._told.get(n, 0) - len(new[n]) for n in ("actions", "parts")}
         picture: Json = {
+            **first_of_all,
             **new,
             "t": engine.now,
             "marks": self._framed("actions", first["actions"], len(new["actions"])),

@@ -56,7 +56,8 @@ class LiveView(Closing):
             token, stop_token = new_token(), new_token()
             number = on.fileno()
             self._process = subprocess.Popen(
-                [sys.executable, "-m", "pn2code.live.server", str(number)],
+                # -P: what lies in the current folder is no module of the server.
+                [sys.executable, "-P", "-m", "pn2code.live.server", str(number)],
                 stdin=subprocess.PIPE,
                 stdout=subprocess.PIPE,
                 pass_fds=(number,),
@@ -87,10 +88,11 @@ class LiveView(Closing):
             return
         near = prepared.robot_cell.scene.warning_clearance
         described = describe(prepared, document, self._speed)
-        self._tap = Tap(self._handing, prepared.robot_cell, dict(config.report.count))
+        if not self._handing.finish(_BUILDING_S):
+            return  # the server does not read: nothing is told
+        self._handing.give(Cell(partition, config, near, described))
         if self._handing.finish(_BUILDING_S):
-            self._handing.give(Cell(partition, config, near, described))
-            self._handing.finish(_BUILDING_S)
+            self._tap = Tap(self._handing, prepared.robot_cell, dict(config.report.count))
 
     def interrupted(self) -> str:
         """Who wants the run to stop; "": nobody."""
