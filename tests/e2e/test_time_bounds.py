@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 from helpers import meeting_cell
 from helpers.netbuilder import cpn
 from helpers.thorough import amount
-from helpers.timed_runs_cell import NET, write
+from helpers.timed_runs_cell import write
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.front import load
@@ -199,25 +199,25 @@ def test_short_moves_add_up(tmp_path: Path) -> None:
     assert cycle["least_s"] <= ran(cell, tmp_path / "run") <= cycle["most_s"], cycle
 
 
-def test_what_a_device_cannot_do_ends_no_cycle(tmp_path: Path) -> None:
-    """The press moves an arm that it does not have when the supervisor has finished already."""
-    cell = write(tmp_path / "cell")
-    text = NET.replace("AGAIN", "n + 1").replace(
-        "  fun press () = ();", "  fun press () = ();\n  fun home () = ();"
-    )
-    last = "      in Told : ()\n      out Waiting : ()\n      out d : ()\n"
-    assert text.count(last) == 1
-    text = text.replace(last, "      in Told : ()\n      out d : ()\n      out Pressed : ()\n")
-    before, told, after = text.rpartition("    place Told\n")
-    text = f"{before}{told}    place Pressed\n{after}"
-    text += """    trans Home code action home ()
-      in Pressed : ()
-      out Waiting : ()
-"""
-    (cell / "cell.cpn").write_bytes(cpn(text))
-    toml = (cell / "cell.toml").read_text()
-    toml = toml.replace("[devices.drill]", 'home = { command = "move_home" }\n[devices.drill]')
-    (cell / "cell.toml").write_text(toml)
-    found = asked(str(cell), "--within", "60", code=3)
-    assert [w["answer"] for w in found["within"]] == ["unknown"]
-    assert any("no arm" in other for other in found["layouts"][0]["cycle"]["others"])
+@pytest.mark.parametrize("verb", [("time",), ("check", "--geometry"), ("reach",)], ids="-".join)
+@pytest.mark.parametrize(
+    ("given", "other", "said"),
+    [
+        ("work = {", "wrok = {", "has no function `wrok`"),
+        (
+            'work = { command = "tool", action = "work", duration_s = 1.0 }\n',
+            "",
+            "primitive-unnamed",
+        ),
+    ],
+)
+def test_nothing_is_said_of_programs_that_check_refuses(
+    tmp_path: Path, verb: tuple[str, ...], given: str, other: str, said: str
+) -> None:
+    """A call that is no command would be missing from what is looked at."""
+    text = meeting_cell.NET.replace("      TAKE\n", "").replace("      GIVE\n", "")
+    (tmp_path / "cell.cpn").write_bytes(cpn(text))
+    assert meeting_cell.TOML.count(given) == 1
+    (tmp_path / "cell.toml").write_text(meeting_cell.TOML.replace(given, other), encoding="utf-8")
+    done = CliRunner().invoke(app, [*verb, str(tmp_path)])
+    assert done.exit_code == 1 and said in done.output, done.output

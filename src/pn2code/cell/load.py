@@ -141,6 +141,7 @@ def _apply_layout(
         known = _table(data.get("robots"))
         for key in PLACED:
             r.get(table, at, replace(LAYOUT[key], expected="a table"))
+        _check_frames(data, layouts, name, r)
         robots = _table(table.get("robots"))
         for robot in robots:
             one = Key(robot, "table", "", "a table", inner=LAYOUT["robots"].inner)
@@ -171,6 +172,20 @@ def _apply_layout(
         return "", data
     table = {k: v for k, v in layouts[layout].items() if k != "description"}
     return layout, _merge(data, table)
+
+
+def _check_frames(data: dict[str, Any], layouts: dict[str, Any], name: str, r: Tables) -> None:
+    """A frame is in all layouts, or its name is a mistake: the one that was meant stays where it is."""
+    known = _table(data.get("frames"))
+    others = [_table(_table(t).get("frames")) for t in layouts.values()]
+    for frame in _table(layouts[name].get("frames")):
+        if frame not in known and not all(frame in other for other in others):
+            r.d.error(
+                codes.CELL_KEY,
+                f"layout `{name}` places an unknown frame `{frame}`",
+                r.at("layouts", name, "frames", frame),
+                hint=did_you_mean(frame, known) or f"add a table `[frames.{frame}]`",
+            )
 
 
 def _table(value: object) -> dict[str, Any]:

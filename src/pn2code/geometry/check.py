@@ -14,7 +14,6 @@ from typing import Any
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
-from pn2code.cell.divide import divide
 from pn2code.cell.load import load as load_cell
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics, Origin
@@ -26,6 +25,7 @@ from pn2code.geometry.words import reason
 from pn2code.robot import scene
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.verdict.opened import OpenNet
+from pn2code.verdict.programs import partition_of
 from pn2code.verify.controller.running import NotModelledError
 from pn2code.verify.exploring.limits import Limits
 
@@ -84,7 +84,7 @@ def examine(
     config = cell_of(opened, d)
     if config is None or not _is_there(config, d):
         return None
-    partition = divide(opened.flat, config, d)
+    partition = partition_of(opened, config, d)
     if partition is None:
         return None
     cells = cells_of(config, layout, d)

@@ -10,7 +10,6 @@ from collections.abc import Callable, Mapping
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
-from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.geometry import codes
@@ -23,6 +22,7 @@ from pn2code.geometry.situations import Situations
 from pn2code.geometry.words import reason
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.verdict.opened import OpenNet
+from pn2code.verdict.programs import partition_of
 from pn2code.verify.controller.running import NotModelledError
 from pn2code.verify.exploring.limits import Limits
 
@@ -73,7 +73,7 @@ def look(
     if config is None:
         return None
     cells = cells_of(config, wanted.layout or config.layout or None, d)
-    partition = divide(opened.flat, config, d)
+    partition = partition_of(opened, config, d)
     if cells is None or partition is None:
         return None
     _, cell = cells[0]

@@ -88,22 +88,21 @@ class _Desk:
 
     def __init__(self, hall: Hall, stopping: Stopping) -> None:
         self._hall, self._stopping = hall, stopping
-        self._pages = 0
 
     async def serve(self, socket: WebSocket) -> None:
         """One page, from its first word to its last."""
         await socket.accept()
-        if self._pages >= MOST_PAGES:
+        if self._hall.pages >= MOST_PAGES:
             await socket.send_text(text_of({"broken": "there are too many pages already"}))
             await socket.close()
             return
-        self._pages += 1
+        self._hall.pages += 1
         telling = asyncio.create_task(self._tell(socket, _number(socket.query_params.get("at"))))
         hearing = asyncio.create_task(self._hear(socket))
         try:
             await asyncio.wait((telling, hearing), return_when=asyncio.FIRST_COMPLETED)
         finally:
-            self._pages -= 1
+            self._hall.pages -= 1
             for task in (telling, hearing):
                 task.cancel()
             await asyncio.gather(telling, hearing, return_exceptions=True)
@@ -119,7 +118,7 @@ class _Desk:
                 await socket.close()
                 return
             await socket.send_text(
-                f'{{"at":{at},"pages":{self._pages},"updates":[{",".join(rows)}]}}'
+                f'{{"at":{at},"pages":{self._hall.pages},"updates":[{",".join(rows)}]}}'
             )
 
     async def _hear(self, socket: WebSocket) -> None:

@@ -29,6 +29,7 @@ class Hall:
 
     Attributes:
         is_over: there will be no more.
+        pages: that are open now.
         has_failed: there will be no more, though the run goes on.
     """
 
@@ -42,6 +43,7 @@ class Hall:
         self._more: asyncio.Event | None = None
         self.is_over = False
         self.has_failed = False
+        self.pages = 0
 
     def attach(self) -> None:
         """From the event loop: from now on pages can wait."""

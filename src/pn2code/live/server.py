@@ -12,6 +12,7 @@ import signal
 import socket
 import sys
 import threading
+import time
 import traceback
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -30,8 +31,10 @@ from pn2code.web.serving import serve
 
 _NICE = 10
 """Supervisor and robots go first."""
-LAST_S = 1.5
+LAST_S = 5.0
 """How long pages may take for the last update."""
+LEAST_S = 0.2
+"""A page that has just lost its connection may come back."""
 
 
 @frozen
@@ -98,9 +101,11 @@ class Server:
             self._rest()
         finally:
             self.hall.end()
-            timer = threading.Timer(LAST_S, end)
-            timer.daemon = True
-            timer.start()
+            until = time.monotonic() + LAST_S
+            time.sleep(LEAST_S)
+            while self.hall.pages and time.monotonic() < until:
+                time.sleep(0.02)
+            end()
 
 
 def main(arguments: list[str]) -> None:

@@ -13,7 +13,6 @@ from typing import Any
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
-from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.geometry.check import cells_of
 from pn2code.geometry.graph import CellGraph, explore_cell
@@ -29,6 +28,7 @@ from pn2code.timing.doings import NS, Doings
 from pn2code.timing.longest import Way, longest_inside
 from pn2code.timing.search import TIE, Search
 from pn2code.verdict.opened import OpenNet
+from pn2code.verdict.programs import partition_of
 from pn2code.verify.controller.running import NotModelledError
 from pn2code.verify.exploring.limits import Limits
 
@@ -88,7 +88,7 @@ def look(
             hint="give a cell.toml or its folder; a net alone is played by `pn2code simulate`",
         )
         return None
-    partition = divide(opened.flat, config, d)
+    partition = partition_of(opened, config, d)
     cells = cells_of(config, layout, d)
     if partition is None or cells is None:
         return None

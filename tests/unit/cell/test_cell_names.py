@@ -60,6 +60,8 @@ MISTAKES = {
                          "`robot1` is `3`", ""),
     "layout: a page": ("[primitives]", '[layouts.a.robots.robot1]\ninstance = "Supervisor"\n[primitives]',
                        "cell-key", "unknown key `instance`", "its page is the same in all layouts"),
+    "layout: no frame": ("[primitives]", "[frames.jig]\n[layouts.a.frames.jgi]\nx = 1.0\n[primitives]", "cell-key",
+        "layout `a` places an unknown frame `jgi`", "did you mean `jig`?"),
     "layout: description": ("[primitives]", "[layouts.a]\ndescription = 3\n[primitives]", "cell-value", "a text", ""),
     "robots: no table": ('[robots.robot1]\ninstance = "Robot"', "robots = 3", "cell-value", "`primitives.robots`", ""),
 }  # fmt: skip
