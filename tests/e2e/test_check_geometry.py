@@ -249,7 +249,7 @@ def test_what_is_not_known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
     text = changed(NET, "visit 0.0)", "visit (Real.fromInt (discrete (0, 1))))")
     (cell / "cell.cpn").write_bytes(cpn(text.replace("TAKE", "").replace("GIVE", "")))
     result = CliRunner().invoke(app, arguments)
-    assert "random numbers" in result.stdout and result.exit_code != 0
+    assert "error[unsupported-robot-expression]" in result.output and result.exit_code == 1
 
 
 def test_arms_that_nearly_touch(tmp_path: Path) -> None:

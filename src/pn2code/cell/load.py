@@ -175,11 +175,14 @@ def _apply_layout(
 
 
 def _check_frames(data: dict[str, Any], layouts: dict[str, Any], name: str, r: Tables) -> None:
-    """A frame is in all layouts, or its name is a mistake: the one that was meant stays where it is."""
+    """A layout changes frames of the cell; where the cell has none of its own, each is in all layouts.
+
+    Otherwise its name is a mistake, and the frame that was meant would stay where it is.
+    """
     known = _table(data.get("frames"))
-    others = [_table(_table(t).get("frames")) for t in layouts.values()]
+    others = [known] if known else [_table(_table(t).get("frames")) for t in layouts.values()]
     for frame in _table(layouts[name].get("frames")):
-        if frame not in known and not all(frame in other for other in others):
+        if not all(frame in other for other in others):
             r.d.error(
                 codes.CELL_KEY,
                 f"layout `{name}` places an unknown frame `{frame}`",
