@@ -126,9 +126,11 @@ class Cycle:
         limit = math.floor(seconds * NS)
         if self.repeats:
             return "no", "the cell can repeat something for as long as it likes"
+        if not self.why and not self.endings:
+            return "no", "no run comes to its end"
         if self.why or self.most is None:
             # What runs may do besides coming to their end is not known then, either, so `at_most` proves nothing.
-            return "unknown", self.why or "no run comes to the end"
+            return "unknown", self.why or "there is no longest cycle"
         if self.most - TIE > limit:
             return "no", f"a run takes {seconds_up(self.most)} s"
         if self.most + TIE > limit:

@@ -211,7 +211,7 @@ class _Look:
         """What runs may do that do not come to the end."""
         search = self.search
         yield from (f"a run may stop: {why}" for why in search.faults)
-        if len(search.stuck) > len(search.faults):
+        if search.stuck:
             yield "a run may come to where nothing more happens, before its end"
         for channel in self.graph.partition.channels:
             if any(marked.get(channel.place, 0) > 1 for marked in self.graph.marked):

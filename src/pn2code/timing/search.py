@@ -56,7 +56,7 @@ class Search:
     Args:
         why: why not all are known: "timed", "situations", "overtaken", or what the graph says; "": they are.
         seen_until: ns: all situations before this time have been seen.
-        stuck: situations in which nothing more happens, though the cell is not at its end.
+        stuck: situations in which nothing more happens, though the cell is not at its end, and no fault is why.
         faults: why the cell stops at some of them.
         halts: a script may find no transition that is possible, and stop the cell.
     """
@@ -269,13 +269,16 @@ class Search:
                 yield (self._number((target, after, left)), ns, element)
 
     def _stop(self, node: int, stands: tuple[Stand, ...], under_way: UnderWay) -> None:
-        """Nothing more happens, and the cell is not at its end."""
-        self.stuck.append(node)
+        """Nothing more happens, and the cell is not at its end: what somebody cannot do has stopped it, or nothing."""
+        why = ""
         for owner, element, _ in under_way:
             arm = self.doings.arm_of.get(owner)
             doing = self.doings.of(element, None if arm is None else stands[arm])
             if doing is not None and doing.fault:
-                self.faults.setdefault(doing.fault, node)
+                why = doing.fault
+                self.faults.setdefault(why, node)
+        if not why:
+            self.stuck.append(node)
 
     def _number(self, s: Situation) -> int:
         state, stands, under_way = s

@@ -22,6 +22,8 @@ def cycle(most: int | None, why: str = "", *others: str) -> Cycle:
         (cycle(8 * S, "", "a run may go on for ever"), "unknown"),
         (cycle(None, "the cell can come to more situations than were looked at"), "unknown"),
         (cycle(None), "unknown"),
+        (Cycle((), "", (), None, None, ("no run comes to its end",), 100), "no"),
+        (Cycle((), "a limit", (), None, None, (), 100), "unknown"),
     ],
 )
 def test_within_ten_seconds(found: Cycle, answer: str) -> None:
