@@ -158,7 +158,7 @@ class _Checker:
                     f"`primitives.{name}.frame` is missing",
                     at,
                     hint='add `frame = "world"` if the poses are absolute, `frame = "tool"` if they are increments '
-                    "in the tool frame",
+                    "in the tool frame, or the name of a frame of `[frames]`",
                 )
 
     # --- calls -------------------------------------------------------------------------------------

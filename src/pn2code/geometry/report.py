@@ -117,7 +117,8 @@ def _millimetres(value: float | None) -> str:
 
 def _bad_move(m: Move) -> Iterator[str]:
     yield ""
-    yield f"{_ANSWERS[m.answer]}: {m.robot}, `{m.transition}`: {m.command}"
+    what = f"`{m.transition}`: {m.command}" if m.transition else f"where it {m.command}"
+    yield f"{_ANSWERS[m.answer]}: {m.robot}, {what}"
     if m.begins:
         yield f"  from TCP pose {m.begins}"
     yield f"  {m.problem}"
