@@ -318,3 +318,11 @@ def test_a_reduced_net_that_the_engine_cannot_read_is_not_asked(tmp_path: Path) 
     assert set(values(lines)) == {"a", "b"}
     assert Tables((1 << 30,), ({0: 1},), ({},), {}, {}).fits()
     assert not Tables((0,), ({0: 1},), ({0: (1 << 30) + 1},), {}, {}).fits()
+
+
+def test_more_tokens_than_are_made(tmp_path: Path) -> None:
+    text = net(place("p", "", "6000000"), transition("t"), arc("p", "t"), kind="ptnet")
+    (tmp_path / "model.pnml").write_text(text)
+    done = CliRunner().invoke(app, ["contest", str(tmp_path), "ReachabilityDeadlock"])
+    assert (done.exit_code, done.stdout) == (0, "CANNOT_COMPUTE\n")
+    assert "the initial marking cannot be made" in done.stderr

@@ -21,6 +21,7 @@ from pn2code.contest.tables import Tables
 from pn2code.diagnostics import Diagnostics
 from pn2code.net import front
 from pn2code.semantics.evaluation.constants import compute
+from pn2code.semantics.game.token_game import GameError
 from pn2code.unfold.codes import UNFOLDING_FAULT
 from pn2code.unfold.unfold import unfold
 
@@ -60,6 +61,8 @@ def contest(
     except FormulaError as error:
         typer.echo(f"pn2code: {error}", err=True)
         raise typer.Exit(Exit.MODEL) from None
+    except GameError as problem:  # more tokens than are made
+        typer.echo(f"pn2code: the initial marking cannot be made: {problem.message}", err=True)
     if found is None:
         typer.echo(UNKNOWN)
         return
