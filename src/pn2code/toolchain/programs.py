@@ -315,14 +315,24 @@ class _Builder:
             with suppress(OSError):
                 os.utime(self.library)
             return True
+        # A build that is given up leaves what it has compiled to the next one, which gets further.
+        done_before = self.folder / f"{_BUILDS}{self.library.stem}"
+        done_before.mkdir(mode=0o700, exist_ok=True)
+        try:
+            is_made = self._made(room, done_before, d)
+        finally:
+            with suppress(OSError):
+                done_before.rmdir()  # where there is nothing in it
+        if is_made:
+            shutil.rmtree(done_before, ignore_errors=True)
+        return is_made
+
+    def _made(self, room: Path, done_before: Path, d: Diagnostics) -> bool:
+        """The library, of objects that were there before and of others."""
         sources = [f.path for f in self.runtime if f.path.endswith(".c")]
         objects = [f"{Path(s).stem}.o" for s in sources]
         # Large ones first, so that all processors are busy to the end.
         sources.sort(key=lambda name: -(room / name).stat().st_size)
-
-        # A build that is given up leaves what it has compiled to the next one, which gets further.
-        done_before = self.folder / f"{_BUILDS}{self.library.stem}"
-        done_before.mkdir(mode=0o700, exist_ok=True)
 
         def compiled(source: str) -> bool:
             made, kept = (where / f"{Path(source).stem}.o" for where in (room, done_before))
@@ -332,9 +342,8 @@ class _Builder:
             own = self.host.own if self._is_own(source) else ()
             if not self._compiler(room, *own, "-Iruntime/include", "-c", source, d=d):
                 return False
-            with suppress(
-                OSError
-            ):  # no room, no links on this disk, or another process was as quick
+            # Not where there is no room, or no links on this disk, or another process was as quick.
+            with suppress(OSError):
                 os.link(made, kept)
             return True
 
@@ -353,7 +362,6 @@ class _Builder:
             )
             return False
         made.replace(self.library)
-        shutil.rmtree(done_before, ignore_errors=True)
         return True
 
     def interrupted(self) -> bool:
