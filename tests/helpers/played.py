@@ -182,6 +182,7 @@ class Talk:
         self._texts: list[str] = []
         self._part = ""
         self.is_closed = False
+        self._why = ""
         self._socket = socket.create_connection(("127.0.0.1", server.port), timeout=PATIENCE_S)
         self._connection = WSConnection(ConnectionType.CLIENT)
         host = headers.get("host", f"127.0.0.1:{server.port}")
@@ -213,6 +214,8 @@ class Talk:
         if time.monotonic() > until:
             raise TimeoutError(f"not heard in time; heard was {self.heard[-3:]}")
         while not self._texts:
+            if self.is_closed:
+                raise ConnectionError(self._why)
             data = self._socket.recv(1 << 16)
             self._connection.receive_data(data or None)
             for event in self._connection.events():
@@ -225,13 +228,15 @@ class Talk:
                             self._texts.append(self._part)
                             self._part = ""
                     case CloseConnection():
-                        self.is_closed = True
-                        raise ConnectionError(event.reason or str(event.code))
+                        self.is_closed = (
+                            True  # after what has been said before, maybe in the same breath
+                        )
+                        self._why = event.reason or str(event.code)
                     case Ping():
                         self._send(event.response())
                     case AcceptConnection() | Message():
                         pass
-            if not data and not self._texts:
+            if not data and not self._texts and not self.is_closed:
                 raise ConnectionError("the server has gone")
         return dict(json.loads(self._texts.pop(0)))
 
