@@ -526,15 +526,7 @@ static void arena_json(const ex_run_t *run, const ex_bounds_t *bounds, FILE *out
 /* How many colours of a place's multi-set bounds are printed: all of those that `--whole` names. */
 static uint64_t most_printed(const ex_options_t *options, uint32_t place)
 {
-    const char *at = options->whole;
-    while ((at != NULL) && (*at != '\0')) {
-        char *end = NULL;
-        if (strtoul(at, &end, 10) == place) {
-            return UINT64_MAX;
-        }
-        at = (*end == ',') ? (end + 1) : NULL;
-    }
-    return options->multiset_limit;
+    return ex_is_listed(options->whole, place) ? UINT64_MAX : options->multiset_limit;
 }
 
 /* For each place, how many multi-sets it ever held; 0 for a packed one, whose colours are few. */

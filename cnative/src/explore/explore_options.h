@@ -55,6 +55,9 @@ typedef struct ex_options {
     uint64_t parent; /* process that started it, and without which it is to end; 0: none */
 } ex_options_t;
 
+/* Whether a number is in an option that is numbers with commas between; NULL has none. */
+bool ex_is_listed(const char *list, uint32_t number);
+
 /* Why it ended, in the order of importance. */
 typedef enum ex_why {
     EX_COMPLETE,

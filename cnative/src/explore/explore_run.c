@@ -7,10 +7,24 @@
 
 #include "explore_report.h"
 
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 
 #include "pn/pn_num.h"
+
+bool ex_is_listed(const char *list, uint32_t number)
+{
+    const char *at = list;
+    while ((at != NULL) && (*at != '\0')) {
+        char *end = NULL;
+        if ((strtoul(at, &end, 10) == number) && (end != at)) {
+            return true;
+        }
+        at = (*end == ',') ? (end + 1) : NULL;
+    }
+    return false;
+}
 
 double ex_clock(void)
 {

@@ -32,23 +32,6 @@ struct ex_bindings {
     char buffer[TEXT_SIZE];
 };
 
-/* Reads numbers with commas between. */
-static void read_wanted(const char *list, bool *is_wanted)
-{
-    const char *at = list;
-    while (*at != '\0') {
-        char *end = NULL;
-        const unsigned long number = strtoul(at, &end, 10);
-        if (end == at) {
-            return;
-        }
-        if (number < (unsigned long)pn_net.transition_count) {
-            is_wanted[number] = true;
-        }
-        at = (*end == ',') ? (end + 1) : end;
-    }
-}
-
 static uint32_t slot_of(uint32_t transition, const char *text)
 {
     uint32_t hash = 2166136261U ^ transition; /* FNV-1a */
@@ -106,8 +89,8 @@ void ex_bindings(ex_run_t *run)
     run->bindings = all;
     all->is_wanted = calloc((size_t)pn_net.transition_count + 1U, sizeof *all->is_wanted);
     all->is_fine = all->is_wanted != NULL;
-    if (all->is_fine) {
-        read_wanted(run->options.bindings, all->is_wanted);
+    for (uint32_t t = 0U; all->is_fine && (t < pn_net.transition_count); t++) {
+        all->is_wanted[t] = ex_is_listed(run->options.bindings, t);
     }
     for (uint64_t node = 0U; all->is_fine && (node < graph->nodes); node++) {
         ex_key_t key;

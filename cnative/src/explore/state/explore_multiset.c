@@ -134,18 +134,12 @@ static bool intern_timed(ex_worker_t *worker, uint32_t place, uint32_t kind, siz
 
 bool ex_heaps_make(ex_run_t *run)
 {
-    const char *at = run->options.heaps;
-    if (at == NULL) {
+    if (run->options.heaps == NULL) {
         return true;
     }
     run->codec->is_heap = ex_table(&run->memory, pn_net.place_count, sizeof(bool));
-    while ((run->codec->is_heap != NULL) && (*at != '\0')) {
-        char *end = NULL;
-        const unsigned long place = strtoul(at, &end, 10);
-        if ((end != at) && (place < pn_net.place_count)) {
-            run->codec->is_heap[place] = true;
-        }
-        at = (*end == ',') ? (end + 1) : "";
+    for (uint32_t place = 0U; (run->codec->is_heap != NULL) && (place < pn_net.place_count); place++) {
+        run->codec->is_heap[place] = ex_is_listed(run->options.heaps, place);
     }
     return run->codec->is_heap != NULL;
 }
