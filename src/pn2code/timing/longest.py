@@ -12,6 +12,7 @@ from __future__ import annotations
 import heapq
 from collections.abc import Callable, Collection, Sequence
 
+from pn2code.base.components import components
 from pn2code.base.frozen import frozen
 
 Arc = tuple[int, int, int]
@@ -66,17 +67,21 @@ class Ways:
         self.successors, self.ends = successors, ends
         self.leading = _leading(successors, ends)
         """by node: whether an end can be reached"""
-        self._component, self._order = components(successors)
+        self._members = list(components(range(len(successors)), self._after))[::-1]
+        """the components, in an order in which arcs lead forwards"""
+        self._component = [0] * len(successors)
+        for number, members in enumerate(self._members):
+            for node in members:
+                self._component[node] = number
         self.cycle = self._cycle_that_takes_time()
+
+    def _after(self, node: int) -> list[int]:
+        return [target for target, *_ in self.successors[node]]
 
     def never_end(self) -> bool:
         """Whether a run may go round for ever, with or without time."""
-        sizes = [0] * (max(self._component, default=-1) + 1)
-        for c in self._component:
-            sizes[c] += 1
-        return any(
-            sizes[self._component[n]] > 1 or any(target == n for target, *_ in arcs)
-            for n, arcs in enumerate(self.successors)
+        return any(len(members) > 1 for members in self._members) or any(
+            node in self._after(node) for node in range(len(self.successors))
         )
 
     def longest(self, ends: Collection[int] | None = None) -> Way | None:
@@ -89,13 +94,10 @@ class Ways:
             return None
         best: dict[int, int] = {self._component[0]: 0}
         entry: dict[int, tuple[int, int, int]] = {}
-        members: dict[int, list[int]] = {}
-        for n, c in enumerate(self._component):
-            members.setdefault(c, []).append(n)
-        for c in self._order:
+        for c, members in enumerate(self._members):
             if c not in best:
                 continue
-            for node in members[c]:
+            for node in sorted(members):
                 for target, ns, mark in self.successors[node]:
                     other = self._component[target]
                     if other == c or not self.leading[target]:
@@ -201,48 +203,3 @@ def _leading(successors: Sequence[Sequence[Arc]], ends: Collection[int]) -> list
                 out[node] = True
                 todo.append(node)
     return out
-
-
-def components(successors: Sequence[Sequence[Arc]]) -> tuple[list[int], list[int]]:
-    """The strongly connected component of each node, and the components in an order in which arcs lead forwards."""
-    count = len(successors)
-    number = [-1] * count
-    low = [0] * count
-    component = [-1] * count
-    stack: list[int] = []
-    is_on = [False] * count
-    found = seen = 0
-    for root in range(count):
-        if number[root] >= 0:
-            continue
-        work = [(root, 0)]
-        while work:
-            node, i = work.pop()
-            if i == 0:
-                number[node] = low[node] = seen
-                seen += 1
-                stack.append(node)
-                is_on[node] = True
-            arcs = successors[node]
-            while i < len(arcs):
-                target = arcs[i][0]
-                i += 1
-                if number[target] < 0:
-                    work += [(node, i), (target, 0)]
-                    break
-                if is_on[target]:
-                    low[node] = min(low[node], number[target])
-            else:
-                if low[node] == number[node]:
-                    while True:
-                        top = stack.pop()
-                        is_on[top] = False
-                        component[top] = found
-                        if top == node:
-                            break
-                    found += 1
-                if work:
-                    parent = work[-1][0]
-                    low[parent] = min(low[parent], low[node])
-                continue
-    return component, list(range(found - 1, -1, -1))

@@ -7,7 +7,7 @@ from random import Random
 
 import pytest
 
-from pn2code.timing.longest import Arc, Ways, components, longest_inside, shortest
+from pn2code.timing.longest import Arc, Ways, longest_inside, shortest
 
 
 def acyclic(r: Random, count: int) -> list[list[Arc]]:
@@ -75,33 +75,6 @@ def test_a_weight_counts_only_what_is_asked() -> None:
     graph: list[list[Arc]] = [[(1, 5, 1), (2, 1, 2)], [(3, 1, 2)], [(3, 9, 1)], []]
     found = shortest(graph, {3}, lambda ns, mark: ns if mark == 2 else 0)
     assert found is not None and found.ns == 1
-
-
-@pytest.mark.parametrize("seed", range(20))
-def test_components_are_those_of_mutual_reach(seed: int) -> None:
-    r = Random(seed)
-    graph: list[list[Arc]] = [
-        [(r.randrange(8), 0, 0) for _ in range(r.randint(0, 2))] for _ in range(8)
-    ]
-    component, order = components(graph)
-    place = {c: i for i, c in enumerate(order)}
-
-    def reach(node: int) -> set[int]:
-        seen, todo = {node}, [node]
-        while todo:
-            for target, *_ in graph[todo.pop()]:
-                if target not in seen:
-                    seen.add(target)
-                    todo.append(target)
-        return seen
-
-    reached = [reach(n) for n in range(8)]
-    for a in range(8):
-        for b in range(8):
-            together = b in reached[a] and a in reached[b]
-            assert (component[a] == component[b]) == together
-        for target, *_ in graph[a]:
-            assert place[component[a]] <= place[component[target]]
 
 
 def test_how_long_one_can_be_inside() -> None:

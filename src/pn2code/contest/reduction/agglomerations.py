@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pn2code.base.components import components
 from pn2code.contest.reduction.net import Goal, Net
 
 MOST_PAIRS = 64
@@ -139,49 +140,10 @@ def free_moves(net: Net) -> int:
             if n == m == 1 and p != q and net.visible.isdisjoint((p, q)):
                 moves.setdefault(p, []).append(q)
     merged = 0
-    for group in _rings(moves):
-        _merge(net, group)
-        merged += len(group) - 1
+    for ring in [c for c in components(moves, lambda p: moves.get(p, ())) if len(c) > 1]:
+        _merge(net, ring)
+        merged += len(ring) - 1
     return merged
-
-
-def _rings(moves: dict[int, list[int]]) -> list[list[int]]:
-    """The strongly connected components with several places (Tarjan, without recursion)."""
-    index: dict[int, int] = {}
-    low: dict[int, int] = {}
-    waiting: list[int] = []
-    is_waiting: set[int] = set()
-    found: list[list[int]] = []
-    for root in moves:
-        if root in index:
-            continue
-        stack = [(root, iter(moves[root]))]
-        index[root] = low[root] = len(index)
-        waiting.append(root)
-        is_waiting.add(root)
-        while stack:
-            p, rest = stack[-1]
-            for q in rest:
-                if q not in index:
-                    index[q] = low[q] = len(index)
-                    waiting.append(q)
-                    is_waiting.add(q)
-                    stack.append((q, iter(moves.get(q, ()))))
-                    break
-                if q in is_waiting:
-                    low[p] = min(low[p], index[q])
-            else:
-                stack.pop()
-                if stack:
-                    low[stack[-1][0]] = min(low[stack[-1][0]], low[p])
-                if low[p] == index[p]:
-                    at = waiting.index(p)
-                    ring = waiting[at:]
-                    del waiting[at:]
-                    is_waiting.difference_update(ring)
-                    if len(ring) > 1:
-                        found.append(ring)
-    return found
 
 
 def _merge(net: Net, ring: list[int]) -> None:
