@@ -67,6 +67,11 @@ def seconds_option(help_text: str) -> Any:
     return typer.Option(metavar="S", min=0.0, callback=finite, help=help_text)
 
 
+def port_option(help_text: str) -> Any:
+    """The option `--port P` of a page on this machine."""
+    return typer.Option("--port", metavar="P", min=0, max=65535, help=help_text)
+
+
 def check_writable(path: Path | None, option: str) -> None:
     """Refuses a file that could not be written in the end, before any work is done for it; None: there is none.
 

@@ -18,6 +18,7 @@ from pn2code.cli.options import (
     SeedOption,
     SetOption,
     parse_values,
+    port_option,
     print_diagnostics,
     stop,
 )
@@ -45,14 +46,7 @@ EPILOG = """Examples:
 def play(
     net: Annotated[Path, typer.Argument(help="A .cpn or .pnml file, a cell.toml, or a folder.")],
     port: Annotated[
-        int,
-        typer.Option(
-            "--port",
-            metavar="P",
-            min=0,
-            max=65535,
-            help="The port of the page on this machine. 0 is any that is free.",
-        ),
+        int, port_option("The port of the page on this machine. 0 is any that is free.")
     ] = 0,
     trace: Annotated[
         Path | None,

@@ -20,11 +20,12 @@ from pn2code.cli.options import (
     UncheckedOption,
     finite,
     parse_values,
+    port_option,
     print_but_known,
     stop,
 )
+from pn2code.cli.run_trouble import trouble_told
 from pn2code.diagnostics import Diagnostics
-from pn2code.emission.write import OutputFolderError
 
 if TYPE_CHECKING:
     from pn2code.live.view import LiveView
@@ -95,14 +96,7 @@ def run(
         ),
     ] = False,
     port: Annotated[
-        int,
-        typer.Option(
-            "--port",
-            metavar="P",
-            min=0,
-            max=65535,
-            help="With --live, the port of the page. 0 is any that is free.",
-        ),
+        int, port_option("With --live, the port of the page. 0 is any that is free.")
     ] = 0,
     seed: Annotated[
         int | None,
@@ -150,7 +144,6 @@ def run(
     from pn2code.replay.motion import Motion
     from pn2code.report import summary as summaries
     from pn2code.report.album import Album
-    from pn2code.robot.backend import BackendUnavailableError
     from pn2code.run.cell import RunOptions, run_cell
     from pn2code.run.engine import Observer
     from pn2code.run.progress import Progress
@@ -205,7 +198,7 @@ def run(
             observers.append(album)
         if view is not None:
             observers.append(view)
-        try:
+        with trouble_told(out):
             result = run_cell(
                 cell,
                 options,
@@ -216,13 +209,6 @@ def run(
             )
             if view is not None and view.has_failed:
                 typer.echo("pn2code: the live page has ended before the run did", err=True)
-        except (OutputFolderError, BackendUnavailableError) as problem:
-            typer.echo(f"pn2code: {problem}", err=True)
-            raise typer.Exit(Exit.USAGE) from None
-        except OSError as problem:
-            where = f" `{problem.filename}`" if problem.filename else f" `{out}`"
-            typer.echo(f"pn2code: cannot work with{where}: {os_reason(problem)}", err=True)
-            raise typer.Exit(Exit.USAGE) from None
         if result is not None and pictures:
             progress.say("drawing charts")
             from pn2code.report import charts

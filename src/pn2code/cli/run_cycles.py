@@ -8,11 +8,10 @@ from typing import TYPE_CHECKING
 
 import typer
 
-from pn2code.base.os_reason import os_reason
 from pn2code.base.progress_line import Line
 from pn2code.cli.options import Exit, Format, print_but_known, stop
+from pn2code.cli.run_trouble import trouble_told
 from pn2code.diagnostics import Diagnostics
-from pn2code.emission.write import OutputFolderError
 
 if TYPE_CHECKING:
     from pn2code.run.cell import RunOptions
@@ -38,11 +37,10 @@ def rates(texts: list[str]) -> dict[str, Rate]:
 
 def run_many(cell: Path, options: RunOptions, plan: Plan, form: Format) -> None:
     """Runs a cell so often, prints what came of it, and leaves with code 1 if a run did not come to its end."""
-    from pn2code.robot.backend import BackendUnavailableError
     from pn2code.run.cycles import run_cycles, table
 
     d = Diagnostics()
-    try:
+    with trouble_told(options.out):
         with Line(shown=True, plain=False, first="generating and building") as line:
             found = run_cycles(cell, options, plan, d, line.say)
         if found is None:
@@ -51,13 +49,6 @@ def run_many(cell: Path, options: RunOptions, plan: Plan, form: Format) -> None:
         (options.out / "cycles.tsv").write_text(lines, encoding="utf-8")
         text = json.dumps(found.row(), indent=1) + "\n"
         (options.out / "cycles.json").write_text(text, encoding="utf-8")
-    except (OutputFolderError, BackendUnavailableError) as problem:
-        typer.echo(f"pn2code: {problem}", err=True)
-        raise typer.Exit(Exit.USAGE) from None
-    except OSError as problem:
-        where = f" `{problem.filename}`" if problem.filename else f" `{options.out}`"
-        typer.echo(f"pn2code: cannot work with{where}: {os_reason(problem)}", err=True)
-        raise typer.Exit(Exit.USAGE) from None
     print_but_known(d, cell, form)
     for row in _lines(found, options.out):
         typer.echo(row)
