@@ -21,7 +21,7 @@ from typing import Any
 
 import pn2code.robot.commands as commands
 from pn2code.base.frozen import frozen
-from pn2code.cell.config import Primitive
+from pn2code.cell.config import GOING, Primitive
 from pn2code.cell.reach import Reach
 from pn2code.ml.core.types import UNIT, TFun
 from pn2code.robot.approach import pose_before
@@ -99,8 +99,8 @@ def told(primitive: Primitive, argument: Any) -> tuple[commands.Command, ...]:
     """What the robot is told by a call, in order: poses in m and rad."""
     speed = primitive.speed
     takes = 2 if primitive.command == "move_circular" else 1
-    values = argument if primitive.command in _MOVES and len(argument) <= 3 else (argument,)
-    if primitive.command in _MOVES and len(values) > takes:
+    values = argument if primitive.command in GOING and len(argument) <= 3 else (argument,)
+    if primitive.command in GOING and len(values) > takes:
         *values, speed = values
     # The factors are those of scripts (`pn2code.tdl`), so that speeds are equal to the last digit.
     fraction = 1.0 if speed is None else speed * 0.01
@@ -137,10 +137,6 @@ def told(primitive: Primitive, argument: Any) -> tuple[commands.Command, ...]:
         case "wait":
             seconds = argument if isinstance(argument, int | float) else primitive.duration_s
             return (commands.Wait(float(seconds)),)
-
-
-_MOVES = frozenset({"move_joint", "move_axes", "move_linear", "move_circular"})
-"""Commands whose functions may take a speed beside what they take."""
 
 
 def _departure(

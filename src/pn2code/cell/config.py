@@ -6,26 +6,21 @@ import hashlib
 import json
 from dataclasses import field
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import ChannelKind
 from pn2code.cell.toml_file import Locator
-from pn2code.cell_file.logic import PRIMITIVE
+from pn2code.cell_file.logic import LED, PRIMITIVE
+from pn2code.cell_file.logic import CommandName as CommandName
 from pn2code.diagnostics import Origin
 from pn2code.robot.commands import Handling
 
-CommandName = Literal[
-    "move_joint",
-    "move_axes",
-    "move_linear",
-    "move_circular",
-    "move_home",
-    "measure",
-    "tool",
-    "wait",
-]
 COMMANDS = PRIMITIVE["command"].words
+GOING: frozenset[CommandName] = frozenset({"move_joint", "move_axes", *LED})
+"""Commands that say where the arm goes; their functions may take a speed beside it."""
+MOTIONS: frozenset[CommandName] = GOING | {"move_home", "measure"}
+"""Commands on which an arm moves."""
 
 
 @frozen
@@ -61,7 +56,7 @@ class Primitive:
     @property
     def is_linear(self) -> bool:
         """Whether the TCP is led, so that speeds are those of the TCP."""
-        return self.command in ("move_linear", "move_circular")
+        return self.command in LED
 
 
 @frozen

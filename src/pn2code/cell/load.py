@@ -36,6 +36,7 @@ from pn2code.cell_file.logic import (
     CHANNEL,
     DEVICE,
     INPUT,
+    LED,
     NET,
     PRIMITIVE,
     REPORT,
@@ -354,7 +355,7 @@ def _primitives(r: Tables, data: dict[str, Any]) -> dict[str, Primitive]:
         if command not in COMMANDS:
             continue
         own = PRIMITIVE.names(command)
-        is_linear = command in ("move_linear", "move_circular")
+        is_linear = command in LED
         tool = command == "tool"
         frame = _frame(r, data, table, at, command) if "frame" in own else ""
         action = r.get(table, at, PRIMITIVE["action"], "") if tool else ""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal, get_args
+
 from pn2code.cell_file.keys import Key, Section
 
 NET = Section(
@@ -125,6 +127,18 @@ _EFFECT = (
     "At its end the action {} a part of this kind, a name of `[parts]` "
     "([Parts](robots.md#parts-that-are-carried))."
 )
+CommandName = Literal[
+    "move_joint",
+    "move_axes",
+    "move_linear",
+    "move_circular",
+    "move_home",
+    "measure",
+    "tool",
+    "wait",
+]
+LED: tuple[CommandName, ...] = ("move_linear", "move_circular")
+"""Commands on which the TCP is led along a line or an arc, so that speeds are those of the TCP."""
 PRIMITIVE = Section(
     (
         Key(
@@ -133,16 +147,7 @@ PRIMITIVE = Section(
             "What the robot does where the net calls the function. See *Primitives*.",
             "a robot command",
             required=True,
-            words=(
-                "move_joint",
-                "move_axes",
-                "move_linear",
-                "move_circular",
-                "move_home",
-                "measure",
-                "tool",
-                "wait",
-            ),
+            words=get_args(CommandName),
         ),
         Key(
             "frame",
@@ -150,7 +155,7 @@ PRIMITIVE = Section(
             'Whether poses are absolute (`"world"`, or a name of `[frames]`) or increments in the tool frame '
             '(`"tool"`). A function that the net calls needs it.',
             '`"world"`, `"tool"` or a name of `[frames]`',
-            only=("move_linear", "move_circular"),
+            only=LED,
         ),
         Key(
             "frame",
@@ -168,7 +173,7 @@ PRIMITIVE = Section(
             unit="m/s",
             low=0.0,
             above=True,
-            only=("move_linear", "move_circular"),
+            only=LED,
         ),
         Key(
             "speed",

@@ -19,7 +19,7 @@ from itertools import islice
 from typing import Any, Protocol
 
 from pn2code.base.frozen import frozen, record
-from pn2code.cell.config import Primitive
+from pn2code.cell.config import GOING, Primitive
 from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.cell.reach import Reach
 from pn2code.ml.core import terms as core
@@ -38,7 +38,6 @@ MOST_WAYS = 20_000
 """Ways to take tokens that are tried for one transition."""
 MOST_COPIES = 100
 """Of one colour; a page of a robot that takes more at once is no program (`robot_scripts.machine`)."""
-_MOVES = frozenset({"move_joint", "move_axes", "move_linear", "move_circular"})
 _OUTSIDE = frozenset({Effect.DRAW, Effect.LOOK, Effect.READ, Effect.COUNT})
 
 
@@ -116,7 +115,7 @@ class Poses:
         moves = {
             symbols[name].uid
             for name, p in primitives.items()
-            if name in symbols and p.command in _MOVES and p.frame != "tool"
+            if name in symbols and p.command in GOING and p.frame != "tool"
         }
         self.moving = tuple(t for t in net.transitions if self._is_moving(t, moves))
         self.places = tuple(

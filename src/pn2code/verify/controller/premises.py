@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from types import MappingProxyType
 
 from pn2code.base.frozen import frozen
-from pn2code.cell.config import CellConfig
+from pn2code.cell.config import MOTIONS, CellConfig
 from pn2code.cell.partition import OwnerKind, Partition
 from pn2code.cell.reach import Reach
 from pn2code.properties import meaning as m
@@ -41,9 +41,6 @@ _PARTS = (
 IN_TURNS = (
     "the programs are looked at in turns, so that each run is seen in one of its orders: the states are those of the "
     "reduced space (docs/reductions.md)"
-)
-_MOTIONS = frozenset(
-    {"move_joint", "move_axes", "move_linear", "move_circular", "move_home", "measure"}
 )
 
 _SENSORS = "each possible value of a sensor occurs from time to time"
@@ -95,7 +92,7 @@ class Premises:
             tuple(states),
             partition.net.timed or bool(used),
             bool(config.sensors),
-            moves=not _MOTIONS.isdisjoint(used.values()),
+            moves=not MOTIONS.isdisjoint(used.values()),
             arcs="move_circular" in used.values(),
             parts=any(config.primitives[name].handling for name in used),
         )
