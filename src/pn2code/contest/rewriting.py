@@ -89,10 +89,8 @@ def branching(f: Formula, known: Known, wanted: bool = True) -> Formula:
         case Op("not", (part,)):
             return branching(part, known, not wanted)
         case Op("and" | "or" as operator, parts):
-            return joined(
-                operator if wanted else _opposite(operator),
-                [branching(p, known, wanted) for p in parts],
-            )
+            simpler = [branching(p, known, wanted) for p in parts]
+            return joined(operator if wanted else _opposite(operator), simpler)
         case Op("A" | "E" as quantifier, (Op("U", (p, q)),)):
             made = _until(quantifier, branching(p, known), branching(q, known))
             if wanted or _is_path(made, "AE", "U"):
@@ -229,11 +227,8 @@ def _linear(f: Formula, known: Known, wanted: bool) -> Formula:
         case Op("not", (part,)):
             return _linear(part, known, not wanted)
         case Op("and" | "or" as operator, parts):
-            made = joined(
-                operator if wanted else _opposite(operator),
-                [_linear(p, known, wanted) for p in parts],
-            )
-            return _pulled(made)
+            simpler = [_linear(p, known, wanted) for p in parts]
+            return _pulled(joined(operator if wanted else _opposite(operator), simpler))
         case Op("U", (p, q)):
             made = _linear_until(_linear(p, known, True), _linear(q, known, True))
             if wanted:
