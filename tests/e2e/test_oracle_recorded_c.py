@@ -58,6 +58,13 @@ FOUND = [
     ("Real.toString (Math.pow (1.0, 1.0 / 0.0))", "nan"),
     ('(ignore (hd (UNIT.all ())); "unit")', "unit"),
     ('String.concatWith "," (map Int.toString (List.mapi (fn (i, x) => i * x) [5, 6, 7]))', "0,6,14"),
+    ('Format.format "%05d;%+08x;%6s;%b%%" [Format.INT ~3, Format.INT 255, Format.STR "ab", Format.BOOL true]',
+     "-0003;+00000ff;    ab;true%"),
+    ('Format.format "%8.3f;%.0f;%e;%g;%g" (map Format.REAL [9.9996, 2.5, 0.00012, 1E20, 100.0])',
+     "  10.000;3;1.200000e-04;1e20;100"),
+    ('(Format.format "%d" [Format.STR "x"]) handle Format.BadFmtList => "wrong"', "wrong"),
+    ('case Scan.sscanf "%s x %d" " ab x-12" of SOME [Format.STR s, Format.INT n] => s ^ Int.toString n | _ => "no"',
+     "ab~12"),
     ('String.concat (map Atom.toString (AtomSet.listItems (AtomSet.fromList (map Atom.atom ["zebra", "a", "c"]))))',
      "aczebra"),
 ]  # fmt: skip

@@ -265,9 +265,9 @@ Replications Comms CPN'Sim CPN'NetCapture CPN'Monitors CPN'Env CPN'Settings CPN'
 
 UTILITIES = frozenset(
     {
-        "ArrayQSort", "AtomTable", "Base64", "BitArray", "CharMap", "DynamicArray", "Format", "GetOpt",
+        "ArrayQSort", "AtomTable", "Base64", "BitArray", "CharMap", "DynamicArray", "GetOpt",
         "IOUtil", "IntHashTable", "ParserComb", "PathUtil", "PrimeSizes", "PropList", "Rand",
-        "RealOrderStats", "Scan", "SplayTree", "TimeLimit", "URef", "UnivariateStats", "WordHashTable",
+        "RealOrderStats", "SplayTree", "TimeLimit", "URef", "UnivariateStats", "WordHashTable",
     }
 )  # fmt: skip
 """Structures of the utility library of SML/NJ that are not there; the others are in `library`."""
