@@ -63,6 +63,8 @@ FOUND = [
     ('Format.format "%8.3f;%.0f;%e;%g;%g" (map Format.REAL [9.9996, 2.5, 0.00012, 1E20, 100.0])',
      "  10.000;3;1.200000e-04;1e20;100"),
     ('(Format.format "%d" [Format.STR "x"]) handle Format.BadFmtList => "wrong"', "wrong"),
+    ('CharVector.tabulate (3, fn i => chr (65 + i)) ^ CharVector.mapi (fn (i, c) => chr (ord c + i)) "aaa"', "ABCabc"),
+    ('case Word8.fromInt 257 of 0w1 => Word8.toString 0wxAB ^ str (Byte.byteToChar 0wx41) | _ => "no"', "ABA"),
     ('case Scan.sscanf "%s x %d" " ab x-12" of SOME [Format.STR s, Format.INT n] => s ^ Int.toString n | _ => "no"',
      "ab~12"),
     ('String.concat (map Atom.toString (AtomSet.listItems (AtomSet.fromList (map Atom.atom ["zebra", "a", "c"]))))',

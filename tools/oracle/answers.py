@@ -51,6 +51,7 @@ _NAMES = {
     "Int.int": "int", "Real.real": "real", "String.string": "string", "Word.word": "word", "CPN'timed": "timed",
     "Word31.word": "word", "Position.int": "int", "Substring.substring": "substring", "IEEEReal.real_order": "order",
     "Order.order": "order", "Word8Vector.elem": "Word8.word", "FmtFields.fmt_item": "fmt_item",
+    "CharVector.vector": "string", "CharVector.elem": "char",
 }  # fmt: skip
 _BASIC = {
     "Int": "int",

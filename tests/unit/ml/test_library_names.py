@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from helpers.netbuilder import flat
+from helpers.netbuilder import diagnose, flat
 from pn2code.semantics.game.report import places
 from pn2code.semantics.game.token_game import Game
 
@@ -65,3 +65,9 @@ def test_two_lists_of_different_types() -> None:
         value='concat (ListPair.mapPartial some ([1, 2, 3], ["a", "b", "c"]))',
     )
     assert marking(text) == '1`"bc"'
+
+
+@pytest.mark.parametrize("literal", ["0wx80000000", "0wx100 : Word8.word"])
+def test_words_that_are_too_large(literal: str) -> None:
+    text = COLOURS.format(declarations=f"val w = {literal};", colset="INT", value="1")
+    assert [e.code for e in diagnose(text).errors] == ["literal-too-large"]

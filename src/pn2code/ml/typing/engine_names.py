@@ -50,7 +50,6 @@ BinIO.StreamIO : canInput closeIn closeOut endOfStream filePosIn filePosOut flus
 BinIO.StreamIO : getReader getWriter input input1 inputAll inputN mkInstream mkOutstream output output1
 BinIO.StreamIO : setBufferMode setPosOut
 Byte : packString unpackString unpackStringVec
-CharVector : append prepend toList
 ConnManagementLayer : DupConnNameExn ElementMissingExn canreceive
 IO : TerminatedStream
 LargeReal : class compareReal fromDecimal toDecimal
