@@ -680,7 +680,7 @@ class Elaborator:
         for name in library.mentioned(text.text):
             bare = name.removeprefix("more/")
             if top is not library_top:
-                own = (top.structures, top.functors, top.signatures)
+                own = (top.structures, top.functors, top.signatures, self._ctx.colsets)
                 if name in self._from_library or any(bare in known for known in own):
                     continue
                 self._from_library.add(name)
@@ -692,14 +692,14 @@ class Elaborator:
 
     def _declare_in_library(self, name: str) -> None:
         """Declares something of the library where only the library is in scope."""
-        before = self._ctx.top, self._ctx.scope, self._fixities
+        before = self._ctx.top, self._ctx.scope, self._ctx.colsets, self._fixities
         self._ctx.top = self._ctx.scope = self._library_top
-        self._fixities = dict(INFIX)
+        self._ctx.colsets, self._fixities = {}, dict(INFIX)
         try:
             origin = Origin(f"library/{name}.sml", 1, 1)
             self.declarations(SourceText(library.declaration(name), origin))
         finally:
-            self._ctx.top, self._ctx.scope, self._fixities = before
+            self._ctx.top, self._ctx.scope, self._ctx.colsets, self._fixities = before
 
     def _border(self, text: SourceText, work: Callable[[], T]) -> T | None:
         """Runs one text's elaboration; leaves a clean state behind, and reports texts beyond Python's stack."""

@@ -71,3 +71,14 @@ def test_two_lists_of_different_types() -> None:
 def test_words_that_are_too_large(literal: str) -> None:
     text = COLOURS.format(declarations=f"val w = {literal};", colset="INT", value="1")
     assert [e.code for e in diagnose(text).errors] == ["literal-too-large"]
+
+
+def test_colour_sets_with_names_of_the_library() -> None:
+    """They are the net's where the net names them, and not in the library's texts."""
+    text = COLOURS.format(
+        declarations="colset Fifo = list INT;\n  colset Atom = with H | He;\n  colset Format = list INT;\n"
+        "  fun q () = let val q = Queue.mkQueue () in Queue.enqueue (q, 4); Queue.length q end;",
+        colset="Format",
+        value="Format.base ^^ [q (), AtomMap.numItems AtomMap.empty] ^^ Fifo.base ^^ map Atom.ord [He]",
+    )
+    assert marking(text) == "1`[1,0,1]"
