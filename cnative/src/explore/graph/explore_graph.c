@@ -205,7 +205,8 @@ bool ex_graph(ex_run_t *run)
     graph->cut = is_whole ? NULL : ex_alloc(&run->memory, ((nodes / 64U) + 1U) * sizeof *graph->cut);
     graph->late = pn_net.timed ? ex_alloc(&run->memory, ((nodes / 64U) + 1U) * sizeof *graph->late) : NULL;
     bool is_fine = (graph->slot != NULL) && (graph->number != NULL) && (graph->parent != NULL) && (graph->row != NULL)
-                   && (graph->dead != NULL) && (is_whole || (graph->cut != NULL)) && ((graph->late != NULL) || !pn_net.timed)
+                   && (graph->dead != NULL) && (is_whole || (graph->cut != NULL))
+                   && ((graph->late != NULL) || !pn_net.timed)
                    && reserve_arcs(run, graph, is_whole ? run->arcs : nodes);
     ex_phase(run, "graph");
     run->seeks_choice = is_whole && (run->queries != NULL) && run->queries->asks_orders && (run->owner_of != NULL)

@@ -18,7 +18,8 @@ weights of places (`verify.exploring.ranking`):
     finite, bounded    weights limit how many firings follow each other
     confluence         a "no" is that of a part of the whole space, in which all firings of a cycle are there; a "yes"
                        is said where the supervisor never has a choice in any state
-    dead transitions   what occurs in no state never occurs; of all others a run in the whole space, or in turns, is known
+    dead transitions   what occurs in no state never occurs; of all others a run in the whole space, or in turns, is
+                       known
 
 All of it has to come out so; else nothing is said.
 """
@@ -39,7 +40,7 @@ from pn2code.verify.controller.by_turns import Looked, group, loosened
 from pn2code.verify.controller.control_types import Plan
 from pn2code.verify.controller.kept_silence import kept_silence
 from pn2code.verify.controller.running import SUPERVISOR, Running, chunks
-from pn2code.verify.exploring.counts import Counts, counts
+from pn2code.verify.exploring.counts import LEAST_TOKENS, Counts, counts
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits, Order
 from pn2code.verify.exploring.programs import Generated, Sizes
@@ -83,13 +84,16 @@ class Abstract:
     sizes: Sizes
 
 
-def abstract(partition: Partition, plan: Plan, kept: Sequence[int] = ()) -> Abstract | None:
+def abstract(
+    partition: Partition, plan: Plan, kept: Sequence[int] = (), *, least: int = LEAST_TOKENS
+) -> Abstract | None:
     """The net of turns with its limits; None: there is nothing to count so.
 
     Args:
         partition: the cell.
         plan: what is asked.
         kept: more places of which all tokens count.
+        least: as for `counts`.
     """
     loose = loosened(partition)
     if loose is None or not partition.final_places:
@@ -101,7 +105,8 @@ def abstract(partition: Partition, plan: Plan, kept: Sequence[int] = ()) -> Abst
     free = own - asked - {c.place for c in partition.channels}
     known = bounds_and_sums(running.net, storage=plan.storage)
     bounds = {p: b.bound for p, b in known[0].items() if b.bound is not None}
-    found = counts(running.net, relations(running.net, plan.storage), bounds, free=free)
+    relations_ = relations(running.net, plan.storage)
+    found = counts(running.net, relations_, bounds, free=free, least=least)
     if found is None or not found.limited:
         return None
     sizes = Sizes.start(running.net, plan.storage, known)
@@ -216,8 +221,7 @@ def _said(
     longest: Sequence[int],
 ) -> tuple[Mapping[str, Any], ...]:
     """The answers as `control.of_cell` asks for them."""
-    first = next(i for i, row in enumerate(rows) if i >= len(rows) - _asked(made, plan))
-    _, stops, *others = rows[first:]
+    _, stops, *others = rows[len(rows) - _asked(made, plan) :]
     silences, channels = len(made.running.silences), len(partition.channels)
     left = iter(others[silences + channels :])
     declared: Iterator[Mapping[str, Any]] = (

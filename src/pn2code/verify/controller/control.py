@@ -14,7 +14,7 @@ and explore_running.c. That no owner touches what is not its own is seen in the 
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
@@ -194,13 +194,12 @@ def examine(
         in_counts: by_counts.Seen | None = None
         may_turn = _may_turn(partition, plan, part)
         first_part = replace(part, max_states=part.turns_from) if may_turn else part
-        may_count = may_turn and _may_count(part)
-        if may_count:
-            first_part = replace(part, max_states=part.counts_from)
-        found = explore(running.net, plan.storage, first_part, d, options)
+        may_count = _may_count(partition, plan, part)
+        counts_part = replace(part, max_states=part.counts_from) if may_count else first_part
+        found = explore(running.net, plan.storage, counts_part, d, options)
         if may_count and found is not None and found.why == "states":
             own = replace(options, questions=of_orders(running, plan.firings), stem="orders")
-            orders_part = explore(running.net, plan.storage, first_part, d, own)
+            orders_part = explore(running.net, plan.storage, counts_part, d, own)
             if orders_part is None:
                 return None
             in_counts = by_counts.look(
@@ -215,7 +214,6 @@ def examine(
             if in_counts is not None and _has_suspects(poses, in_counts.looked.found, limits):
                 in_counts = None
             if in_counts is None:
-                first_part = replace(part, max_states=part.turns_from)
                 found = explore(running.net, plan.storage, first_part, d, options)
         if in_counts is None and may_turn and found is not None and found.why == "states":
             try:
@@ -327,10 +325,13 @@ def _may_turn(partition: Partition, plan: Plan, limits: Limits) -> bool:
     return not (plan.properties.properties or plan.cut or partition.net.timed)
 
 
-def _may_count(limits: Limits) -> bool:
-    """Whether it is seen before that whether tokens have to be counted up to a limit only."""
-    first, later = limits.counts_from, limits.turns_from
-    return first is not None and later is not None and first <= later
+def _may_count(partition: Partition, plan: Plan, limits: Limits) -> bool:
+    """Whether tokens are counted up to a limit only before more is looked at."""
+    first, most = limits.counts_from, limits.max_states
+    if first is None or limits.turns_from is None or first > limits.turns_from:
+        return False
+    is_enough = most is None or most >= first
+    return is_enough and not plan.properties.properties and not partition.net.timed
 
 
 def _has_suspects(poses: Poses | None, found: Exploration, limits: Limits) -> bool:

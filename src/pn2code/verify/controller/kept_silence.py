@@ -1,4 +1,4 @@
-"""Item of the explorer: the states in which nobody waits for others while it owes an answer (I8 of docs/protocol.md)."""
+"""An item: the states in which nobody waits for others while it owes an answer (I8 of docs/protocol.md)."""
 
 from __future__ import annotations
 

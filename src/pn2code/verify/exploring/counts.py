@@ -5,12 +5,12 @@
     table = found.within(turns(net, owners, ...))           # the table of turns, as far as such numbers tell
     path.write_text(found.text())
 
-The explorer (cnative/src/explore/search/explore_counts.c) makes each marking m a *state* a(m): in some places the number
-of tokens of each colour is at most a limit, and the number that the token of a counter is (`Left : INT`, of which `n`
-becomes `n - 1`), too. A state is explored as if it were a marking; what is taken from a number that is the limit may
-leave the limit, or less, and all these are successors, except those that stand for no marking because of a relation of
-the net (`structure.relations`). This is *counter abstraction* (A. Pnueli, J. Xu, L. Zuck, *Liveness with (0, 1,
-infinity)-counter abstraction*, 2002; the idea of "many" is R. Karp's and R. Miller's, 1969).
+The explorer (cnative/src/explore/search/explore_counts.c) makes each marking m a *state* a(m): in some places the
+number of tokens of each colour is at most a limit, and the number that the token of a counter is (`Left : INT`, of
+which `n` becomes `n - 1`), too. A state is explored as if it were a marking; what is taken from a number that is the
+limit may leave the limit, or less, and all these are successors, except those that stand for no marking because of a
+relation of the net (`structure.relations`). This is *counter abstraction* (A. Pnueli, J. Xu, L. Zuck, *Liveness with
+(0, 1, infinity)-counter abstraction*, 2002; the idea of "many" is R. Karp's and R. Miller's, 1969).
 
 What a limit is chosen for. Each question that is asked of a marking has the same answer in its state:
 
@@ -21,11 +21,11 @@ What a limit is chosen for. Each question that is asked of a marking has the sam
   reasons   the table of turns compares numbers of tokens with what a transition demands, which is no greater than the
             limit; numbers after something has been taken are not compared (`within`).
 
-*Claim*: for each marking m that the reduced space of `turns` has, a(m) is a state, whatever the sets are that are chosen.
-Choose for m the set that is chosen in a(m): it is closed in m, since it rests on the questions above. By induction let m
-lead to m' by an occurrence that is explored in m. The same one is explored in a(m) and gives a state in which numbers
-below their limits have changed as in m', and numbers that are limits stand for all that are greater: one of the
-successors is a(m'). It is not left out, since m' fulfils each relation.
+*Claim*: for each marking m of the reduced space of `turns` a(m) is a state, if the sets are chosen in this way: for m
+the one that is chosen in a(m). It is closed in m, since it rests on the questions above. By induction let m lead to m'
+by an occurrence that is explored in m. The same one is explored in a(m), and gives a state in which numbers below their
+limits have changed as in m', and numbers that are limits stand for all that are greater: one of the successors is
+a(m'). It is not left out, since m' fulfils each relation.
 
 So **what holds in all states, and of all steps, holds in the reduced space of turns**: bounds of other places,
 what places of one group hold, that certain places are never marked, and that each state in which nothing is enabled is
@@ -115,7 +115,12 @@ class Counts:
 
 
 def counts(
-    net: FlatNet, known: Relations, bounds: Mapping[int, int], *, free: Collection[int]
+    net: FlatNet,
+    known: Relations,
+    bounds: Mapping[int, int],
+    *,
+    free: Collection[int],
+    least: int = LEAST_TOKENS,
 ) -> Counts | None:
     """The limits of a net; None: there are none.
 
@@ -124,6 +129,7 @@ def counts(
         known: its relations.
         bounds: by place, most tokens, where the structure proves it.
         free: places of which nobody asks how many tokens they hold.
+        least: tokens that a place may hold to be worth a limit.
     """
     at: dict[int, list[FlatTransition]] = {}
     for t in net.transitions:
@@ -132,7 +138,7 @@ def counts(
     limits: list[Limit] = []
     for p in sorted(free):
         touching = at.get(p, [])
-        if bounds.get(p, 0) >= LEAST_TOKENS:
+        if bounds.get(p, 0) >= least:
             most = _most_demanded(net, p, touching)
             limits += [] if most is None else [Limit(p, most, False)]
         elif p in known.single:

@@ -7,9 +7,12 @@
 If a weighted number of tokens `y * m` never grows and is never smaller than some number, a transition that makes it
 smaller occurs only so often. Weights of places with a bound may be negative, others may not, so there is such a number
 (linear ranking functions: A. Podelski, A. Rybalchenko, *A complete method for the synthesis of linear ranking
-functions*, 2004; for nets G. Memmi, G. Roucairol, *Linear algebra in net theory*, 1980). What is shown to occur only so
-often does not matter for the next weights: after its last occurrence only the others go on. The weights come from linear
-programs in floating point, are made rational, and are multiplied out exactly; where that fails, nothing is said.
+functions*, 2004; for nets G. Memmi, G. Roucairol, *Linear algebra in net theory*, 1980). What is shown to occur only
+so often does not matter for the next weights: after its last occurrence only the others go on. The weights come from
+linear programs in floating point, are made rational, and are multiplied out exactly; where that fails, nothing is said.
+
+In a run of some steps `y * m` changes by no more than its greatest value less its least one, which bounds of places
+limit. If each step that counts makes it smaller by 1 or more, and no step greater, so many count at most.
 """
 
 from __future__ import annotations
@@ -39,13 +42,11 @@ class Ranking:
         modes: what its transitions change, but for those that never occur.
         weighed: places of which all changes are known exactly; others have no weight.
         upper: by place, most tokens.
-        initial: tokens at first, by place; None: that is not known.
     """
 
     modes: tuple[Mode, ...]
     weighed: tuple[int, ...]
     upper: Mapping[int, int]
-    initial: tuple[int | None, ...]
 
     @staticmethod
     def of(
@@ -61,7 +62,7 @@ class Ranking:
         modes = tuple(m for m in skel.modes if m.transition not in out)
         unclear = {*skel.resets, *(p for m in modes for p in m.unknown)}
         weighed = tuple(p for p in range(len(net.places)) if p not in unclear)
-        return Ranking(modes, weighed, bounds, tuple(begin.initial))
+        return Ranking(modes, weighed, bounds)
 
     def rising(self) -> frozenset[int]:
         """Transitions of which it is not shown that they occur only so often."""
@@ -86,46 +87,24 @@ class Ranking:
                 return frozenset(among) - {t for t, change in changes if change == 0}
         return frozenset()
 
-    def longest(
-        self, steps: Collection[int], counted: Collection[int], *, from_start: bool = False
-    ) -> int | None:
-        """Most occurrences of `counted` in a run of nothing but `steps`, from any reachable marking, or the first one."""
+    def longest(self, steps: Collection[int], counted: Collection[int]) -> int | None:
+        """Most occurrences of `counted` in a run of nothing but `steps`, from any reachable marking."""
         modes = [m for m in self.modes if m.transition in steps]
-        if from_start and any(self.initial[p] is None for p in self.weighed):
-            return None
-        begin = {p: (self.initial[p] or 0) if from_start else None for p in self.weighed}
-        goal = [float(self._above(p, begin[p])) for p in self.weighed]
-        goal += [float(self._below(p, begin[p])) for p in self.weighed]
-        limits = self._limits() if from_start else self._narrow()
+        goal = [float(self.upper.get(p, 0)) for p in (*self.weighed, *self.weighed)]
+        limits = [(0.0, None if p in self.upper else 0.0) for p in (*self.weighed, *self.weighed)]
         most = [-1.0 if m.transition in counted else 0.0 for m in modes]
         for weights in self._solved(goal, [self._row(m) for m in modes], most, limits):
             is_shown = all(
                 _change(weights, m) <= (-1 if m.transition in counted else 0) for m in modes
             )
             if is_shown:
-                length = sum(
-                    w * self._above(p, begin[p]) if w > 0 else -w * self._below(p, begin[p])
-                    for p, w in weights.items()
-                )
-                return floor(length)
+                return floor(sum(abs(w) * self.upper[p] for p, w in weights.items()))
         return None
-
-    def _above(self, place: int, begin: int | None) -> int:
-        """By how much the tokens of a place can become fewer in a run."""
-        return self.upper.get(place, 0) if begin is None else begin
-
-    def _below(self, place: int, begin: int | None) -> int:
-        """By how much they can become more."""
-        return self.upper.get(place, 0) - (begin or 0)
 
     def _limits(self) -> list[tuple[float, float | None]]:
         """Of the weights: of the positive parts, then of the negative ones."""
         positive: list[tuple[float, float | None]] = [(0.0, None) for _ in self.weighed]
         return positive + [(0.0, None if p in self.upper else 0.0) for p in self.weighed]
-
-    def _narrow(self) -> list[tuple[float, float | None]]:
-        """The same where any number of tokens may be there at first."""
-        return [(0.0, None if p in self.upper else 0.0) for p in (*self.weighed, *self.weighed)]
 
     def _row(self, mode: Mode) -> tuple[tuple[int, int], ...]:
         count = len(self.weighed)
