@@ -7,11 +7,16 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tools.reduction_cells.limited import WRONG_LIMITS, Limited
 from typer.testing import CliRunner
 
 from helpers.netbuilder import cpn
+from pn2code.cell.divide import divide
 from pn2code.cli import verify as command
 from pn2code.cli.main import app
+from pn2code.cli.nets import open_net
+from pn2code.diagnostics import Diagnostics
+from pn2code.verify.controller.control_types import Plan
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
@@ -120,6 +125,20 @@ def answers(found: dict[str, Any]) -> list[tuple[str, str, bool]]:
 def soon(monkeypatch: pytest.MonkeyPatch) -> None:
     """Few states are looked at before tokens are counted up to a limit."""
     monkeypatch.setattr(command, "COUNTS_FROM", 60)
+
+
+def test_each_step_of_a_cell_is_one_of_its_states(tmp_path: Path) -> None:
+    verified(tmp_path, NET, "--no-controller", parts=4)
+    d = Diagnostics()
+    opened = open_net(tmp_path, {}, warnings=d)
+    assert opened.config is not None
+    partition = divide(opened.flat, opened.config, d)
+    assert partition is not None
+    bed = Limited.of(partition, Plan(storage=opened.storage))
+    assert bed is not None
+    assert list(bed.missing()) == []
+    for wrong in WRONG_LIMITS.values():
+        assert list(bed.missing(wrong(bed.made.counts))) != []
 
 
 def test_any_number_of_parts_has_the_same_states(tmp_path: Path) -> None:

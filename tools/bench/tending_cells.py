@@ -30,7 +30,6 @@ from pn2code.verify.controller.premises import Premises
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits
 
-
 COUNTED_FROM = 20_000
 """States before tokens are counted up to a limit."""
 

@@ -1,22 +1,33 @@
-"""What tokens that are counted up to a limit say of a cell, held against all of its states."""
+"""What tokens that are counted up to a limit say of a cell, held against all of its states.
+
+* Each marking has its state, and each step of the cell is a step from the one to the other (looked at without turns).
+* In turns: what occurs, and what other places hold, does so in the states; and what they say is so.
+"""
 
 from __future__ import annotations
 
+import json
+import tempfile
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
 
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.verify.controller.by_counts import Abstract, abstract, questions
 from pn2code.verify.controller.control_types import Plan
-from pn2code.verify.exploring.counts import Counts
+from pn2code.verify.exploring.counts import Counts, Limit
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.programs import Generated
 from pn2code.verify.exploring.result import Exploration
+from pn2code.verify.exploring.turns import Turns
 
 MOST = 100_000
+MOST_COMPARED = 2_000
+"""Markings of a cell of which each is looked for."""
 LEAST = 2
 """Tokens of a place that gets a limit."""
 
@@ -60,24 +71,48 @@ class Limited:
         counts["cells with limits"] += 1
         counts["states with limits"] += found.nodes
         yield from (f"limits: {x}" for x in self._differences(found, whole))
+        if whole.nodes <= MOST_COMPARED:
+            counts["markings that have a state"] += whole.nodes
+            yield from self.missing()
 
     def shown(self, whole: Exploration) -> set[str]:
         """Wrong limits that are noticed."""
         names = set()
         for name, wrong in WRONG_LIMITS.items():
-            found = self._explored(wrong(self.made.counts))
-            if whole.error is None and (found is None or any(self._differences(found, whole))):
-                names.add(name)
+            if whole.error is None and whole.nodes <= MOST_COMPARED:
+                names |= {name} if any(self.missing(wrong(self.made.counts))) else set()
         return names
 
-    def _explored(self, limits: Counts) -> Exploration | None:
+    def missing(self, wrong: Counts | None = None) -> Iterator[str]:
+        """Steps of the cell that are none of the states, with other limits if these are given."""
+        limits = wrong or self.made.counts
+        with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
+            markings, states = Path(name) / "markings", Path(name) / "states"
+            whole = self._explored(None, markings)
+            found = self._explored(limits, states)
+            if whole is None or not whole.complete:
+                return
+            if found is None or found.error is not None:
+                yield "limits: an exception"
+                return
+            if not found.complete:
+                return
+            names = {self.made.running.net.places[x.place].name: x for x in limits.limits}
+            steps = _steps(states, {})
+            lacking = _steps(markings, names) - steps
+            yield from sorted(f"limits: {step} is no step of the states" for step in lacking)[:3]
+
+    def _explored(self, limits: Counts | None, graph: Path | None = None) -> Exploration | None:
+        """In turns; or, where the graph is wanted, without, and without limits if there are none."""
         made = self.made
+        table = made.turns if graph is None else (None if limits is None else everyone(made.turns))
         options = ExploreOptions(
-            turns=made.turns,
+            turns=table,
             counts=limits,
             generated=self.program,
             sizes=made.sizes,
             questions=questions(made, self.plan, made.ranking.rising()),
+            graph=graph,
             quick=True,
         )
         most = Limits(max_states=MOST, threads=1, traces=0)
@@ -105,6 +140,37 @@ class Limited:
                 yield f"place {p} holds {b.lower} to {b.upper}, not {a.lower} to {a.upper}"
         if whole.dead_count and not found.dead_count:
             yield "there are dead markings"
+
+
+def everyone(table: Turns) -> Turns:
+    """A table in which everybody comes with everybody: nothing is left for later."""
+    everything = tuple(range(len(table.members)))
+    return replace(table, members=tuple(replace(m, rivals=everything) for m in table.members))
+
+
+def _steps(graph: Path, limits: dict[str, Limit]) -> set[tuple[str, str, str]]:
+    """The steps of a graph, with tokens counted up to limits: by name of the place."""
+    state: dict[int, str] = {}
+    found: set[tuple[str, str, str]] = set()
+    rows: list[dict[str, Any]] = [
+        json.loads(x) for x in graph.read_text(encoding="utf-8").splitlines()
+    ]
+    for row in rows:
+        if "node" in row:
+            held = {p: _limited(own, limits.get(p)) for p, own in row["marking"].items()}
+            state[row["node"]] = json.dumps(held, sort_keys=True)
+    for row in rows:
+        if "from" in row:
+            found.add((state[row["from"]], row["transition"], state[row["to"]]))
+    return found
+
+
+def _limited(held: list[list[Any]], limit: Limit | None) -> list[list[Any]]:
+    if limit is None:
+        return sorted(held, key=repr)
+    if limit.is_value:
+        return [[n, min(value, limit.most)] for n, value in held]
+    return sorted(([min(n, limit.most), v] for n, v in held if limit.most > 0), key=repr)
 
 
 _FIRST = 6
