@@ -62,7 +62,7 @@ def make(seed: int, folder: Path) -> None:
     family = r.random()
     inputs: tuple[tuple[str, str], ...] = ()
     if family < 0.6:
-        net, toml = flow(r, many=family < 0.15)
+        net, toml = flow(r, many=family >= 0.5)
     elif family < 0.75:
         net, toml = random_cell(r)
     else:
