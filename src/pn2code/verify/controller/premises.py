@@ -42,6 +42,10 @@ IN_TURNS = (
     "the programs are looked at in turns, so that each run is seen in one of its orders: the states are those of the "
     "reduced space (docs/reductions.md)"
 )
+COUNTED = (
+    "tokens are counted up to a limit only, where no more has to be known, so that a state stands for many markings "
+    "(docs/reductions.md)"
+)
 
 _SENSORS = "each possible value of a sensor occurs from time to time"
 
