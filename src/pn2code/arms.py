@@ -61,6 +61,15 @@ class Arms:
             self._known[key] = self._looked(robot, command)
         return self._known[key]
 
+    def depends(self, robot: str, command: Move) -> bool:
+        """Whether it depends on where external axes stand whether the arm comes there."""
+        return any(
+            RobotExecutor(r, cell.motion, cell.frames).depends(command)
+            for cell in self._cells.values()
+            for r in cell.robots
+            if r.name == robot
+        )
+
     def _looked(self, name: str, command: Move) -> str:
         is_free = isinstance(command, MoveLinear | MoveCircular)
         for layout, cell in self._cells.items():

@@ -27,6 +27,15 @@ class Pose:
 
 
 @frozen
+class Along:
+    """Where an external axis of the robot goes on a move: m of a track, rad of a turntable."""
+
+    axis: str
+    position: float
+    is_track: bool
+
+
+@frozen
 class MoveJoint:
     """PTP to a TCP pose.
 
@@ -34,26 +43,38 @@ class MoveJoint:
         speed: the fraction (0..1] of the configured joint speed.
         frame: in which the pose is given: "world", or a name of `[frames]`.
         acceleration: the fraction (0..1] of the configured acceleration, as of all moves.
+        along: external axes that move together with the arm, as of all moves but HOME; others stand still.
     """
 
     target: Pose
     speed: float = 1.0
     frame: str = "world"
     acceleration: float = 1.0
+    along: tuple[Along, ...] = ()
 
 
 @frozen
 class MoveAxes:
-    """PTP to a joint position, rad; `speed` and `acceleration` as of `MoveJoint`."""
+    """PTP to a joint position, rad; the rest as of `MoveJoint`."""
 
     axes: tuple[float, ...]
+    speed: float = 1.0
+    acceleration: float = 1.0
+    along: tuple[Along, ...] = ()
+
+
+@frozen
+class MoveExternal:
+    """External axes go somewhere, the joints of the arm stand still; the rest as of `MoveJoint`."""
+
+    along: tuple[Along, ...]
     speed: float = 1.0
     acceleration: float = 1.0
 
 
 @frozen
 class MoveHome:
-    """PTP to the robot's HOME joint position."""
+    """PTP to the arm's HOME joint position; external axes stay where they are."""
 
     speed: float = 1.0
     acceleration: float = 1.0
@@ -72,6 +93,7 @@ class MoveLinear:
     frame: str = "world"
     speed: float | None = None
     acceleration: float = 1.0
+    along: tuple[Along, ...] = ()
 
 
 @frozen
@@ -88,6 +110,7 @@ class MoveCircular:
     frame: str = "world"
     speed: float | None = None
     acceleration: float = 1.0
+    along: tuple[Along, ...] = ()
 
 
 @frozen
@@ -132,7 +155,7 @@ class Wait:
     duration: float
 
 
-Move = MoveJoint | MoveAxes | MoveHome | MoveLinear | MoveCircular
+Move = MoveJoint | MoveAxes | MoveExternal | MoveHome | MoveLinear | MoveCircular
 Command = Move | ToolAction | Measure | Wait
 
 

@@ -141,6 +141,10 @@ class Kinematics:
         self.T_flange_tcp = T_flange_tcp
         self._chain = chain
         self._form = form
+        self.alone: Kinematics = self
+        """Of the arm without its external axes, from its own base."""
+        self.joints = slice(0, len(arm.lower))
+        """Where the joints of the arm are in a joint position."""
 
     @classmethod
     def of(cls, arm: Arm, tool: Tool | None, at: Origin, d: Diagnostics) -> Kinematics | None:

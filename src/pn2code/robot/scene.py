@@ -12,6 +12,7 @@ from __future__ import annotations
 import fnmatch
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,9 @@ from pn2code.cell_file.keys import Section
 from pn2code.diagnostics import Diagnostics
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes
-from pn2code.robot.frames import read_frames
+from pn2code.robot.carried import WithAxes, with_axes
+from pn2code.robot.external import read_axes
+from pn2code.robot.frames import Frames, read_frames
 from pn2code.robot.kinematics import BRANCH_NAMES, Kinematics
 from pn2code.robot.model import find_arm, find_tool
 from pn2code.robot.parts_table import PartKind, read_kinds, read_places
@@ -77,11 +80,36 @@ def load(
     names = tuple(geometry.get("robots", {}))
     kinds = read_kinds(table("parts", None), folder)
     places = read_places(table("places", None))
-    frames = read_frames(table("frames", None))
+    plates = [f"{r.name}.{a.name}" for r in robots for a in r.axes.tables]
+    frames = read_frames(table("frames", None), plates)
+    robots = tuple(_with_frames(r, frames) for r in robots)
+    _parts_stand(table("parts", None), kinds, plates)
     scene = _scene(table("scene", SCENE), robots, names, kinds, folder)
     if len(d.errors) != before:
         return None
-    return RobotCell(robots, motion, scene, kinds, places, frames)
+    return RobotCell(robots, motion, scene, kinds, places, frames.standing)
+
+
+def _with_frames(robot: CellRobot, frames: Frames) -> CellRobot:
+    """A robot with the frames that turn with its turntables."""
+    turning = {
+        name: (robot.index(axis), pose)
+        for name, (owner, axis, pose) in frames.turning.items()
+        if owner == robot.name
+    }
+    return replace(robot, turning=turning) if turning else robot
+
+
+def _parts_stand(t: Table, kinds: Mapping[str, PartKind], plates: Sequence[str]) -> None:
+    """Parts that stand do not turn with a turntable, so there are not both in a cell."""
+    if kinds and plates:
+        t.d.error(
+            codes.ROBOT_VALUE,
+            f"there are parts that are carried and a turntable (`{plates[0]}`), but a part that stands on a turntable "
+            "would not turn with it",
+            t.at(),
+            hint="let the work piece be one of the `objects` of the turntable",
+        )
 
 
 def _motion(t: Table) -> MotionConfig:
@@ -108,6 +136,7 @@ def _robot(t: Table, name: str, folder: Path) -> CellRobot | None:
     base = read_pose(t, "base")
     home_deg = t.numbers("home")
     branch_name = t.text("branch")
+    axes = read_axes(t, name, base, folder)
     t.done()
     if arm is None or (tool is None and tool_name != "none"):
         return None
@@ -125,7 +154,15 @@ def _robot(t: Table, name: str, folder: Path) -> CellRobot | None:
     kinematics = Kinematics.of(arm, tool, t.at("model"), t.d)
     if kinematics is None:
         return None
-    return CellRobot(name, arm, tool, kinematics, base, home, BRANCH_NAMES.get(branch_name))
+    branch = BRANCH_NAMES.get(branch_name)
+    if not axes:
+        return CellRobot(name, arm, tool, kinematics, base, home, branch)
+    whole = with_axes(arm, axes, name, t.at("axes"), t.d)
+    if whole is None:
+        return None
+    home = (*(a.home for a in axes.tracks), *home, *(a.home for a in axes.tables))
+    carried = WithAxes(kinematics, axes, whole)
+    return CellRobot(name, whole, tool, carried, base, home, branch, axes)
 
 
 def _scene(

@@ -77,6 +77,7 @@ _WORDS = {
     "GREATER_EQUAL": "`>=`", "PLUS": "`+`", "MINUS": "`-`", "AMPERSAND": "`&`", "TIMES": "`*`",
     "DIVIDE": "`/`",
 }  # fmt: skip
+_EXTERNAL = ("$track", "$turntable")
 _STATEMENTS = {
     "MOVE",
     "WAIT",
@@ -313,19 +314,54 @@ class _Builder(Transformer[Token, Any]):
         return known.get(str(token), t.Motion.JOINT)
 
     def move(self, meta: Meta, c: list[Any]) -> t.Move:
-        motion, target, *rest = c
+        motion, *rest = c
+        moved = self._motion(motion)
+        target: Any = None
+        if isinstance(rest[0], list):  # nothing but external axes
+            if moved is not t.Motion.EXTERNAL:
+                self._d.error(
+                    codes.EXTERNAL,
+                    f"`move {motion}` says nowhere to go",
+                    self._at(motion),
+                    hint="write `move $external with ...` where external axes alone move",
+                )
+        else:
+            target, *rest = rest
+            if moved is t.Motion.EXTERNAL:
+                self._d.error(
+                    codes.EXTERNAL,
+                    "on an external move the arm stands still, so it goes nowhere",
+                    self._at(motion),
+                    hint="write `move $joint ... with ...` or `move $linear ... with ...` for both",
+                )
+        along = next((x for x in rest if isinstance(x, list)), [])
         frame = next((x for x in rest if isinstance(x, t.Target)), None)
         said: dict[str, t.Expression] = dict(x for x in rest if isinstance(x, tuple))
         return t.Move(
-            self._motion(motion),
+            moved,
             None if isinstance(target, Token) else target,
             frame.name if frame else None,
             said.get("at"),
             said.get("via"),
             said.get("acceleration"),
+            tuple(along),
             frame.span if frame else None,
             self._span(meta),
         )
+
+    def along(self, meta: Meta, c: list[t.Along]) -> list[t.Along]:
+        return c
+
+    def external(self, meta: Meta, c: list[Any]) -> t.Along:
+        kind, name, position = c
+        if str(kind) not in _EXTERNAL:
+            self._d.error(
+                codes.EXTERNAL,
+                f"there is no external axis of the kind `{kind}`",
+                self._at(kind),
+                hint="write `$track NAME = 1200 mm` or `$turntable NAME = 30 deg`",
+            )
+        return t.Along(str(name), position, str(kind) != "$turntable", self._span(meta))
 
     def axes(self, meta: Meta, c: list[t.Expression]) -> t.Axes:
         return t.Axes(tuple(c), self._span(meta))

@@ -26,7 +26,15 @@ from pn2code.ml.core import terms as core
 from pn2code.net.flat import ArcKind, FlatTransition
 from pn2code.net.uses import NetVariables
 from pn2code.primitive_calls import Calls, Listener
-from pn2code.robot.commands import Move, MoveAxes, MoveCircular, MoveJoint, MoveLinear, without_pace
+from pn2code.robot.commands import (
+    Move,
+    MoveAxes,
+    MoveCircular,
+    MoveExternal,
+    MoveJoint,
+    MoveLinear,
+    without_pace,
+)
 from pn2code.semantics.evaluation.effects import Effect, Effects, effects_of
 from pn2code.semantics.game.marking import Binding, Marking, place_of
 from pn2code.semantics.game.token_game import Game, GameError
@@ -50,6 +58,9 @@ class Arms(Protocol):
 
     def why_unreachable(self, robot: str, command: Move) -> str:
         """Why the arm cannot come to where a command leads, with its name; "": it can."""
+
+    def depends(self, robot: str, command: Move) -> bool:
+        """Whether it depends on where external axes stand whether it can."""
 
 
 @frozen
@@ -232,6 +243,12 @@ class Poses:
             seen.add(values)
             for command in self._commands(game, t, binding, listener):
                 why = self._arms.why_unreachable(robot, command)
+                if not why and self._arms.depends(robot, command):
+                    told.open = (
+                        f"where `{t.name}` leads its arm depends on where external axes stand then "
+                        "(`check --geometry` follows them)"
+                    )
+                    continue
                 poses[bool(why)].add((robot, _goal(command)))
                 if why:
                     told.bad.append(Bad(t.index, values, why))
@@ -257,7 +274,7 @@ class Poses:
         return [
             c
             for c in calls
-            if isinstance(c, MoveJoint | MoveAxes)
+            if isinstance(c, MoveJoint | MoveAxes | MoveExternal)
             or (isinstance(c, MoveLinear | MoveCircular) and c.frame != "tool")
         ]
 
