@@ -26,6 +26,8 @@ net weld
   fun torch () = ();
   fun at (x, y, z) : POSE = {x = x, y = y, z = z, rx = 180.0, ry = 0.0, rz = 90.0};
   fun deg n = 30.0 * Real.fromInt n;
+  fun toSeam n = (goTo (at (~100.0, ~60.0, 60.0)); weld (at (100.0, ~60.0, 15.0), 300.0, deg (n + 1), 30.0));
+  fun toBench () = (goToAlong (at (0.0, 950.0, 1000.0), 200.0); weldStill (at (60.0, 950.0, 1000.0)));
   var n : INT;
   page Top
     place f1 : INT
@@ -74,7 +76,7 @@ net weld
     trans Prepare code input (n) action (travel (100.0 * Real.fromInt n); turn (deg n, 50.0))
       in Told : n
       out There : n
-    trans Weld code input (n) action (goTo (at (~100.0, ~60.0, 60.0)); weld (at (100.0, ~60.0, 15.0), 300.0, deg (n + 1), 30.0); torch ())
+    trans Weld code input (n) action (toSeam n; torch ())
       in There : n
       out Welded : n
     trans Back code input (n) action (goTo (at (0.0, ~200.0, 300.0)); home ())
@@ -90,7 +92,7 @@ net weld
       in Waiting : ()
       in f : n
       out Told : n
-    trans Work code input (n) action (goToAlong (at (0.0, 950.0, 1000.0), 200.0); weldStill (at (60.0, 950.0, 1000.0)); torch (); home ())
+    trans Work code input (n) action (toBench (); torch (); home ())
       in Told : n
       out d : n
       out Waiting : ()

@@ -209,9 +209,9 @@ class RobotExecutor:
                     self._towards(command.along)
                 case MoveHome():
                     pass
-                case MoveJoint() | MoveLinear() | MoveCircular() if command.frame != "tool":
+                case MoveJoint() | MoveLinear() | MoveCircular():
                     q = self._towards(command.along)
-                    if not self.depends(command):
+                    if command.frame != "tool" and not self.depends(command):
                         self._found(command.target, command.frame, q)
         except MotionFault as fault:
             raise self._named(fault, told) from None
@@ -227,17 +227,17 @@ class RobotExecutor:
 
     def depends(self, command: Move) -> bool:
         """Whether it depends on where external axes stand what joint positions a move to a pose leads to."""
-        if (
-            not isinstance(command, MoveJoint | MoveLinear | MoveCircular)
-            or command.frame == "tool"
-        ):
-            return False
-        told = {a.axis for a in command.along}
+        return bool(self.undecided(command))
+
+    def undecided(self, command: Move) -> frozenset[str]:
+        """The external axes on which it depends so, and which the move does not tell where to go."""
+        if isinstance(command, MoveAxes | MoveExternal | MoveHome) or command.frame == "tool":
+            return frozenset()
         needed = {a.name for a in self.robot.axes.tracks}
         if command.frame in self.robot.turning:
             index, _ = self.robot.turning[command.frame]
             needed.add(self.robot.arm.axes[index])
-        return not needed <= told
+        return frozenset(needed - {a.axis for a in command.along})
 
     def _found(self, pose: Pose, frame: str, q: Array) -> tuple[Array, Array]:
         """The joint position nearest to `q`, with the external axes as there, and the target in the base frame."""

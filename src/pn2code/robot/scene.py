@@ -83,7 +83,6 @@ def load(
     plates = [f"{r.name}.{a.name}" for r in robots for a in r.axes.tables]
     frames = read_frames(table("frames", None), plates)
     robots = tuple(_with_frames(r, frames) for r in robots)
-    _parts_stand(table("parts", None), kinds, plates)
     scene = _scene(table("scene", SCENE), robots, names, kinds, folder)
     if len(d.errors) != before:
         return None
@@ -98,18 +97,6 @@ def _with_frames(robot: CellRobot, frames: Frames) -> CellRobot:
         if owner == robot.name
     }
     return replace(robot, turning=turning) if turning else robot
-
-
-def _parts_stand(t: Table, kinds: Mapping[str, PartKind], plates: Sequence[str]) -> None:
-    """Parts that stand do not turn with a turntable, so there are not both in a cell."""
-    if kinds and plates:
-        t.d.error(
-            codes.ROBOT_VALUE,
-            f"there are parts that are carried and a turntable (`{plates[0]}`), but a part that stands on a turntable "
-            "would not turn with it",
-            t.at(),
-            hint="let the work piece be one of the `objects` of the turntable",
-        )
 
 
 def _motion(t: Table) -> MotionConfig:

@@ -306,7 +306,6 @@ PLATE = ("robots", "left", "axes", "plate")
         (changed(("robots", "left", "axes"), link_1=DATA["robots"]["left"]["axes"]["rail"]),
          "cannot be called `link_1`"),
         (changed(("frames", "seam"), parent="left.plat"), "the name of another frame is expected"),
-        ({**DATA, "parts": {"box": {"size": [0.1, 0.1, 0.1]}}}, "would not turn with it"),
     ],
 )  # fmt: skip
 def test_axes_that_cannot_be(data: dict[str, Any], message: str) -> None:
