@@ -2,7 +2,8 @@
 
 ./dev geometry                       a table of all examples (docs/benchmarks.md)
 ./dev geometry --pictures DIR        the pictures of docs/geometry.md
-./dev geometry --cells 40            random cells of two arms: what collides in PyBullet is never said to keep apart
+./dev geometry --cells 40            random cells of two arms, every second one with tracks and a turntable: what
+                                     collides in PyBullet is never said to keep apart
 """
 
 from __future__ import annotations
@@ -118,7 +119,8 @@ def random_cells(folder: Path, count: int, seed: int, walks: int, *, is_run: boo
     said: dict[tuple[str, str], int] = {}
     wrong = 0
     for number in range(seed, seed + count):
-        net, toml = two_arm_cell(Random(number))
+        axes = Random(f"axes {number}") if number % 2 else None
+        net, toml = two_arm_cell(Random(number), axes)
         cell = folder / str(number)
         cell.mkdir()
         (cell / "cell.cpn").write_bytes(cpn(net))
