@@ -65,7 +65,7 @@ def with_axes(net: str, toml: str, apart: float, random: Random) -> tuple[str, s
         if "    trans Go" in line and random.random() < 0.8:
             line = line.replace("action (", f"action ({_external(page, random)}", 1)
         if "moveLinear (pose" in line and "trans Back" in line and random.random() < 0.5:
-            where = _number(random.uniform(-400.0, 400.0))
+            where = _number(random.choice([0.2, 1.0]) * random.uniform(-400.0, 400.0))
             at = line.index("moveLinear (pose") + len("moveLinear (")
             end = line.index(")", at) + 1
             old = f"moveLinear ({line[at:end]})"
@@ -103,14 +103,9 @@ z = 0.25
 
 def _external(robot: int, random: Random) -> str:
     """What goes before a task."""
-    where, turned, more = (
-        _number(v)
-        for v in (
-            random.uniform(-450.0, 450.0),
-            random.uniform(-150.0, 150.0),
-            random.uniform(-150.0, 150.0),
-        )
-    )
+    wide = random.choice([0.2, 1.0])
+    where = _number(wide * random.uniform(-450.0, 450.0))
+    turned, more = (_number(wide * random.uniform(-150.0, 150.0)) for _ in range(2))
     if robot == 2 or random.random() < 0.4:
         return f"travel{robot} ({where}); "
     a, b = (_number(random.uniform(-150.0, 150.0)) for _ in range(2))

@@ -79,7 +79,7 @@ def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> No
     if not cell.robots:
         return
     for robot in cell.robots:
-        angles = [round(math.degrees(q), 4) for q in robot.home]
+        angles = [round(math.degrees(q), 4) for q in robot.home[robot.kinematics.joints]]
         if scene.in_radians(angles):
             d.warning(
                 codes.ROBOT_HOME,

@@ -14,6 +14,7 @@ import pytest
 
 from helpers.robot_cells import nowhere, pose_mm
 from pn2code.diagnostics import Diagnostics
+from pn2code.replay.cell import describe
 from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.carried import WithAxes
 from pn2code.robot.commands import (
@@ -330,3 +331,25 @@ def test_a_plate_is_part_of_the_kinematics() -> None:
     frames = k.joint_frames(q)
     assert np.abs(LEFT.T_world_base @ frames[7] - plate_at(0.7)).max() < 1e-12
     assert np.abs(frames[-1] @ k.T_flange_tcp - k.forward(q)).max() < 1e-12
+
+
+def test_the_replay_page_gets_joints_that_slide() -> None:
+    """The page multiplies frames as here (`templates/web/kinematics.js`)."""
+    (robot,) = describe(CELL)["robots"]
+    q = np.array(LEFT.home) + 0.3
+    frames = {0: np.array(robot["base"]).reshape(4, 4)}
+    for joint in robot["joints"]:
+        frame = frames[joint["parent"]] @ np.array(joint["frame"]).reshape(4, 4)
+        if joint["moves"] >= 0:
+            move = np.eye(4)
+            if joint.get("slides"):
+                move[:3, 3] = np.array(joint["axis"]) * q[joint["moves"]]
+            else:
+                move[:3, :3] = rotation_about(joint["axis"], q[joint["moves"]])
+            frame = frame @ move
+        frames[joint["child"]] = frame
+    assert np.abs(frames[robot["tcp"]] - tcp(q)).max() < 1e-7
+    assert [j["moves"] for j in robot["joints"] if j.get("slides")] == [0]
+    numbers = {x["name"]: i for i, x in enumerate(robot["links"])}
+    assert np.abs(frames[numbers["plate"]] - plate_at(q[7])).max() < 1e-7
+    assert len(robot["links"][numbers["plate"]]["visuals"]) == 2
