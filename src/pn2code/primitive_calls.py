@@ -111,7 +111,9 @@ def told(primitive: Primitive, argument: Any) -> tuple[commands.Command, ...]:
     ramp = 1.0 if primitive.acceleration is None else primitive.acceleration * 0.01
     match primitive.command:
         case "move_joint":
-            moves = [commands.MoveJoint(_pose(values[0]), fraction, frame, ramp, along)]
+            moves = [
+                commands.MoveJoint(_pose(values[0]), fraction, frame, ramp, along, primitive.tcp)
+            ]
             return (*_departure(primitive, None, ramp), *moves)
         case "move_axes":
             # By label, a1 .. a6: the order of SML.
@@ -122,16 +124,17 @@ def told(primitive: Primitive, argument: Any) -> tuple[commands.Command, ...]:
             return (commands.MoveExternal(along, fraction, ramp),)
         case "move_linear":
             assert primitive.frame is not None, "an entry without a frame is an error"
-            line = commands.MoveLinear(_pose(values[0]), frame, metres, ramp, along)
+            line = commands.MoveLinear(_pose(values[0]), frame, metres, ramp, along, primitive.tcp)
             if not primitive.approach:
                 return (*_departure(primitive, metres, ramp), line)
             before = _si(*pose_before(_numbers(values[0]), primitive.approach))
-            there = commands.MoveJoint(before, 1.0, frame, ramp, along)
+            there = commands.MoveJoint(before, 1.0, frame, ramp, along, primitive.tcp)
             return (*_departure(primitive, metres, ramp), there, line)
         case "move_circular":
             assert primitive.frame is not None, "an entry without a frame is an error"
             via, end = map(_pose, values[:2])
-            return (commands.MoveCircular(via, end, frame, metres, ramp, along),)
+            arc = commands.MoveCircular(via, end, frame, metres, ramp, along, primitive.tcp)
+            return (arc,)
         case "move_home":
             return (*_departure(primitive, None, ramp), commands.MoveHome(fraction, ramp))
         case "measure":
@@ -161,7 +164,7 @@ def _departure(
     if not primitive.depart:
         return ()
     back = _si(0.0, 0.0, -primitive.depart, 0.0, 0.0, 0.0)
-    return (commands.MoveLinear(back, "tool", speed, ramp),)
+    return (commands.MoveLinear(back, "tool", speed, ramp, tcp=primitive.tcp),)
 
 
 def _numbers(argument: Any) -> tuple[float, ...]:

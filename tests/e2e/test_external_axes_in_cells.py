@@ -46,6 +46,34 @@ def test_scripts_move_external_axes_and_conform_compares_them(tmp_path: Path) ->
         assert (report is None or report.deviation is not None) is differs, (old, told.errors)
 
 
+def test_a_tool_frame_goes_from_the_cell_to_the_script_and_the_run(tmp_path: Path) -> None:
+    toml = changed(
+        TOML,
+        'weldStill = { command = "move_linear", frame = "world" }',
+        'weldStill = { command = "move_linear", frame = "world", tcp = "torch", approach = 0.02 }',
+    )
+    none = Diagnostics()
+    assert generate(welding_cell(tmp_path / "none", toml=toml), none, checked=False) is None
+    assert any("no robot has a tool frame `torch`" in e.message for e in none.errors)
+    toml += "[robots.right.tcps.torch]\nz = 0.1\npitch = 10.0\n"
+    cell = welding_cell(tmp_path / "cell", toml=toml)
+    d = Diagnostics()
+    found = generate(cell, d, checked=False)
+    assert found is not None, [e.message for e in d.errors]
+    text = next(f.text for f in found.files if f.path == "right.tdl")
+    line = next(x for x in text.splitlines() if "move $linear" in x)
+    assert line.endswith("in world with $tool torch")
+    comparison = ProgramComparison(found)
+    owner = next(o for o in found.partition.owners if o.name == "right")
+    for other, differs in ((text, False), (changed(text, "with $tool torch", ""), True)):
+        report = comparison.script(owner, other, d)
+        assert report is not None and (report.deviation is not None) is differs
+    wanted = RunOptions(tmp_path / "run", backend="fake", looks=False, checked=False)
+    seen = run_cell(cell, wanted, d)
+    assert seen is not None and seen.record.verdict == "finished", [e.message for e in d.errors]
+    assert seen.record.accuracy["off the line on linear moves"] < 1e-6
+
+
 def test_a_run_ends_where_the_check_says_that_it_does(tmp_path: Path) -> None:
     cell = welding_cell(tmp_path / "cell")
     d = Diagnostics()

@@ -59,6 +59,7 @@ joint = { command = "move_joint", frame = "bench", speed = 0.5, acceleration = 0
 axes = { command = "move_axes", speed = 0.5, acceleration = 0.4 }
 line = { command = "move_linear", frame = "bench", speed = 0.2, acceleration = 0.3, approach = 0.2 }
 arc = { command = "move_circular", frame = "tool", speed = 0.2, acceleration = 0.3 }
+grasp = { command = "move_joint", tcp = "gripper" }
 both = { command = "move_external", track = "rail", turntable = "plate", speed = 0.5, acceleration = 0.4 }
 led = { command = "move_linear", frame = "seam", track = "rail", turntable = "plate" }
 home = { command = "move_home", speed = 0.5, acceleration = 0.2, depart = 0.05 }
@@ -76,6 +77,14 @@ tool = "counterpoint"
 base = { x = 1.0, y = 2.0, z = 0.5, roll = 1.0, pitch = 2.0, yaw = 3.0 }
 home = [0.0, -100.0, 110.0, 0.0, 80.0, 0.0]
 branch = "front/up/plus"
+
+[robots.arm.tcps.gripper]
+x = 0.1
+y = 0.2
+z = 0.3
+roll = 4.0
+pitch = 5.0
+yaw = 6.0
 
 [robots.arm.axes.rail]
 kind = "track"
@@ -291,6 +300,9 @@ def read(folder: Path, data: dict[str, Any], section: str) -> tuple[str, Diagnos
         shown += [
             (r.name, r.arm.name, r.tool and r.tool.name, r.base, r.home, r.branch, r.turning)
             for r in cell.robots
+        ]
+        shown += [
+            (name, k.T_flange_tcp.tolist()) for r in cell.robots for name, k in r.tcps.items()
         ]
         shown += [a.described() for r in cell.robots for a in r.axes]
     return re.sub(r"Origin\([^()]*\)", "", repr(shown).replace(str(folder), "")), d

@@ -42,6 +42,7 @@ class Primitive:
         depart: of moves but move_circular: mm; the arm goes first straight back by so much; 0: it does not.
         along: of moves: external axes that move as well, each with whether it is a track; the function takes their
             positions, in mm and degrees, behind the poses.
+        tcp: of moves to poses: the tool frame that comes there; "": that of the tool.
     """
 
     function: str
@@ -55,6 +56,7 @@ class Primitive:
     approach: float = 0.0
     depart: float = 0.0
     along: tuple[tuple[str, bool], ...] = ()
+    tcp: str = ""
 
     @property
     def places(self) -> int:
@@ -220,6 +222,13 @@ class CellConfig:
         axes = table.get("axes") if isinstance(table, dict) else None
         named = axes.items() if isinstance(axes, dict) else ()
         return {name: str(x.get("kind", "track")) for name, x in named if isinstance(x, dict)}
+
+    def tcps(self, robot: str) -> tuple[str, ...]:
+        """The names of the further tool frames of a robot."""
+        robots = self.geometry.get("robots")
+        table = robots.get(robot) if isinstance(robots, dict) else None
+        tcps = table.get("tcps") if isinstance(table, dict) else None
+        return tuple(tcps) if isinstance(tcps, dict) else ()
 
     def turns_with(self, frame: str) -> str:
         """The turntable on which a frame is, as `ROBOT.AXIS`; "": it stands."""

@@ -374,6 +374,7 @@ def _primitives(r: Tables, data: dict[str, Any]) -> dict[str, Primitive]:
             _scaled(r, table, at, command, "approach", 1000.0) or 0.0,
             _scaled(r, table, at, command, "depart", 1000.0) or 0.0,
             tuple(_along(r, data, table, at, command)),
+            _tcp(r, data, table, at) if "tcp" in own else "",
         )
         _check_approach(r, out[name], at)
     return out
@@ -399,6 +400,25 @@ def _frame(
         )
         return ""
     return "" if command == "move_joint" and frame == "world" else frame
+
+
+def _tcp(r: Tables, data: dict[str, Any], table: dict[str, Any], at: KeyPath) -> str:
+    """A further tool frame of some robot."""
+    if "tcp" not in table:
+        return ""
+    name = str(r.get(table, at, PRIMITIVE["tcp"], ""))
+    known = {
+        tcp for x in _table(data.get("robots")).values() for tcp in _table(_table(x).get("tcps"))
+    }
+    if name and name not in known:
+        r.d.error(
+            codes.CELL_VALUE,
+            f"no robot has a tool frame `{name}`",
+            r.at(*at, "tcp"),
+            hint=did_you_mean(name, sorted(known), "")
+            or f"add a table `[robots.NAME.tcps.{name}]` (docs/robots.md)",
+        )
+    return name
 
 
 def _along(

@@ -283,6 +283,14 @@ class _Checker:
                     hint=f"add `[robots.{owner.name}.axes.{axis}]` to {self.config.path.name}, or name another axis "
                     f"in `primitives.{symbol.name}`",
                 )
+        if primitive.tcp and primitive.tcp not in self.config.tcps(owner.name):
+            self.d.error(
+                codes.PRIMITIVE_AXIS,
+                f"`{symbol.name}` moves tool frame `{primitive.tcp}`, which {owner.phrase} does not have",
+                code.action.span,
+                notes=[f"it is called in the code segment of transition `{t.short}`"],
+                hint=f"add `[robots.{owner.name}.tcps.{primitive.tcp}]` to {self.config.path.name}",
+            )
         plate = self.config.turns_with(primitive.frame or "")
         if plate and plate.split(".")[0] != owner.name:
             self.d.error(

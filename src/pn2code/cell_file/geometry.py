@@ -432,6 +432,15 @@ ROBOT = Section(
             words=("any", *BRANCHES),
         ),
         Key(
+            "tcps",
+            "named",
+            "A further tool frame, in the frame of the flange, to which moves can refer (`tcp` of an entry of "
+            "`[primitives]`).",
+            inner=POSE,
+            entry="NAME",
+            is_word=True,
+        ),
+        Key(
             "axes",
             "named",
             "An external axis, by its name, as of a robot: a track under the base, a turntable under the work piece "

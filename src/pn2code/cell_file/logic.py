@@ -199,6 +199,13 @@ PRIMITIVE = Section(
             only=(*WITH_AXES, "move_home"),
         ),
         Key(
+            "tcp",
+            "text",
+            "Which tool frame comes to the pose, a name of `[robots.NAME.tcps]`; without it, the TCP of the tool.",
+            "the name of a tool frame of a robot",
+            only=("move_joint", *LED),
+        ),
+        Key(
             "track",
             "text",
             "A track of the robot that moves as well: the function takes its position, too, in mm.",

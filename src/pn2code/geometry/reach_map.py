@@ -26,6 +26,7 @@ from pn2code.robot.commands import (
     MoveHome,
     MoveJoint,
     MoveLinear,
+    tcp_of,
 )
 from pn2code.robot.kinematics import BRANCHES, CHARACTERISTIC_LENGTH, TURN, Kinematics
 from pn2code.robot.model import AXES
@@ -78,6 +79,10 @@ class Task:
                         own = matrix_of(planner.cell.frames[leg.command.frame]) @ own
             if own is None:
                 continue
+            tcp = "" if leg.command is None else tcp_of(leg.command)
+            if tcp and (not robot.axes or isinstance(leg.path, LinearTrajectory | AlongTrajectory)):
+                back = inverse(robot.tcps[tcp].T_flange_tcp) @ robot.kinematics.T_flange_tcp
+                own = own @ back
             key = tuple(np.round(own[[0, -1]], _DIGITS).ravel().tolist())
             if key not in seen:
                 seen.add(key)

@@ -171,7 +171,7 @@ class Track:
         )
         path = leg.path.led if isinstance(leg.path, AlongTrajectory) else leg.path
         if isinstance(path, LinearTrajectory):
-            self._follower = Follower(shape.robot.kinematics.alone, path)
+            self._follower = Follower(path.kinematics, path)
 
     @property
     def robot(self) -> str:
@@ -253,7 +253,8 @@ class Track:
         path = self.leg.path
         assert isinstance(path, LinearTrajectory | AlongTrajectory)
         kinematics = self.shape.robot.kinematics
-        tcp = kinematics.T_flange_tcp
+        led = path.led if isinstance(path, AlongTrajectory) else path
+        tcp = led.kinematics.T_flange_tcp
         corners = link.corners
         if link.joint == kinematics.joints.stop:
             corners = (corners - kinematics.T_axis_flange[:3, 3]) @ kinematics.T_axis_flange[:3, :3]

@@ -44,6 +44,7 @@ class MoveJoint:
         frame: in which the pose is given: "world", or a name of `[frames]`.
         acceleration: the fraction (0..1] of the configured acceleration, as of all moves.
         along: external axes that move together with the arm, as of all moves but HOME; others stand still.
+        tcp: which comes to the pose, a name of `[robots.NAME.tcps]`, as of all moves to poses; "": that of the tool.
     """
 
     target: Pose
@@ -51,6 +52,7 @@ class MoveJoint:
     frame: str = "world"
     acceleration: float = 1.0
     along: tuple[Along, ...] = ()
+    tcp: str = ""
 
 
 @frozen
@@ -94,6 +96,7 @@ class MoveLinear:
     speed: float | None = None
     acceleration: float = 1.0
     along: tuple[Along, ...] = ()
+    tcp: str = ""
 
 
 @frozen
@@ -111,6 +114,7 @@ class MoveCircular:
     speed: float | None = None
     acceleration: float = 1.0
     along: tuple[Along, ...] = ()
+    tcp: str = ""
 
 
 @frozen
@@ -164,3 +168,8 @@ def without_pace(move: Move) -> Move:
     if isinstance(move, MoveLinear | MoveCircular):
         return replace(move, speed=None, acceleration=1.0)
     return replace(move, speed=1.0, acceleration=1.0)
+
+
+def tcp_of(command: Command) -> str:
+    """The tool frame that a command refers to; "": that of the tool."""
+    return command.tcp if isinstance(command, MoveJoint | MoveLinear | MoveCircular) else ""

@@ -35,7 +35,9 @@ from pn2code.robot.commands import (
     Pose,
     ToolAction,
     Wait,
+    tcp_of,
 )
+from pn2code.robot.kinematics import Kinematics
 from pn2code.robot.motion import (
     LinearTrajectory,
     MotionFault,
@@ -54,6 +56,7 @@ from pn2code.robot.transforms import Array, describe, difference, inverse, matri
 CHECK_LENGTH = 0.005  # m: on a line, samples are no further apart than this on average,
 CHECK_ANGLE = math.radians(2.0)  # nor than this
 MotionKind = Literal["ptp", "lin", "circ", "tool", "measure", "wait"]
+_OWN = np.eye(4)
 _NO_FRAMES: Mapping[str, Pose] = MappingProxyType({})
 
 
@@ -115,6 +118,8 @@ class RobotExecutor:
         self.robot = robot
         self._config = config
         self._limits = robot.limits(config)
+        own = inverse(robot.kinematics.T_flange_tcp)
+        self._tcps = {name: own @ k.T_flange_tcp for name, k in robot.tcps.items()}
         self._frames = {name: matrix_of(pose) for name, pose in frames.items()}
         self._T_world_base = robot.T_world_base
         self._T_base_world = inverse(self._T_world_base)
@@ -200,7 +205,7 @@ class RobotExecutor:
         """
         told: Command = command
         if isinstance(command, MoveLinear | MoveCircular):
-            told = MoveJoint(command.target, frame=command.frame)
+            told = MoveJoint(command.target, frame=command.frame, tcp=command.tcp)
         try:
             match command:
                 case MoveAxes():
@@ -212,7 +217,7 @@ class RobotExecutor:
                 case MoveJoint() | MoveLinear() | MoveCircular():
                     q = self._towards(command.along)
                     if command.frame != "tool" and not self.depends(command):
-                        self._found(command.target, command.frame, q)
+                        self._found(command, q)
         except MotionFault as fault:
             raise self._named(fault, told) from None
 
@@ -222,7 +227,7 @@ class RobotExecutor:
         q = np.array(self.q)
         for a in command.along:
             q[self.robot.index(a.axis)] = a.position
-        target = self._in_base(command.target, command.frame, q)
+        target = self._of_tool(self._in_base(command.target, command, q), command)
         return inverse(k.T_base_arm(q)) @ target if isinstance(k, WithAxes) else target
 
     def depends(self, command: Move) -> bool:
@@ -239,30 +244,57 @@ class RobotExecutor:
             needed.add(self.robot.arm.axes[index])
         return frozenset(needed - {a.axis for a in command.along})
 
-    def _found(self, pose: Pose, frame: str, q: Array) -> tuple[Array, Array]:
-        """The joint position nearest to `q`, with the external axes as there, and the target in the base frame."""
-        target = self._in_base(pose, frame, q)
+    def _found(
+        self, command: MoveJoint | MoveLinear | MoveCircular, q: Array
+    ) -> tuple[Array, Array]:
+        """The joint position nearest to `q`, with the external axes as there, and where the tool's TCP is then."""
+        target = self._of_tool(self._in_base(command.target, command, q), command)
         found = self.robot.kinematics.nearest(target, q, self.robot.branch)
         if found is None:
             raise self._unreachable(target, q)
         return found.q, target
 
-    def _in_base(self, pose: Pose, frame: str, q: Array) -> Array:
+    def _tcp(self, command: MoveJoint | MoveLinear | MoveCircular) -> tuple[Kinematics, Array]:
+        """The kinematics to the TCP that a move refers to, and where that is in the frame of the tool's own."""
+        if not command.tcp:
+            return self.robot.kinematics, _OWN
+        if command.tcp not in self._tcps:
+            raise MotionFault("bad-command", f"it has no tool frame `{command.tcp}`")
+        return self.robot.tcps[command.tcp], self._tcps[command.tcp]
+
+    def _of_tool(self, frame: Array, command: MoveJoint | MoveLinear | MoveCircular) -> Array:
+        """Where the tool's own TCP is when the one that a move refers to is at `frame`."""
+        return np.asarray(frame @ inverse(self._tcp(command)[1])) if command.tcp else frame
+
+    def _begins(self, command: MoveLinear | MoveCircular) -> Array:
+        """Where the TCP that a move refers to is when it begins, in the base frame."""
+        return (
+            np.asarray(self._T_base_tcp @ self._tcp(command)[1])
+            if command.tcp
+            else self._T_base_tcp
+        )
+
+    def _in_base(
+        self, pose: Pose, command: MoveJoint | MoveLinear | MoveCircular, q: Array
+    ) -> Array:
         """A pose of the world, of a frame that has a name, or of the tool, in the base frame."""
-        plate, own = self._given(pose, frame)
+        plate, own = self._given(pose, command)
         if plate is None:
             return own
         k = self.robot.kinematics
         assert isinstance(k, WithAxes), "a plate is an external axis"
         return np.asarray(k.T_base_table(plate, float(q[plate])) @ own)
 
-    def _given(self, pose: Pose, frame: str) -> tuple[int | None, Array]:
+    def _given(
+        self, pose: Pose, command: MoveJoint | MoveLinear | MoveCircular
+    ) -> tuple[int | None, Array]:
         """A pose on the plate of a turntable, by its index; or, of other frames, in the base frame."""
-        own = self._checked(pose)
+        own, frame = self._checked(pose), command.frame
         if frame == "world":
             return None, np.asarray(self._T_base_world @ own)
         if frame == "tool":
-            return None, np.asarray(self._T_base_tcp @ own)
+            assert not isinstance(command, MoveJoint), "increments are on lines and arcs"
+            return None, np.asarray(self._begins(command) @ own)
         if frame in self.robot.turning:
             index, place = self.robot.turning[frame]
             return index, matrix_of(place) @ own
@@ -331,7 +363,7 @@ class RobotExecutor:
         )
 
     def _to_pose(self, command: MoveJoint, now: float) -> Motion:
-        q, target = self._found(command.target, command.frame, self._towards(command.along))
+        q, target = self._found(command, self._towards(command.along))
         path = plan_ptp(self.robot.kinematics, self.q, q, self._limited(command), command.speed)
         return self._moving(command, "ptp", now, path, q, target)
 
@@ -343,48 +375,50 @@ class RobotExecutor:
     def _linear(self, command: MoveLinear, now: float) -> Motion:
         if self.robot.axes or command.along:
             return self._along(command, "lin", now)
-        target = self._in_base(command.target, command.frame, self.q)
+        target = self._in_base(command.target, command, self.q)
         path = plan_lin(
-            self.robot.kinematics,
+            self._tcp(command)[0],
             self.q,
-            self._T_base_tcp,
+            self._begins(command),
             target,
             self._limited(command),
             command.speed,
         )
-        return self._moving(command, "lin", now, path, path.q(path.duration), target)
+        end = self._of_tool(target, command)
+        return self._moving(command, "lin", now, path, path.q(path.duration), end)
 
     def _along(self, command: MoveLinear | MoveCircular, kind: MotionKind, now: float) -> Motion:
         """A line or an arc of a robot that has external axes."""
         end = self._towards(command.along)
-        k = self.robot.kinematics
+        k, _ = self._tcp(command)
         assert isinstance(k, WithAxes), "it has external axes"
-        plate, target = self._given(command.target, command.frame)
+        plate, target = self._given(command.target, command)
         via = None
         if isinstance(command, MoveCircular):
-            _, via = self._given(command.via, command.frame)
-        wanted = Led(self.q, end, self._T_base_tcp, plate, target, via)
+            _, via = self._given(command.via, command)
+        wanted = Led(self.q, end, self._begins(command), plate, target, via)
         path = plan_led(k, wanted, self._limited(command), command.speed)
         last = path.q(path.duration)
         if plate is not None:
             target = k.T_base_table(plate, float(last[plate])) @ target
-        return self._moving(command, kind, now, path, last, target)
+        return self._moving(command, kind, now, path, last, self._of_tool(target, command))
 
     def _circular(self, command: MoveCircular, now: float) -> Motion:
         if self.robot.axes or command.along:
             return self._along(command, "circ", now)
-        via = self._in_base(command.via, command.frame, self.q)
-        target = self._in_base(command.target, command.frame, self.q)
+        via = self._in_base(command.via, command, self.q)
+        target = self._in_base(command.target, command, self.q)
         path = plan_circ(
-            self.robot.kinematics,
+            self._tcp(command)[0],
             self.q,
-            self._T_base_tcp,
+            self._begins(command),
             via,
             target,
             self._limited(command),
             command.speed,
         )
-        return self._moving(command, "circ", now, path, path.q(path.duration), target)
+        end = self._of_tool(target, command)
+        return self._moving(command, "circ", now, path, path.q(path.duration), end)
 
     def _checked(self, pose: Pose) -> Array:
         values = (pose.x, pose.y, pose.z, pose.rx, pose.ry, pose.rz)
@@ -453,7 +487,7 @@ class RobotExecutor:
         target = pose_of(self._T_world_base @ T_end)
         step = self._config.sample
         if isinstance(path, AlongTrajectory) or (
-            isinstance(path, LinearTrajectory) and kind == "circ"
+            isinstance(path, LinearTrajectory) and (kind == "circ" or tcp_of(command))
         ):
             way, turn = path.line.length, path.line.angle
             parts = math.ceil(max(way / CHECK_LENGTH, turn / CHECK_ANGLE, 1.0) - 1e-6)

@@ -149,8 +149,12 @@ class Kinematics:
     @classmethod
     def of(cls, arm: Arm, tool: Tool | None, at: Origin, d: Diagnostics) -> Kinematics | None:
         """The kinematics of an arm; None (and a diagnostic) if there is no closed form for it."""
+        return cls.to(arm, np.eye(4) if tool is None else tool.T_flange_tcp, at, d)
+
+    @classmethod
+    def to(cls, arm: Arm, frame: Array, at: Origin, d: Diagnostics) -> Kinematics | None:
+        """The same of a TCP that is given in the frame of the flange."""
         chain, derived = _chain(arm)
-        frame = np.eye(4) if tool is None else tool.T_flange_tcp
         if not isinstance(derived, str):
             return cls(arm, frame, chain, SphericalWrist(*derived, frame))
         form = parallel.derive(chain, frame)

@@ -352,6 +352,7 @@ class LinearTrajectory:
         self, kinematics: Kinematics, line: Way, branch: Branch, law: Law, start: Array
     ) -> None:
         self._k, self.line, self.branch, self._law = kinematics, line, branch, law
+        self.kinematics = kinematics
         self.duration = law.duration
         count = max(
             2,

@@ -97,6 +97,7 @@ class CellRobot:
         home: joint position, rad (m of tracks).
         branch: the only one joint moves may end in; None: the fastest to reach.
         axes: its external ones; `home` has all.
+        tcps: kinematics to further tool frames, by name.
         turning: frames that turn with a turntable of it, by name: the axis, by its index, and the pose on its plate.
     """
 
@@ -109,6 +110,7 @@ class CellRobot:
     branch: Branch | None
     axes: Externals = field(default_factory=Externals)
     turning: Mapping[str, tuple[int, Pose]] = field(default_factory=dict)
+    tcps: Mapping[str, Kinematics] = field(default_factory=dict)
 
     @property
     def root(self) -> str:

@@ -38,7 +38,8 @@ from pn2code.robot.robot_cell import (
 )
 from pn2code.robot.scene_objects import SceneObject, read_object
 from pn2code.robot.table import Locate, Table, is_number
-from pn2code.robot.table_poses import read_pose
+from pn2code.robot.table_poses import read_own_pose, read_pose
+from pn2code.robot.transforms import matrix_of
 
 RADIANS = "angles in cell.toml are in degrees; if these are radians, multiply them by 57.2958"
 FEW_RADIANS = 3.2
@@ -124,6 +125,8 @@ def _robot(t: Table, name: str, folder: Path) -> CellRobot | None:
     home_deg = t.numbers("home")
     branch_name = t.text("branch")
     axes = read_axes(t, name, base, folder)
+    frames = t.table("tcps").named(t.inner("tcps")) if t.has("tcps") else ()
+    further = {key: read_own_pose(p) for key, p in frames}
     t.done()
     if arm is None or (tool is None and tool_name != "none"):
         return None
@@ -142,14 +145,20 @@ def _robot(t: Table, name: str, folder: Path) -> CellRobot | None:
     if kinematics is None:
         return None
     branch = BRANCH_NAMES.get(branch_name)
+    tcps = {
+        key: own
+        for key, pose in further.items()
+        if (own := Kinematics.to(arm, matrix_of(pose), t.at("model"), t.d)) is not None
+    }
     if not axes:
-        return CellRobot(name, arm, tool, kinematics, base, home, branch)
+        return CellRobot(name, arm, tool, kinematics, base, home, branch, tcps=tcps)
     whole = with_axes(arm, axes, name, t.at("axes"), t.d)
     if whole is None:
         return None
     home = (*(a.home for a in axes.tracks), *home, *(a.home for a in axes.tables))
     carried = WithAxes(kinematics, axes, whole)
-    return CellRobot(name, whole, tool, carried, base, home, branch, axes)
+    tcps = {key: WithAxes(own, axes, whole) for key, own in tcps.items()}
+    return CellRobot(name, whole, tool, carried, base, home, branch, axes, tcps=tcps)
 
 
 def _scene(

@@ -50,23 +50,24 @@ def of(
     name, frame = primitive.function, primitive.frame
     ramp = None if primitive.acceleration is None else t.Quantity(primitive.acceleration, "%")
     along = tuple(_external(primitive, positions, span))
+    tcp = primitive.tcp
     out: list[t.Move] = []
     if primitive.depart:
         speed = at if primitive.is_linear else None
         back = _pose(0.0, 0.0, -primitive.depart)
-        out.append(t.Move(t.Motion.LINEAR, back, "tool", speed, None, ramp))
+        out.append(t.Move(t.Motion.LINEAR, back, "tool", speed, None, ramp, tcp=tcp))
     match primitive.command:
         case "move_linear":
             goal = pose(argument, name, span)
             if primitive.approach:
                 distance = t.Quantity(primitive.approach, "mm")
                 before = t.CallExpression("before", (goal, distance))
-                out.append(t.Move(t.Motion.JOINT, before, frame, _ALL, None, ramp, along))
-            out.append(t.Move(t.Motion.LINEAR, goal, frame, at, None, ramp, along))
+                out.append(t.Move(t.Motion.JOINT, before, frame, _ALL, None, ramp, along, tcp))
+            out.append(t.Move(t.Motion.LINEAR, goal, frame, at, None, ramp, along, tcp))
         case "move_circular":
             assert isinstance(argument, Rec), "the cell has been checked"
             via, goal = (pose(argument.get(label), name, span) for label in ("1", "2"))
-            out.append(t.Move(t.Motion.CIRCULAR, goal, frame, at, via, ramp, along))
+            out.append(t.Move(t.Motion.CIRCULAR, goal, frame, at, via, ramp, along, tcp))
         case "move_axes":
             axes = _axes(argument, name, span)
             out.append(t.Move(t.Motion.JOINT, axes, None, at, None, ramp, along))
@@ -74,7 +75,7 @@ def of(
             out.append(t.Move(t.Motion.EXTERNAL, None, None, at, None, ramp, along))
         case "move_joint":
             goal = pose(argument, name, span)
-            out.append(t.Move(t.Motion.JOINT, goal, frame, at, None, ramp, along))
+            out.append(t.Move(t.Motion.JOINT, goal, frame, at, None, ramp, along, tcp))
         case _:
             out.append(t.Move(t.Motion.JOINT, None, None, at, None, ramp))
     return out

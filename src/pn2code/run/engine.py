@@ -42,10 +42,11 @@ from pn2code.robot.commands import (
     Pose,
     ToolAction,
     Wait,
+    tcp_of,
 )
 from pn2code.robot.executor import Motion, RobotExecutor
 from pn2code.robot.monitor import Monitor, Sample
-from pn2code.robot.motion import MotionFault
+from pn2code.robot.motion import LinearTrajectory, MotionFault
 from pn2code.robot.parts import PartFault
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array, matrix_of, pose_of
@@ -620,6 +621,9 @@ def kind_and_label(command: Command) -> tuple[str, str]:
 def _off_line(motion: Motion, seen: Sample) -> float:
     """How far the TCP is off its line, m; on a turntable off the line on its plate."""
     path = motion.trajectory
+    if isinstance(path, LinearTrajectory) and tcp_of(motion.command):
+        ends = path.line.at(np.array([0.0, 1.0]))
+        return distance_to_line(pose_of(path.kinematics.forward(seen.q)), *map(pose_of, ends))
     if not isinstance(path, AlongTrajectory):
         return distance_to_line(seen.pose, motion.start, motion.target)
     now = path.on_plate(seen.q)
@@ -649,7 +653,9 @@ def _words(command: Command) -> str:
             frame = "world" if isinstance(command, Measure) else command.frame
             within = "" if frame in ("world", "tool") else f" in {frame}"
             moved = () if isinstance(command, Measure) else command.along
-            return f"{kind_and_label(command)[1]} {mm} mm, {deg} deg{within}{_with(moved)}"
+            tcp = "" if isinstance(command, Measure) else command.tcp
+            by = f" by {tcp}" if tcp else ""
+            return f"{kind_and_label(command)[1]} {mm} mm, {deg} deg{within}{by}{_with(moved)}"
         case MoveAxes(axes=axes):
             shown = " ".join(f"{np.degrees(v):.4f}" for v in axes)
             return f"axes {shown} deg{_with(command.along)}"

@@ -36,7 +36,7 @@ block: statement*
 move: "move" MOTION target via? ("in" frame)? along? pace? ramp?
     | "move" MOTION along pace? ramp?
 along: "with" external ("," external)*
-external: MOTION NAME "=" expression
+external: MOTION NAME ("=" expression)?
 ?target: HOME | axes | expression
 axes: "axes" "(" expression ("," expression)* ")"
 via: "via" expression

@@ -358,16 +358,17 @@ class Interpreter:
                     axes = tuple(math.radians(self._number(a)) for a in angles)
                     return commands.MoveAxes(axes, joint, ramp, along)
                 case target:
-                    return commands.MoveJoint(self._pose(target), joint, frame, ramp, along)
+                    return commands.MoveJoint(self._pose(target), joint, frame, ramp, along, s.tcp)
         if speed is not None and speed <= 0:
             raise ScriptError(f"linear speed {speed:g} mm/s is not above zero")
         metres = None if speed is None else speed / 1000.0
         assert s.target is not None and not isinstance(s.target, t.Axes), "it was checked"
         if s.motion is t.Motion.LINEAR:
-            return commands.MoveLinear(self._pose(s.target), frame, metres, ramp, along)
+            return commands.MoveLinear(self._pose(s.target), frame, metres, ramp, along, s.tcp)
         assert s.via is not None, "it was checked"
         via = self._pose(s.via)
-        return commands.MoveCircular(via, self._pose(s.target), frame, metres, ramp, along)
+        end = self._pose(s.target)
+        return commands.MoveCircular(via, end, frame, metres, ramp, along, s.tcp)
 
     def _external(self, a: t.Along) -> commands.Along:
         number = self._number(a.position)

@@ -138,7 +138,7 @@ def _uses(i: flow.Instruction) -> Iterator[t.Name]:
 def expressions_of(s: t.Simple) -> tuple[t.Expression, ...]:
     """The expressions that a statement evaluates."""
     match s:
-        case t.Move(_, target, _, speed, via, acceleration, along):
+        case t.Move(_, target, _, speed, via, acceleration, along, _):
             goal = target.angles if isinstance(target, t.Axes) else (target,)
             others = (via, *(a.position for a in along), speed, acceleration)
             return tuple(e for e in (*goal, *others) if e is not None)

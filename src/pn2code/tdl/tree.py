@@ -193,6 +193,7 @@ class Move:
     """`move $joint p`, `move $joint home`, `move $linear p in tool at 50 mm/s`, `move $circular q via p`.
 
     `target` None is home, or of `$external` nothing; `along`: external axes that move as well (`with ...`);
+    `tcp`: the tool frame that comes to the pose (`with $tool gripper`), "": that of the tool;
     `frame` None: none was written, which means `world`; `acceleration` None: all of it.
     """
 
@@ -203,6 +204,7 @@ class Move:
     via: Expression | None = None
     acceleration: Expression | None = None
     along: tuple[Along, ...] = ()
+    tcp: str = ""
     frame_span: Span | None = field(default=None, compare=False, repr=False)
     span: Span = field(default=GENERATED, compare=False, repr=False)
 

@@ -170,7 +170,7 @@ def _constant(move: t.Move, constants: _Constants) -> Move:
             return MoveLinear(pose, frame, along=along)
         case _:
             return MoveCircular(
-                pose, pose, frame, along=along
+                pose, pose, frame, along=along, tcp=move.tcp
             )  # of an arc only its end is looked at
 
 

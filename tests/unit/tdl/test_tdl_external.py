@@ -31,6 +31,11 @@ BOTH = "$track rail = 1200 mm, $turntable plate = -30 deg"
             f"move $linear p in bench with {BOTH} at 50 mm/s",
             MoveLinear(P, "bench", 0.05, along=(RAIL, PLATE)),
         ),
+        ("move $linear p in bench with $tool grip", MoveLinear(P, "bench", tcp="grip")),
+        (
+            "move $joint p with $tool grip, $track rail = 1200 mm",
+            MoveJoint(P, along=(RAIL,), tcp="grip"),
+        ),
         (
             "move $joint p with $track rail = 1200 mm at 40 %",
             MoveJoint(P, 0.4, along=(RAIL,)),
@@ -50,6 +55,9 @@ def test_what_the_arm_is_told(move: str, command: object) -> None:
     ("move", "message"),
     [
         ("move $joint with $track rail = 1 mm", "says nowhere to go"),
+        ("move $joint home with $tool grip", "only a move to a pose has a tool frame"),
+        ("move $joint p with $tool grip, $tool grap", "a move has one tool frame"),
+        ("move $joint p with $track rail", "`$track rail` says nowhere to go"),
         ("move $external p with $track rail = 1 mm", "the arm stands still"),
         ("move $external with $lift rail = 1 mm", "no external axis of the kind `$lift`"),
         ("move $external with $track rail = 1 deg", "the position of track `rail`"),

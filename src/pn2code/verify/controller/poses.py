@@ -296,7 +296,10 @@ class Poses:
 def _goal(command: Move) -> object:
     """Where a move leads, whatever kind of move it is."""
     match command:
-        case MoveJoint(target=pose, frame="world") | MoveLinear(target=pose, frame="world"):
+        case (
+            MoveJoint(target=pose, frame="world", tcp="")
+            | MoveLinear(target=pose, frame="world", tcp="")
+        ):
             return pose
         case _:
             return without_pace(command)
