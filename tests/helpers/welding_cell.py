@@ -9,6 +9,7 @@ round. The left arm takes its track along and turns the plate while it welds; th
 from __future__ import annotations
 
 from pathlib import Path
+from random import Random
 
 from helpers.netbuilder import cpn
 
@@ -179,6 +180,28 @@ z = 0.1
 joint_speed = 0.4
 linear_speed = 0.1
 """
+
+
+def varied(random: Random) -> tuple[str, str]:
+    """The net and the cell.toml with other numbers; in some the arms work at the same time."""
+
+    def real(low: float, high: float) -> str:
+        return f"{random.uniform(low, high):.1f}".replace("-", "~")
+
+    net = NET
+    if random.random() < 0.6:
+        net = net.replace("      out f1 : n\n", "      out f1 : n\n      out f2 : n\n", 1)
+        net = net.replace("      in d1 : n\n      out f2 : n\n", "      in d1 : n\n", 1)
+    net = net.replace("at (~100.0, ~60.0, 60.0)", f"at ({real(-160, 0)}, {real(-90, 90)}, 60.0)")
+    seam = f"at ({real(0, 160)}, {real(-90, 90)}, {real(-30, 40)}), {real(-200, 500)}"
+    net = net.replace("at (100.0, ~60.0, 15.0), 300.0", seam)
+    net = net.replace("30.0 * Real.fromInt n", f"{real(-60, 60)} * Real.fromInt n")
+    y, along = real(350, 950), real(-200, 400)
+    net = net.replace("(at (0.0, 950.0, 1000.0), 200.0)", f"(at (0.0, {y}, 1000.0), {along})")
+    net = net.replace("at (60.0, 950.0, 1000.0)", f"at ({real(-200, 200)}, {y}, {real(850, 1100)})")
+    apart, long = random.uniform(1.5, 2.1), random.uniform(0.3, 1.6)
+    toml = TOML.replace("y = 2.0, z = 0.3", f"y = {apart:.3f}, z = 0.3")
+    return net, toml.replace("[0.4, 0.2, 0.05]", f"[{long:.3f}, 0.2, 0.05]")
 
 
 def welding_cell(folder: Path, net: str = NET, toml: str = TOML) -> Path:

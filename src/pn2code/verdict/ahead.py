@@ -125,15 +125,25 @@ def _reach(arms: Arms, ir: RobotIR, d: Diagnostics) -> None:
     for origin, command in _constant_poses(ir):
         problem = arms.why_unreachable(ir.name, command)
         if problem:
-            what = "joint position" if isinstance(command, MoveAxes) else "pose"
-            what = "position of an axis" if isinstance(command, MoveExternal) else what
+            what, hint = (
+                "pose",
+                f"change the pose (mm and degrees), or `base` of robot `{ir.name}` in cell.toml (m and degrees)",
+            )
+            if isinstance(command, MoveAxes):
+                what, hint = (
+                    "joint position",
+                    "change its angles (degrees), or where they come from",
+                )
+            elif isinstance(command, MoveExternal):
+                what, hint = (
+                    "position of an external axis",
+                    "change the position (mm or degrees), or `from` and `to` of the axis in cell.toml",
+                )
             d.error(
                 codes.ROBOT_REACH,
                 f"a constant {what} cannot be reached: {problem}",
                 origin,
-                hint="change its angles (degrees), or where they come from"
-                if isinstance(command, MoveAxes)
-                else f"change the pose (mm and degrees), or `base` of robot `{ir.name}` in cell.toml (m and degrees)",
+                hint=hint,
             )
 
 
