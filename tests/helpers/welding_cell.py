@@ -196,9 +196,9 @@ def varied(random: Random) -> tuple[str, str]:
     seam = f"at ({real(0, 160)}, {real(-90, 90)}, {real(-30, 40)}), {real(-200, 500)}"
     net = net.replace("at (100.0, ~60.0, 15.0), 300.0", seam)
     net = net.replace("30.0 * Real.fromInt n", f"{real(-60, 60)} * Real.fromInt n")
-    y, along = real(350, 950), real(-200, 400)
+    y, along = real(60, 700), real(-200, 400)
     net = net.replace("(at (0.0, 950.0, 1000.0), 200.0)", f"(at (0.0, {y}, 1000.0), {along})")
-    net = net.replace("at (60.0, 950.0, 1000.0)", f"at ({real(-200, 200)}, {y}, {real(850, 1100)})")
+    net = net.replace("at (60.0, 950.0, 1000.0)", f"at ({real(-200, 200)}, {y}, {real(780, 1000)})")
     apart, long = random.uniform(1.5, 2.1), random.uniform(0.3, 1.6)
     toml = TOML.replace("y = 2.0, z = 0.3", f"y = {apart:.3f}, z = 0.3")
     return net, toml.replace("[0.4, 0.2, 0.05]", f"[{long:.3f}, 0.2, 0.05]")
