@@ -4,9 +4,10 @@ task = Task.of(situations, robot)             # poses of its TCP in the world: e
 found = reach_map(robot, task, bases)         # Map: of each base reach, conditioning, margin of the limits
 found.reach[i], found.condition[i], found.limit[i]
 
-A base keeps its height and its directions; x and y are looked at. A joint move may end in any branch, or in the one
-that the robot must have; a line must stay in one branch from its beginning to its end, in samples. Clearances are not
-looked at here: `check --geometry` does, for a base that was chosen.
+Where tracks carry the arm, they do so as the net says, and the map is of where they begin. A base keeps its height and
+its directions; x and y are looked at. A joint move may end in any branch, or in the one that the robot must have; a
+line must stay in one branch from its beginning to its end, in samples. Clearances are not looked at here: `check
+--geometry` does, for a base that was chosen.
 """
 
 from __future__ import annotations
@@ -17,13 +18,23 @@ import numpy as np
 
 from pn2code.base.frozen import frozen
 from pn2code.geometry.situations import Situations
-from pn2code.robot.commands import MoveAxes, MoveCircular, MoveHome, MoveJoint, MoveLinear
+from pn2code.robot.along import AlongTrajectory
+from pn2code.robot.commands import (
+    MoveAxes,
+    MoveCircular,
+    MoveExternal,
+    MoveHome,
+    MoveJoint,
+    MoveLinear,
+    tcp_of,
+)
 from pn2code.robot.kinematics import BRANCHES, CHARACTERISTIC_LENGTH, TURN, Kinematics
 from pn2code.robot.model import AXES
 from pn2code.robot.motion import LinearTrajectory
 from pn2code.robot.robot_cell import CellRobot
 from pn2code.robot.transforms import Array, inverse, matrix_of
 
+_OF_ARM = (MoveHome, MoveAxes, MoveExternal)
 LINE_STEP = 0.05
 """m: samples of lines."""
 _AT_ONCE = 400_000
@@ -48,10 +59,11 @@ class Task:
         parts: list[Array] = []
         seen: set[tuple[float, ...]] = set()
         for leg in found.doing.planner.legs:
-            if leg.robot != robot.name or isinstance(leg.command, MoveHome | MoveAxes):
+            if leg.robot != robot.name or isinstance(leg.command, _OF_ARM):
                 continue
             own: Array | None = None
-            if isinstance(leg.path, LinearTrajectory):
+            planner = found.doing.planner
+            if isinstance(leg.path, LinearTrajectory | AlongTrajectory):
                 line = leg.path.line
                 count = max(2, int(np.ceil(line.length / LINE_STEP)) + 1)
                 own = robot.T_world_base @ line.at(np.linspace(0.0, 1.0, count))
@@ -59,11 +71,18 @@ class Task:
                 isinstance(leg.command, MoveJoint | MoveLinear | MoveCircular)
                 and leg.command.frame != "tool"
             ):
-                own = matrix_of(leg.command.target)[None]
-                if leg.command.frame != "world":
-                    own = matrix_of(found.doing.planner.cell.frames[leg.command.frame]) @ own
+                if robot.axes:
+                    own = (robot.T_world_base @ planner.seen_from_arm(leg.start, leg.command))[None]
+                else:
+                    own = matrix_of(leg.command.target)[None]
+                    if leg.command.frame != "world":
+                        own = matrix_of(planner.cell.frames[leg.command.frame]) @ own
             if own is None:
                 continue
+            tcp = "" if leg.command is None else tcp_of(leg.command)
+            if tcp and (not robot.axes or isinstance(leg.path, LinearTrajectory | AlongTrajectory)):
+                back = inverse(robot.tcps[tcp].T_flange_tcp) @ robot.kinematics.T_flange_tcp
+                own = own @ back
             key = tuple(np.round(own[[0, -1]], _DIGITS).ravel().tolist())
             if key not in seen:
                 seen.add(key)
@@ -116,7 +135,7 @@ def reach_map(robot: CellRobot, task: Task, bases: Array) -> Map:
 
 
 def _part(robot: CellRobot, task: Task, bases: Array) -> tuple[Array, Array, Array]:
-    kinematics = robot.kinematics
+    kinematics = robot.kinematics.alone
     T_base_world = np.repeat(inverse(robot.T_world_base)[None], len(bases), axis=0)  # noqa: N806
     turn = T_base_world[:, :3, :3]
     where = np.column_stack([bases, np.full(len(bases), robot.base.z)])
