@@ -67,6 +67,12 @@ def seconds_option(help_text: str) -> Any:
     return typer.Option(metavar="S", min=0.0, callback=finite, help=help_text)
 
 
+MaxSecondsOption = Annotated[
+    float | None, seconds_option("Stop after S seconds, without an answer (exit code 3).")
+]
+"""Of verbs that say nothing of what they have not done to the end."""
+
+
 def port_option(help_text: str) -> Any:
     """The option `--port P` of a page on this machine."""
     return typer.Option("--port", metavar="P", min=0, max=65535, help=help_text)

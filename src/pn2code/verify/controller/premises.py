@@ -31,12 +31,13 @@ _MOVING = (
 )
 
 _REACHED = (
-    "arms get to where they are told to go, and nothing is in their way (limits and singularities on the way, "
-    "{arcs}increments and collisions show in a run)"
+    "arms get to where they are told to go, and nothing is in their way (`pn2code check --geometry` looks at limits "
+    "and singularities on the way, {arcs}increments and collisions, a run at those on its own ways)"
 )
 _PARTS = (
     "tools find the parts that they take, hold them until they release them, and put them down where they can stand, "
-    "and nothing is where a part comes into the cell (a run shows it)"
+    "and nothing is where a part comes into the cell (`pn2code check --geometry` looks at it, but not at where parts "
+    "stand; a run shows that, too)"
 )
 IN_TURNS = (
     "the programs are looked at in turns, so that each run is seen in one of its orders: the states are those of the "
