@@ -76,6 +76,8 @@ class Eye:
 
     def __init__(self, folder: Path, specs: Sequence[ChannelSpec], parties: Sequence[str]) -> None:
         self._folder, self._specs, self._parties = folder, tuple(specs), tuple(parties)
+        self._had_lock: set[int] = set()
+        """Inodes of status files whose lock the system has listed: when it lists it no more, the side has died."""
 
     def look(self) -> Seen:
         """How things are now."""
@@ -124,7 +126,10 @@ class Eye:
             inode = (self._folder / f"{name}.status").stat().st_ino
         except OSError:
             return False
-        return inode in locked or is_alive(status.pid)
+        if inode in locked:
+            self._had_lock.add(inode)
+            return True
+        return inode not in self._had_lock and is_alive(status.pid)
 
     def _text(self, file: str) -> str | None:
         try:

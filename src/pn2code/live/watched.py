@@ -40,6 +40,7 @@ LOST_S = 3.0
 """Files that nothing explains for so long: what the marking is, is not known any more."""
 _STALE_S = 2.0
 """A trace that was written so long before the supervisor began is an older one's."""
+NO_STOP = "this page only watches: the cell is stopped where it was started"
 LONGEST = 400
 """Characters of a reason."""
 
@@ -385,7 +386,7 @@ class Watched(Closing):
             if recorded
             else "not recorded: they are drawn at HOME (`pn2code robot --trace` records them)"
         )
-        rows = [["marking", marking], ["messages", messages]]
+        rows = [["marking", marking], ["messages", messages], ["stop", NO_STOP]]
         return [*rows, ["arms", arms]] if self._cell.robot_cell.robots else rows
 
     def begin_again(self) -> None:
