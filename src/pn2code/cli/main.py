@@ -38,6 +38,7 @@ VERBS = {
     "generate": "Generate a C supervisor and, if there is a cell.toml, a script for each robot.",
     "run": "Run a cell: build the supervisor, run it together with the robots' programs, and report.",
     "robot": "Run one robot's script in real time, as a process of its own.",
+    "watch": "Watch a cell that runs elsewhere: its state, messages, marking and arms, in a page of this machine.",
     "show": "Write a run as one HTML page that shows the net, the arms, the messages and the time together.",
     "report": "Check, draw, verify, generate, compare and run a cell, and write a report of all of it.",
     "draw": "Draw the pages of a net. Elements with errors are red.",

@@ -30,6 +30,8 @@ class Exit:
     """a limit was hit"""
     INTERNAL = 70
     """a bug in pn2code"""
+    INTERRUPTED = 130
+    """Ctrl-C, or a signal to end"""
     UNREAD = 141
     """the reader of the output went before the end, as for a program that SIGPIPE ends"""
 

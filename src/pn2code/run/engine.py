@@ -320,6 +320,7 @@ class Engine:
         for _ in range(result.fired):
             self._supervisor_fired()
         if result.stopped is not None:
+            self._heed()  # Ctrl-C in a terminal reaches the supervisor as well
             raise CellStoppedError(f"the supervisor stopped: {result.stopped}")
         self._next_model_time = result.next_time
         self._answer_due = result.due
