@@ -107,7 +107,7 @@ def place(
             metavar="MM",
             min=0.0,
             max=450.0,
-            help="No arm may come nearer to what stands, or to itself, than so far.",
+            help="No arm may come nearer to what stands than so far.",
         ),
     ] = 5.0,
     seed: Annotated[int, typer.Option(metavar="K", min=0, help="The seed of the search.")] = 1,

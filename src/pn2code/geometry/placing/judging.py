@@ -28,6 +28,8 @@ from pn2code.robot.transforms import Array, matrix_of
 
 FAR = 0.5
 """m: larger clearances are not measured."""
+_TOUCHING = 1e-3
+"""m: nearer to itself an arm need not be measured."""
 
 
 @frozen(eq=False)
@@ -51,9 +53,9 @@ class Walked:
 
     Args:
         done: the part of the commands that could be planned, 0 to 1.
-        condition: the worst condition number; limit: rad, the least margin of a limit.
-        clearance: m, the least distance from what stands, from the arm itself and from arms at HOME. What may touch
-            does not count, unless it is deeper than permitted. At most `FAR`.
+        condition: the worst condition number; limit: rad, the least margin of a limit; see `Walk.counts`.
+        clearance: m, the least distance from what stands and from arms at HOME, at most `FAR`; not above zero if an arm
+            touches itself. What may touch does not count, unless it is deeper than permitted.
         seconds: how long all commands together take.
     """
 
@@ -122,9 +124,12 @@ class Judge:
         walks = {name: plan.walk(placed.robot(name), placed) for name, plan in self.plans.items()}
         for name, walk in walks.items():
             arm, kinematics = placed.robot(name).arm, placed.robot(name).kinematics
-            limit = min(limit, float(np.minimum(walk.q - arm.lower, arm.upper - walk.q).min()))
-            condition = max(condition, *(c.condition for c in kinematics.conditioning_many(walk.q)))
             seconds += walk.seconds
+            q = walk.q[walk.counts]
+            if len(q):
+                limit = min(limit, float(np.minimum(q - arm.lower, arm.upper - q).min()))
+                found = kinematics.conditioning_many(q)
+                condition = max(condition, *(c.condition for c in found))
         count = sum(len(plan.steps) for plan in self.plans.values())
         done = sum(walk.done for walk in walks.values()) / max(1, count)
         clearance = self._clearance(placed, walks, enough) if done >= 1.0 else -math.inf
@@ -147,8 +152,9 @@ class Judge:
     def _standing(self, name: str, limit: float, *, is_loose: bool) -> float:
         # The pedestals in the collision library stay where the cell has them.
         things = {t for t in self._backend.things if not t.endswith("_pedestal")}
+        if any(gap.distance <= 0.0 for gap in self._backend.pairs("self", name, _TOUCHING)):
+            return 0.0
         found = self._backend.pairs("scene", name, limit, only=things)
-        found += self._backend.pairs("self", name, limit)
         for other in self.cell.robots:
             if other.name != name:
                 found += self._backend.pairs("robots", name, limit, other.name)

@@ -47,8 +47,8 @@ def draw(front: Sequence[Candidate], here: Candidate, chosen: Candidate | None, 
             markersize=16,
             label="chosen, and proved",
         )
-    ax.set_xlabel("worst condition number in the poses of the task")
-    ax.set_ylabel("least clearance in these poses, mm")
+    ax.set_xlabel("worst condition number on lines and where joint moves end")
+    ax.set_ylabel("least clearance from what stands, mm")
     ax.grid(visible=True, alpha=0.3)
     ax.legend(loc="best", fontsize=9)
     figure.savefig(path, dpi=110, metadata={"Software": None})

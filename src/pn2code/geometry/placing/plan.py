@@ -15,7 +15,7 @@ import numpy as np
 
 from pn2code.base.frozen import frozen
 from pn2code.geometry.legs import Leg
-from pn2code.robot.commands import Command
+from pn2code.robot.commands import Command, MoveAxes, MoveHome
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.motion import MotionFault, Still
 from pn2code.robot.robot_cell import CellRobot, RobotCell
@@ -30,14 +30,18 @@ class Walk:
     """What an arm does from a base.
 
     Args:
-        q: joint positions on all of its ways, (n, axes), HOME first; loose: of each, whether it is on a joint move,
-            where nothing may touch.
+        q: joint positions on all of its ways, (n, axes), HOME first.
+        loose: of each, whether it is on a joint move, where nothing may touch.
+        counts: of each, whether it shows how well the arm stands: on lines and arcs, and where joint moves end. HOME and
+            given joint positions are the same from everywhere, and what lies between them and other places lies
+            between their limits; conditioning is of no concern there.
         seconds: how long all commands together take.
         done: so many commands could be planned; fault: why not the next one.
     """
 
     q: Array
     loose: Array
+    counts: Array
     seconds: float
     done: int
     fault: MotionFault | None
@@ -76,19 +80,24 @@ class Plan:
         executor = RobotExecutor(robot, cell.motion, cell.frames)
         home = (executor.q, executor.T_base_tcp)
         ends: list[tuple[Array, Array]] = []
-        rows, loose = [np.array(home[0])[None]], [True]
+        rows, loose, counts = [np.array(home[0])[None]], [True], [False]
         seconds = 0.0
         for before, command in self.steps:
             executor.stand(*(ends[before] if before >= 0 else home))
             try:
                 motion = executor.begin(command, 0.0)
             except MotionFault as fault:
-                return Walk(np.concatenate(rows), np.array(loose), seconds, len(ends), fault)
+                q = np.concatenate(rows)
+                return Walk(q, np.array(loose), np.array(counts), seconds, len(ends), fault)
             executor.finish()
             ends.append((np.array(executor.q), np.array(executor.T_base_tcp)))
             path = motion.trajectory
             seconds += path.duration
             if not isinstance(path, Still):
                 rows.append(path.on_way(np.linspace(0.0, 1.0, _SAMPLES)))
-                loose += [motion.kind == "ptp"] * _SAMPLES
-        return Walk(np.concatenate(rows), np.array(loose), seconds, len(ends), None)
+                is_joint = motion.kind == "ptp"
+                loose += [is_joint] * _SAMPLES
+                counts += [not is_joint] * (_SAMPLES - 1)
+                counts.append(not isinstance(command, MoveHome | MoveAxes))
+        q = np.concatenate(rows)
+        return Walk(q, np.array(loose), np.array(counts), seconds, len(ends), None)

@@ -10,7 +10,7 @@ import math
 from collections.abc import Collection
 
 from pn2code.base.frozen import frozen
-from pn2code.geometry.answers import Layout, Move, Verdict
+from pn2code.geometry.answers import Layout, Verdict
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.look import Look, Options, touch_in_words
 from pn2code.geometry.placing.search import Wish
@@ -26,8 +26,9 @@ class Proof:
     Args:
         answer: of all moves and pairs; trouble: the first thing that is wrong or not known, "": nothing is.
         meets: whether the answer is yes and the placing is as wished on the whole way.
-        condition, limit (rad), clearance (m): the worst over all moves of the arms that were placed, on their whole
-            ways (NaN: not all was looked at); clearance is certain, from what stands and from the arm itself.
+        condition, limit (rad): the worst on all lines and arcs of the arms that were placed (if they have none, on all
+            of their moves), on their whole ways; NaN: not all was looked at.
+        clearance: m, that is certain, of all their moves from what stands.
     """
 
     answer: Verdict
@@ -69,9 +70,10 @@ def _trouble(looking: Look, robots: Collection[str]) -> str:
 def proof_of(layout: Layout, wish: Wish, robots: Collection[str]) -> Proof:
     """What the whole check says about a wish."""
     moves = [m for m in layout.moves if m.robot in robots]
-    condition = max((math.inf if m.condition is None else m.condition for m in moves), default=1.0)
-    limit = min((math.radians(m.limit) for m in moves if m.limit is not None), default=math.inf)
-    clearance = min((_clearance(m) for m in moves), default=math.inf)
+    led = [m for m in moves if m.kind in ("lin", "circ")] or moves
+    condition = max((math.inf if m.condition is None else m.condition for m in led), default=1.0)
+    limit = min((math.radians(m.limit) for m in led if m.limit is not None), default=math.inf)
+    clearance = min((-math.inf if m.scene is None else m.scene for m in moves), default=math.inf)
     trouble = _first_trouble(layout)
     is_wished = condition <= wish.condition and limit >= wish.limit and clearance >= wish.clearance
     if not trouble and not is_wished:
@@ -90,8 +92,3 @@ def _first_trouble(layout: Layout) -> str:
                 who = " and ".join(r for r in pair.robots if r)
                 return f"{who}: {pair.says}"
     return layout.open
-
-
-def _clearance(move: Move) -> float:
-    known = [v for v in (move.scene, move.itself) if v is not None]
-    return min(known, default=-math.inf)

@@ -27,6 +27,10 @@ _PEOPLE, _LEAST_PEOPLE = 8, 20
 """Candidates of a generation: so many for each number that is free, at least so many."""
 _UNREACHED = 1e6
 _UNWANTED = 1e4
+_TOLD = np.array([0.1, 1e-3, 1e-4, 0.1])
+"""What is less in conditioning, limits (rad), clearances (m) and seconds is no difference."""
+_PATIENCE, _WORTHWHILE = 6, 0.02
+"""It ends if so many generations have made the best one better by less than this part."""
 _LITTLE = 1e-3
 """What all that is not the goal counts."""
 
@@ -109,12 +113,15 @@ class Found:
 
 def front_of(candidates: Sequence[Candidate]) -> tuple[Candidate, ...]:
     """Of some candidates those that no other one beats in one thing without being worse in another."""
-    rows = np.array([c.badness for c in candidates]).reshape(-1, 4)
-    out = []
+    rows = np.round(np.array([c.badness for c in candidates]).reshape(-1, 4) / _TOLD)
+    out: list[Candidate] = []
+    kept: set[tuple[float, ...]] = set()
     for i, row in enumerate(rows):
         no_worse = (rows <= row).all(axis=1)
         better = (rows < row).any(axis=1)
-        if not (no_worse & better).any():
+        key = tuple(row.tolist())
+        if not (no_worse & better).any() and key not in kept:
+            kept.add(key)
             out.append(candidates[i])
     return tuple(sorted(out, key=lambda c: c.badness))
 
@@ -150,15 +157,20 @@ class Search:
         bounds = bounds_of(free)
         start = np.clip(here_values[0], *bounds.T)
         people = max(_LEAST_PEOPLE, _PEOPLE * len(free))
-        generation = 0
 
         def scored(columns: Array) -> Array:
             return np.array([self._score(c) for c in self._candidates(columns.T)])
 
-        def told(_best: Array, convergence: float = 0.0) -> None:
-            nonlocal generation
-            generation += 1
-            self._stage(f"searching, generation {generation} of {self._generations} ...")
+        best: list[float] = []
+
+        def told(_best: Array, convergence: float = 0.0) -> bool:
+            """Whether it is enough."""
+            best.append(min(map(self._score, self._seen.values())))
+            self._stage(f"searching, generation {len(best)} of {self._generations} ...")
+            if len(best) <= _PATIENCE:
+                return False
+            before = best[-1 - _PATIENCE]
+            return before - best[-1] < _WORTHWHILE * abs(before)
 
         differential_evolution(
             scored,
