@@ -32,9 +32,9 @@ class Walk:
     Args:
         q: joint positions on all of its ways, (n, axes), HOME first.
         loose: of each, whether it is on a joint move, where nothing may touch.
-        counts: of each, whether it shows how well the arm stands: on lines and arcs, and where joint moves end. HOME and
-            given joint positions are the same from everywhere, and what lies between them and other places lies
-            between their limits; conditioning is of no concern there.
+        counts: of each, whether it shows how well the arm stands: on lines and arcs, and where joint moves end.
+            HOME and given joint positions are the same from everywhere. What lies between such places lies between
+            their limits, and conditioning is of no concern there.
         seconds: how long all commands together take.
         done: so many commands could be planned; fault: why not the next one.
     """
