@@ -32,6 +32,7 @@ VERBS = {
     "replay": "Repeat a recorded run, and check that each step is enabled when its turn comes.",
     "verify": "Explore the whole state space of a net, and report its properties.",
     "reach": "Map where the bases of arms could stand: what each reaches of all that the net makes it do, and how.",
+    "place": "Search a better place for the bases of arms, and prove that it is one.",
     "time": "Measure each command from wherever the arm can be then, and the best and worst cycle over all runs.",
     "structure": "Compute invariants, siphons, traps, bounds and classes of a net from its structure alone.",
     "conform": "Compare the compiled net, the supervisor and each robot program with the net, state by state.",

@@ -270,6 +270,23 @@ class BulletBackend:
             if placed.part.holder == robot:
                 self._move(placed)
 
+    def set_base(self, robot: str, base: Pose) -> None:
+        """Puts the base of a robot elsewhere; what it stands on stays."""
+        self._p.resetBasePositionAndOrientation(
+            self._robots[robot].body,
+            (base.x, base.y, base.z),
+            self._p.getQuaternionFromEuler((base.rx, base.ry, base.rz)),
+            physicsClientId=self._client,
+        )
+        self._known = {}
+        # The joints are set again, so that all links follow.
+        self._q.pop(robot, None)
+
+    @property
+    def things(self) -> tuple[str, ...]:
+        """The names of what stands in the scene."""
+        return tuple(thing.body.name for thing in self._scene)
+
     def set_part(self, part: Part) -> None:
         """Shows a part where it is from now on."""
         placed = self._parts.get(part.name)
