@@ -123,11 +123,13 @@ class Judge:
         condition, limit, seconds = 1.0, math.inf, 0.0
         walks = {name: plan.walk(placed.robot(name), placed) for name, plan in self.plans.items()}
         for name, walk in walks.items():
-            arm, kinematics = placed.robot(name).arm, placed.robot(name).kinematics
+            kinematics = placed.robot(name).kinematics
+            arm = kinematics.arm
             seconds += walk.seconds
             q = walk.q[walk.counts]
             if len(q):
-                limit = min(limit, float(np.minimum(q - arm.lower, arm.upper - q).min()))
+                off = np.minimum(q - arm.lower, arm.upper - q)[:, kinematics.joints]
+                limit = min(limit, float(off.min()))
                 found = kinematics.conditioning_many(q)
                 condition = max(condition, *(c.condition for c in found))
         count = sum(len(plan.steps) for plan in self.plans.values())
