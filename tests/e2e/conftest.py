@@ -61,15 +61,15 @@ def cached(tmp_path_factory: pytest.TempPathFactory) -> Cached:
 
 
 @pytest.fixture(scope="session")
-def of_example(root: Path, cached: Cached) -> Callable[[str], Generated]:
+def of_example(root: Path, cached: Cached) -> Callable[..., Generated]:
     """An example cell, generated once a session, of which there is nothing to say."""
 
-    def generated(name: str) -> Generated:
+    def generated(name: str, *, checked: bool = True) -> Generated:
         d = Diagnostics()
         with pytest.MonkeyPatch.context() as changed:
-            if name in LARGE:
+            if name in LARGE and checked:
                 changed.setattr(programs, "FLAGS", DELIVERED)
-            found = cached(root / "examples" / name, d)
+            found = cached(root / "examples" / name, d, checked=checked)
         assert found is not None and not list(d), render.report(d)
         return found
 

@@ -195,9 +195,6 @@ PLACES: dict[str, Callable[[Desk], None]] = {
 }
 """Where a document's reader is, if not in the project's folder, and what else there is."""
 
-LARGE = ("examples/timed/README.md",)
-"""Here exploring takes longer than compiling, so explorers are compiled as readers have them."""
-
 
 @pytest.fixture
 def quick(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -209,15 +206,10 @@ def quick(monkeypatch: pytest.MonkeyPatch) -> None:
 @pytest.mark.usefixtures("quick")
 @pytest.mark.parametrize("document", sorted({b.document for b in BLOCKS}))
 def test_as_printed(
-    document: str,
-    tmp_path: Path,
-    tmp_path_factory: pytest.TempPathFactory,
-    request: pytest.FixtureRequest,
+    document: str, tmp_path: Path, tmp_path_factory: pytest.TempPathFactory
 ) -> None:
     if build.find_compiler() is None:
         pytest.skip("no C compiler")
-    if document in LARGE:
-        request.getfixturevalue("as_delivered")
     desk = Desk(tmp_path, ROOT, common(tmp_path_factory) / "objects")
     own = once(tmp_path_factory, "reader", lay_out)
     shutil.copytree(own, desk.project, dirs_exist_ok=True)

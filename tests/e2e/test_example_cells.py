@@ -20,7 +20,7 @@ from tools.forgery.forgeries import forgeries
 from tools.forgery.judge import WRONG, Judge
 from typer.testing import CliRunner
 
-from helpers.thorough import amount
+from helpers.thorough import THOROUGH, amount
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.front import load
@@ -43,7 +43,7 @@ class Expected:
         counts: part of the summary of a run.
         final: the binding of the last occurrence of the supervisor, `Finish`.
         owners: who runs a program, in order.
-        is_large: the cell as it runs has a million states, so it is checked once here, not each time.
+        is_large: the cell as it runs has a million states, so its programs are checked once, by `verify`.
     """
 
     net: str
@@ -106,21 +106,21 @@ def example(request: pytest.FixtureRequest, root: Path) -> tuple[Path, Expected]
 
 
 @pytest.fixture(scope="module")
-def generated(example: tuple[Path, Expected], of_example: Callable[[str], Generated]) -> Generated:
-    return of_example(example[0].name)
+def generated(example: tuple[Path, Expected], of_example: Callable[..., Generated]) -> Generated:
+    return of_example(example[0].name, checked=is_checked(example[1]))
+
+
+def is_checked(expected: Expected) -> bool:
+    """Whether the programs are proved when they are generated; the large cell's are where there is time."""
+    return THOROUGH or not expected.is_large
 
 
 def test_generation_has_nothing_to_say_and_is_deterministic(
     example: tuple[Path, Expected], generated: Generated
 ) -> None:
-    first, checked = generated, not example[1].is_large
-    if not checked:
-        unchecked = generate(example[0], Diagnostics(), checked=False)
-        assert unchecked is not None
-        first = unchecked
-    again = generate(example[0], Diagnostics(), checked=checked)
+    again = generate(example[0], Diagnostics(), checked=is_checked(example[1]))
     assert again is not None
-    assert again.files == first.files
+    assert again.files == generated.files
     assert tuple(o.name for o in generated.partition.owners) == example[1].owners
     paths = {f.path for f in generated.files}
     assert {f"{name}.tdl" for name in example[1].owners[1:]} < paths
@@ -144,9 +144,6 @@ def test_verify(
     if expected.is_large:  # exploring takes longer than compiling
         request.getfixturevalue("as_delivered")
     options = ["--json", "--no-medium", "--traces", str(tmp_path), "--threads", "1"]
-    # Its programs are proved when they are generated, as those of all examples are.
-    if expected.is_large:
-        options.append("--no-controller")
     done = CliRunner().invoke(app, ["verify", str(folder), *options])
     assert done.exit_code == 0, done.output
     said = json.loads(done.stdout)
@@ -162,29 +159,21 @@ def test_a_cell_that_goes_on_for_ever_is_verified_without_its_time(
     root: Path, tmp_path: Path
 ) -> None:
     """Endless, the timed cell has infinitely many states with their times."""
-    options = [
-        "--reduce",
-        "time",
-        "--set",
-        "endless=true",
-        "--no-found",
-        "--no-medium",
-        "--threads",
-        "1",
-        "--json",
-    ]
-    asked = ["--property", "ctl AG EF initial", "--property", "deadlock free"]
-    folder = root / "examples/timed"
-    done = CliRunner().invoke(
-        app, ["verify", str(folder), *options, *asked, "--traces", str(tmp_path)]
-    )
-    said = json.loads(done.stdout)
+    options = ["--reduce", "time", "--set", "endless=true", "--no-found", "--no-medium"]
+    asked = ["--property", "ctl AG EF initial", "--property", "deadlock free", "--threads", "1"]
+    said = _verified(root / "examples/timed", *options, *asked, "--traces", str(tmp_path))
     assert said["complete"] and said["reductions"] == ["time"]
     assert (said["nodes"], said["home_markings"]) == (3130, 3130)
     back, free = said["properties"]
     assert (back["answer"], back["net"]["answer"], free["answer"]) == (
         "inconclusive", "yes", "yes",
     )  # fmt: skip
+
+
+def _verified(*arguments: str | Path) -> dict[str, Any]:
+    done = CliRunner().invoke(app, ["verify", *map(str, arguments), "--json"])
+    said: dict[str, Any] = json.loads(done.stdout)
+    return said
 
 
 @pytest.mark.cc
@@ -199,8 +188,7 @@ def test_run(
     folder, expected = example
     monkeypatch.setenv("CFLAGS", "-O0")
     d = Diagnostics()
-    checked = not expected.is_large
-    options = RunOptions(out=tmp_path, backend="fake", looks=False, checked=checked)
+    options = RunOptions(out=tmp_path, backend="fake", looks=False, checked=is_checked(expected))
     result = run_cell(folder, options, d)
     assert result is not None and not list(d), [x.message for x in d]
     assert (result.record.verdict, result.record.reason) == ("finished", "")

@@ -135,8 +135,18 @@ class Explorers:
         folder.mkdir(exist_ok=True)
         for file in files:
             (folder / file.path).write_text(file.text)
-        self._run(folder, "-shared", "net.c", "-o", LIBRARY)
+        self._net(folder)
         return folder
+
+    def _net(self, folder: Path) -> None:
+        """The library of a net. Without sanitizers `tcc` makes it, where it is there and accepts the net."""
+        tiny = shutil.which("tcc") if self.flags == QUICK else None
+        if tiny is not None:
+            command = [tiny, "-w", "-shared", c_flags.STANDARD, *c_flags.FLOATS, *self.flags]
+            command += [f"-I{cnative_folder() / 'include'}", f"-I{folder}", "net.c", "-o", LIBRARY]
+            if not subprocess.run(command, cwd=folder, capture_output=True, check=False).returncode:
+                return
+        self._run(folder, "-shared", "net.c", "-o", LIBRARY)
 
     def explore(
         self,
