@@ -172,7 +172,7 @@ static inline bool tb_is_enabled(const tb_cursor_t *c, uint32_t transition)
 
 /* The value of a formula without operators of time. */
 bool tb_holds(const tb_formula_t *f, const tb_cursor_t *c);
-/* 0: the formula is as wanted; else a guess how much is missing. */
+/* A guess how much is missing until the formula is as wanted; 0 if it is, and has no operator of time. */
 double tb_distance(const tb_formula_t *f, const tb_cursor_t *c, bool wanted);
 int64_t tb_sum(const tb_formula_t *sum, const tb_count_t *marking);
 
@@ -235,6 +235,24 @@ static inline uint32_t tb_successor(const tb_graph_t *g, uint32_t marking, uint3
 {
     return g->successor[g->first[marking] - 1U + which];
 }
+
+/* --- markings that wait ------------------------------------------------------------------------------------------- */
+
+typedef struct tb_waiting {
+    double distance;
+    uint32_t number;
+} tb_waiting_t;
+
+/* The nearest first, and of equal ones the one with the lowest number. All zero: empty. */
+typedef struct tb_heap {
+    tb_waiting_t *item;
+    uint32_t count;
+    uint32_t room;
+} tb_heap_t;
+
+void tb_heap_free(tb_heap_t *h);
+void tb_heap_push(tb_heap_t *h, double distance, uint32_t number);
+uint32_t tb_heap_pop(tb_heap_t *h);
 
 /* --- stubborn sets ------------------------------------------------------------------------------------------------ */
 
