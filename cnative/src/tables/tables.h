@@ -217,11 +217,14 @@ typedef struct tb_graph {
     uint32_t at; /* the marking at the cursor */
     tb_count_t *marking;
     uint32_t *fire;
-    uint64_t random; /* state of the numbers drawn for the order of successors; 0: as they come */
-    bool is_full;    /* memory is exhausted, a place is, or the time is over: successors are missing */
+    uint64_t random;  /* state of the numbers drawn for the order of successors; 0: none are */
+    uint32_t *rank;   /* transition -> its place in an order that is the same everywhere; NULL: there is none */
+    uint32_t *ranked; /* that order */
+    bool is_full;     /* memory is exhausted, a place is, or the time is over: successors are missing */
 } tb_graph_t;
 
-/* `seed`: from 1 on another order of the successors each; the first two are as they come. */
+/* `seed`: from 1 on another order of the successors each. That of the first one is as they come, those of even ones are
+ * the same in all markings. */
 void tb_graph_init(tb_graph_t *g, const tb_net_t *net, uint64_t seed);
 void tb_graph_free(tb_graph_t *g);
 

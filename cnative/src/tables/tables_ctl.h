@@ -18,9 +18,9 @@ typedef struct tb_meeting {
 /* A marking on the path of a search, depth first. */
 typedef struct tb_frame {
     uint32_t marking;
-    uint32_t next;  /* successor */
-    uint32_t index; /* when it was met */
-    uint32_t low;   /* the lowest index that it leads to, as far as is seen */
+    uint32_t next;    /* successor */
+    uint32_t index;   /* when it was met */
+    uint32_t low;     /* the lowest index that it leads to, as far as is seen */
     bool is_doubtful; /* it leads to something that is not known */
 } tb_frame_t;
 
