@@ -392,7 +392,9 @@ def _modes(t: FlatTransition, flow: Flow, counter: Counter) -> list[Mode]:
         put = {p: _chosen(s, choice) for p, s in flow.put.items()}
         said = tuple((c.value, truth) for c, truth in choice.items())
         mode = _mode(t.index, said, take, put, counter)
-        key = tuple(tuple(sorted((p, str(s)) for p, s in x.items())) for x in (mode.take, mode.put))
+        sides = (tuple(sorted((p, str(s)) for p, s in x.items())) for x in (mode.take, mode.put))
+        # Of intervals that are the same the change may be known in one mode, and not in another.
+        key = (*sides, tuple(sorted(mode.delta.items())), tuple(sorted(mode.unknown)))
         modes.setdefault(key, mode)
     if len(modes) == 1:
         (only,) = modes.values()

@@ -435,6 +435,27 @@ def test_conditions() -> None:
     assert len([m for m in a.skeleton.modes if m.transition == 0]) == 2
 
 
+def test_equal_intervals_are_no_equal_changes() -> None:
+    # Back may put a token where it took none: in one mode the change is 0, in the other it is not known.
+    growing = flat("""
+        net growing
+          standard
+          var b, c: BOOL;
+          fun some b = if b then 1`() else empty;
+          page Top
+            place P = 1
+            place B : BOOL = 1`true ++ 1`false
+            trans Back
+              both B : b
+              in P : some b
+              out P : if c then some b else some (not b)
+    """)
+    a = analyse(growing)
+    assert a.bounds[0].bound is None
+    assert {(*m.delta.items(), *m.unknown) for m in a.skeleton.modes} == {(), (0,)}
+    assert {len(m.places[0]) for m in state_space(Game(growing), max_nodes=4).nodes} == {0, 1, 2, 3}
+
+
 def test_complementary_conditions_cancel_out() -> None:
     a = study("""
         place A : INT = 2`1

@@ -77,3 +77,14 @@ def test_the_length_of_what_goes_round_is_not_known() -> None:
     assert ranking(text).longest({TAKE, BACK}, {TAKE}) is None
     bounds = {IDLE: 1, BUSY: 1}
     assert ranking(bounds=bounds).longest({TAKE, BACK}, {TAKE}) is None  # any number of parts
+
+
+def test_what_may_put_more_than_it_takes_makes_up_for_what_others_use_up() -> None:
+    text = NET.replace("  standard\n", "  standard\n  fun some b = if b then 1`() else empty;\n")
+    text = text.replace("  page Top\n", "  var b, c: BOOL;\n  page Top\n    place Coin : BOOL\n", 1)
+    text += """    trans More
+      both Coin : b
+      in Parts : some b
+      out Parts : if c then some b else some (not b)
+"""
+    assert TAKE in ranking(text, {}).rising()
