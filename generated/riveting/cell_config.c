@@ -19,10 +19,10 @@
  * `coordenadas` begins with the token of `coordenadas.robcad`:
  * (5,{x=5750.0,y=5898.8,z=2135.05,rx=~105.0,ry=0.0,rz=0.0},{x=6750.0,y=5898.8,z=2135.05,rx=~105.0,ry=0.0,rz=0.0})
  * nobody owes an answer for longer than `reply_timeout_s`, 120 s (tools, waits and delays take at most 3 s; how long moves and
- * measurements take is not known)
+ * measurements take is not known here, `pn2code time` measures it)
  * each possible value of a sensor occurs from time to time
- * arms get to where they are told to go, and nothing is in their way (limits and singularities on the way, increments and collisions
- * show in a run)
+ * arms get to where they are told to go, and nothing is in their way (`pn2code check --geometry` looks at limits and singularities on
+ * the way, increments and collisions, a run at those on its own ways)
  *
  * Memory: all of it is static. The arena, for lists, strings and the moves of a firing, has 3,904 bytes,
  * proven to be enough for the initial marking, the moves of one firing, and a token that arrives.

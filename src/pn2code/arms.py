@@ -13,7 +13,7 @@ from pn2code.cell.config import CellConfig
 from pn2code.cell.load import load as load_cell
 from pn2code.diagnostics import Diagnostics
 from pn2code.robot import scene
-from pn2code.robot.commands import Move, MoveCircular, MoveLinear, without_pace
+from pn2code.robot.commands import Along, Move, MoveCircular, MoveLinear, without_pace
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.motion import MotionFault
 from pn2code.robot.robot_cell import RobotCell
@@ -60,6 +60,26 @@ class Arms:
         if key not in self._known:
             self._known[key] = self._looked(robot, command)
         return self._known[key]
+
+    def undecided(self, robot: str, command: Move) -> frozenset[str]:
+        """The external axes on which it depends whether the arm comes there, and which the move does not tell."""
+        return frozenset[str]().union(
+            *(
+                RobotExecutor(r, cell.motion, cell.frames).undecided(command)
+                for cell in self._cells.values()
+                for r in cell.robots
+                if r.name == robot and r.axes
+            )
+        )
+
+    def external_homes(self, robot: str) -> dict[str, tuple[Along, ...]]:
+        """Of each external axis of a robot where it begins, in each layout."""
+        out: dict[str, tuple[Along, ...]] = {}
+        for cell in self._cells.values():
+            for axis in (a for r in cell.robots if r.name == robot for a in r.axes):
+                place = Along(axis.name, axis.home, axis.is_track)
+                out[axis.name] = (*out.get(axis.name, ()), place)
+        return out
 
     def _looked(self, name: str, command: Move) -> str:
         is_free = isinstance(command, MoveLinear | MoveCircular)

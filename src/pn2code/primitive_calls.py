@@ -98,10 +98,12 @@ def _unknown(function: str, _argument: Any) -> Heard:
 def told(primitive: Primitive, argument: Any) -> tuple[commands.Command, ...]:
     """What the robot is told by a call, in order: poses in m and rad."""
     speed = primitive.speed
-    takes = 2 if primitive.command == "move_circular" else 1
-    values = argument if primitive.command in GOING and len(argument) <= 3 else (argument,)
-    if primitive.command in GOING and len(values) > takes:
+    # A tuple; a pose and a joint position are longer.
+    is_several = primitive.command in GOING and isinstance(argument, tuple) and len(argument) <= 5
+    values = argument if is_several else (argument,)
+    if primitive.command in GOING and len(values) > primitive.takes:
         *values, speed = values
+    along = _along(primitive, values)
     # The factors are those of scripts (`pn2code.tdl`), so that speeds are equal to the last digit.
     fraction = 1.0 if speed is None else speed * 0.01
     metres = None if speed is None else speed / 1000.0
@@ -109,24 +111,30 @@ def told(primitive: Primitive, argument: Any) -> tuple[commands.Command, ...]:
     ramp = 1.0 if primitive.acceleration is None else primitive.acceleration * 0.01
     match primitive.command:
         case "move_joint":
-            moves = [commands.MoveJoint(_pose(values[0]), fraction, frame, ramp)]
+            moves = [
+                commands.MoveJoint(_pose(values[0]), fraction, frame, ramp, along, primitive.tcp)
+            ]
             return (*_departure(primitive, None, ramp), *moves)
         case "move_axes":
             # By label, a1 .. a6: the order of SML.
             axes = tuple(math.radians(float(v)) for v in values[0])
-            return (*_departure(primitive, None, ramp), commands.MoveAxes(axes, fraction, ramp))
+            moved = commands.MoveAxes(axes, fraction, ramp, along)
+            return (*_departure(primitive, None, ramp), moved)
+        case "move_external":
+            return (commands.MoveExternal(along, fraction, ramp),)
         case "move_linear":
             assert primitive.frame is not None, "an entry without a frame is an error"
-            line = commands.MoveLinear(_pose(values[0]), frame, metres, ramp)
+            line = commands.MoveLinear(_pose(values[0]), frame, metres, ramp, along, primitive.tcp)
             if not primitive.approach:
                 return (*_departure(primitive, metres, ramp), line)
             before = _si(*pose_before(_numbers(values[0]), primitive.approach))
-            there = commands.MoveJoint(before, 1.0, frame, ramp)
+            there = commands.MoveJoint(before, 1.0, frame, ramp, along, primitive.tcp)
             return (*_departure(primitive, metres, ramp), there, line)
         case "move_circular":
             assert primitive.frame is not None, "an entry without a frame is an error"
-            via, end = map(_pose, values)
-            return (commands.MoveCircular(via, end, frame, metres, ramp),)
+            via, end = map(_pose, values[:2])
+            arc = commands.MoveCircular(via, end, frame, metres, ramp, along, primitive.tcp)
+            return (arc,)
         case "move_home":
             return (*_departure(primitive, None, ramp), commands.MoveHome(fraction, ramp))
         case "measure":
@@ -139,6 +147,16 @@ def told(primitive: Primitive, argument: Any) -> tuple[commands.Command, ...]:
             return (commands.Wait(float(seconds)),)
 
 
+def _along(primitive: Primitive, values: Any) -> tuple[commands.Along, ...]:
+    """Where external axes go: mm and degrees, behind the poses."""
+    if not primitive.along:
+        return ()
+    return tuple(
+        commands.Along(axis, float(v) / 1000.0 if is_track else math.radians(float(v)), is_track)
+        for (axis, is_track), v in zip(primitive.along, values[primitive.places :], strict=True)
+    )
+
+
 def _departure(
     primitive: Primitive, speed: float | None, ramp: float
 ) -> tuple[commands.MoveLinear, ...]:
@@ -146,7 +164,7 @@ def _departure(
     if not primitive.depart:
         return ()
     back = _si(0.0, 0.0, -primitive.depart, 0.0, 0.0, 0.0)
-    return (commands.MoveLinear(back, "tool", speed, ramp),)
+    return (commands.MoveLinear(back, "tool", speed, ramp, tcp=primitive.tcp),)
 
 
 def _numbers(argument: Any) -> tuple[float, ...]:

@@ -37,9 +37,18 @@ function turn(axis, angle) {
 }
 
 /**
+ * A shift along an axis of length one.
+ * @param {ArrayLike<number>} axis
+ * @param {number} way
+ */
+function shift(axis, way) {
+  return [1, 0, 0, axis[0] * way, 0, 1, 0, axis[1] * way, 0, 0, 1, axis[2] * way, 0, 0, 0, 1];
+}
+
+/**
  * The frames of all links in the world.
  * @param {any} robot of the description
- * @param {ArrayLike<number>} q joint position, rad
+ * @param {ArrayLike<number>} q joint position, rad; m of tracks
  * @returns {number[][]}
  */
 export function frames(robot, q) {
@@ -47,7 +56,10 @@ export function frames(robot, q) {
   out[0] = Array.from(robot.base);
   for (const joint of robot.joints) {
     let frame = product(out[joint.parent], joint.frame);
-    if (joint.moves >= 0) frame = product(frame, turn(joint.axis, q[joint.moves]));
+    if (joint.moves >= 0) {
+      const move = joint.slides ? shift : turn;
+      frame = product(frame, move(joint.axis, q[joint.moves]));
+    }
     out[joint.child] = frame;
   }
   return out;

@@ -63,8 +63,17 @@ class LivePage extends ReplayPage {
       this.watch?.grow();
     }
     this.sides?.update(this.latest.update, this.latest.pages, this.course.steps);
-    if (this.latest.update.verdict) this.head();
+    if (this.latest.update.verdict) this.ended(this.latest.update.verdict);
     this.update();
+  }
+
+  /**
+   * How it has ended, or that it has not begun.
+   * @param {any} verdict
+   */
+  ended(verdict) {
+    this.head();
+    if (this.run.watched) say(watchedText(verdict), verdict.word === "finished" || verdict.word === "has not started" ? "note" : "bad");
   }
 
   update() {
@@ -96,6 +105,7 @@ if (token) {
 function begin(data, first) {
   const [run] = data.runs;
   run.live = true;
+  byId("stop").hidden = Boolean(run.watched);
   const { tokens, texts, first: held } = first.course;
   const keys = { step: [0], offset: [0, held.length], token: held.map((/** @type {number[]} */ h) => h[0]), count: held.map((/** @type {number[]} */ h) => h[1]) };
   run.course = {
@@ -124,6 +134,16 @@ function say(text, kind) {
   said.replaceChildren(el("span", { text }));
 }
 
+/**
+ * What the page of a watch says of a cell that does not run.
+ * @param {any} verdict
+ */
+function watchedText({ word, reason }) {
+  if (word === "has not started") return `The cell has not started: ${reason}.`;
+  if (word === "finished") return "The cell has finished. The page waits for its next start.";
+  return `The cell does not run any more (${word})${reason ? `: ${reason}` : ""}. The page waits for its next start.`;
+}
+
 /** @type {LiveLink} */
 const link = new LiveLink({
   onNews: async (updates, pages) => {
@@ -132,8 +152,12 @@ const link = new LiveLink({
     drain(await started);
   },
   onLost: () => say("The connection is lost: what is shown is no longer what happens. The page tries again.", "bad"),
-  onBack: () => say("", ""),
-  onFailed: () => say("This page has failed and shows nothing new; the cell goes on. Stop still works, and so does Ctrl-C in the terminal.", "bad"),
+  onBack: () => {
+    say("", "");
+    const verdict = page?.latest?.update.verdict;
+    if (verdict) page?.ended(verdict);
+  },
+  onFailed: () => say(page?.run.watched ? "The watch has failed and shows nothing new; the cell goes on." : "This page has failed and shows nothing new; the cell goes on. Stop still works, and so does Ctrl-C in the terminal.", "bad"),
   onOver: () => finish(),
   onSaid: (text) => said(text),
 });
@@ -159,6 +183,11 @@ function finish() {
   if (queue.length) return;
   /** @type {LiveClock | undefined} */ (page?.clock)?.finish();
   byId("stop").disabled = true;
+  if (page?.run.watched) {
+    say("The watch has ended. The cell may go on: `pn2code watch` shows it again.", "bad");
+    page.update();
+    return;
+  }
   const word = page?.run.verdict.word;
   say(word ? `The run has ${word === "finished" ? "finished" : `ended: ${word}`}. Its records are in its folder.` : "The live view has ended. How the run ends is in the terminal and in its folder.", word === "finished" ? "note" : "bad");
   page?.update();

@@ -16,9 +16,10 @@ export class Sides {
     this.numbers = el("dl", { class: "numbers" });
     this.alarms = el("ul", { class: "moments", "aria-label": "Alarms", "aria-live": "polite" });
     this.quiet = el("p", { class: "note", text: "No alarm." });
+    this.basis = el("dl", { class: "basis", "aria-label": "What is observed and what is inferred" });
     host.append(
       el("table", { class: "sides" }, el("caption", { class: "hidden", text: "State of each side" }), this.rows),
-      this.numbers, el("h3", { text: "Alarms" }), this.quiet, this.alarms);
+      this.numbers, this.basis, el("h3", { text: "Alarms" }), this.quiet, this.alarms);
   }
 
   /**
@@ -33,11 +34,12 @@ export class Sides {
     const rows = [
       ["time", `${update.t.toFixed(2)} s`],
       ["last answer of the supervisor", ms(p.answer)], ["longest answer", ms(p.longest)],
-      ["ends of commands noticed late by at most", ms(p.noticed)],
+      ...(update.basis ? [] : [["ends of commands noticed late by at most", ms(p.noticed)]]),
       ["steps", String(steps)], ["messages", String(messages)],
       ...Object.entries(counts).map(([label, n]) => [label, String(n)]),
-      ["alarms", String(update.now.alarms)], ["pictures left out", String(leftOut)], ["pages open", String(pages)],
+      ["alarms", String(update.now.alarms)], ...(update.basis ? [] : [["pictures left out", String(leftOut)]]), ["pages open", String(pages)],
     ];
+    this.basis.replaceChildren(...(update.basis ?? []).flatMap((/** @type {string[]} */ [name, text]) => [el("dt", { text: name }), el("dd", { text })]));
     this.numbers.replaceChildren(...rows.flatMap(([name, value]) => [el("dt", { text: name }), el("dd", { text: value })]));
   }
 

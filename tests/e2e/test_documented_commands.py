@@ -42,6 +42,8 @@ LONG = {
     "pn2code run examples/handover --backend fake -o run": CELLS,
     "pn2code run examples/sorting --backend fake --cycles 50 --warm-up 5 --seed 1 --stops robot:600/30 -o many": "a "
     "minute; test_many_cycles runs a smaller cell",
+    "pn2code place examples/riveting --layout paper --free robot2.base.x,y,z,yaw": "two minutes; test_place places a "
+    "smaller cell",
     "pn2code time examples/handover --run run": "needs the line before",
     "pn2code time examples/tending": "test_time_bounds asks about it",
     "./dev geometry": "two minutes; test_geometry looks at smaller cells",

@@ -816,7 +816,9 @@ def test_what_no_state_shows_is_assumed(root: Path) -> None:
     assert premises.of_check("ownership", "yes") == premises.of_check("messages", "no") == ()
     late, sensors, moves = premises.of_check("non-blocking", "yes")[2:]
     assert "moves and measurements take is not known" in late and "sensor" in sensors
+    assert "`pn2code time` measures it" in late
     assert "where they are told to go" in moves
+    assert "`pn2code check --geometry` looks at" in moves
 
 
 def test_whoever_waits_for_others_may_owe_for_ever(tmp_path: Path) -> None:

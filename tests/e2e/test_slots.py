@@ -178,3 +178,48 @@ def test_a_full_slot_stops_the_net(put: str, workshop: Workshop, tmp_path: Path)
     assert [name for name, _ in lines[0]["enabled"]] == ["Top.Go"]
     error = lines[1]
     assert "place is full" in str(error["error"]) and "To" in str(error), error
+
+
+UNITS_OUT_OF_VALUES = """
+net Found
+  standard
+  colset UNITS = list UNIT;
+  colset WITH = union At : UNIT + Nowhere;
+  colset BOTH = product UNIT * INT;
+  val several = [(), (), ()];
+  fun some n = if n > 0 then SOME () else NONE
+  fun at n = if n > 0 then At () else Nowhere
+  fun unit_of (At u) = u | unit_of Nowhere = ();
+  fun both n = ((), n + 1)
+  var i : INT;
+  page Top
+    place Number : INT = 1`1
+    place Free = 1
+"""
+FOUND = (
+    "List.nth (several, i)",
+    "hd (List.take (several, i))",
+    "List.last (List.drop (several, i))",
+    "ms_to_col (List.take (several, i))",
+    "valOf (some i)",
+    "getOpt (some i, ())",
+    "unit_of (at i)",
+    "#1 (both i)",
+    "if i > 3 then hd several else List.nth (several, i)",
+    "case some i of SOME u => u | NONE => List.nth (several, i)",
+    "(let val u = List.nth (several, i) in u end)",
+    "(List.nth (several, i) handle Subscript => ())",
+    "(fn u => u) (hd several)",
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("slots", [{"Free", "Number"}, {"Number"}, set()])
+def test_units_that_are_found_somewhere(
+    slots: set[str], workshop: Workshop, tmp_path: Path
+) -> None:
+    """Nobody reads a value of the unit colour set, but finding it may raise, and its C has to compile."""
+    text = UNITS_OUT_OF_VALUES
+    for k, found in enumerate(FOUND):
+        text += f"    trans T{k}\n      both Number : i\n      in Free : {found}\n      out Free : {found}\n"
+    net, program, _ = compiled(text, slots, workshop, tmp_path)
+    assert agrees(net, program, seed=1, steps=9) == 10

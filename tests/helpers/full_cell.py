@@ -59,6 +59,9 @@ joint = { command = "move_joint", frame = "bench", speed = 0.5, acceleration = 0
 axes = { command = "move_axes", speed = 0.5, acceleration = 0.4 }
 line = { command = "move_linear", frame = "bench", speed = 0.2, acceleration = 0.3, approach = 0.2 }
 arc = { command = "move_circular", frame = "tool", speed = 0.2, acceleration = 0.3 }
+grasp = { command = "move_joint", tcp = "gripper" }
+both = { command = "move_external", track = "rail", turntable = "plate", speed = 0.5, acceleration = 0.4 }
+led = { command = "move_linear", frame = "seam", track = "rail", turntable = "plate" }
 home = { command = "move_home", speed = 0.5, acceleration = 0.2, depart = 0.05 }
 look = { command = "measure" }
 rest = { command = "wait", duration_s = 3.0 }
@@ -74,6 +77,42 @@ tool = "counterpoint"
 base = { x = 1.0, y = 2.0, z = 0.5, roll = 1.0, pitch = 2.0, yaw = 3.0 }
 home = [0.0, -100.0, 110.0, 0.0, 80.0, 0.0]
 branch = "front/up/plus"
+
+[robots.arm.tcps.gripper]
+x = 0.1
+y = 0.2
+z = 0.3
+roll = 4.0
+pitch = 5.0
+yaw = 6.0
+
+[robots.arm.axes.rail]
+kind = "track"
+direction = [0.0, 1.0, 0.0]
+from = -1.0
+to = 2.0
+home = 0.5
+speed = 0.4
+acceleration = 0.8
+jerk = 5.0
+
+[robots.turner]
+instance = "Turner"
+model = "kr120_r2500"
+base = { x = -5.0 }
+
+[robots.turner.axes.plate]
+kind = "turntable"
+pose = { x = 1.0, z = 0.5 }
+from = -90.0
+to = 90.0
+home = 10.0
+speed = 30.0
+acceleration = 60.0
+jerk = 300.0
+radius = 0.4
+height = 0.06
+objects = [{ name = "work", size = [0.1, 0.1, 0.1] }]
 
 [devices.belt]
 instance = "Belt"
@@ -148,6 +187,10 @@ roll = 4.0
 pitch = 5.0
 yaw = 6.0
 
+[frames.seam]
+parent = "turner.plate"
+x = 0.05
+
 [frames.corner]
 parent = "bench"
 x = 0.1
@@ -180,8 +223,9 @@ about = "net"
 """)
 
 _NEEDED = {
-    "primitives": ("parts", "places", "frames"),
-    "report": ("channel", "primitives", "parts", "places", "frames"),
+    "primitives": ("parts", "places", "frames", "robots"),
+    "report": ("channel", "primitives", "parts", "places", "frames", "robots"),
+    "frames": ("robots",),
     "scene": ("robots",),
     "layouts": tuple(FULL),
 }
@@ -254,9 +298,13 @@ def read(folder: Path, data: dict[str, Any], section: str) -> tuple[str, Diagnos
     if cell is not None:
         shown += [cell.motion, cell.scene, cell.parts, cell.places, cell.frames]
         shown += [
-            (r.name, r.arm.name, r.tool and r.tool.name, r.base, r.home, r.branch)
+            (r.name, r.arm.name, r.tool and r.tool.name, r.base, r.home, r.branch, r.turning)
             for r in cell.robots
         ]
+        shown += [
+            (name, k.T_flange_tcp.tolist()) for r in cell.robots for name, k in r.tcps.items()
+        ]
+        shown += [a.described() for r in cell.robots for a in r.axes]
     return re.sub(r"Origin\([^()]*\)", "", repr(shown).replace(str(folder), "")), d
 
 

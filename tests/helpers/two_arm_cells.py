@@ -26,8 +26,12 @@ net two
 """
 
 
-def two_arm_cell(random: Random) -> tuple[str, str]:
-    """The net and the cell.toml."""
+def two_arm_cell(random: Random, axes: Random | None = None) -> tuple[str, str]:
+    """The net and the cell.toml.
+
+    Args:
+        axes: gives both arms tracks, and the first one a turntable between them; None: there are none.
+    """
     apart = random.uniform(2.6, 4.2)
     retreats = random.random() < 0.6
     counts = [random.randint(1, 3), random.randint(1, 3)]
@@ -38,7 +42,77 @@ def two_arm_cell(random: Random) -> tuple[str, str]:
     lines += _supervisor(random, counts)
     for i in (1, 2):
         lines += _robot(random, i, counts[i - 1], apart, retreats)
+    if axes is not None:
+        return with_axes("\n".join(lines) + "\n", _toml(apart, random), apart, axes)
     return "\n".join(lines) + "\n", _toml(apart, random)
+
+
+def with_axes(net: str, toml: str, apart: float, random: Random) -> tuple[str, str]:
+    """The same with external axes: some tasks go along a track, turn the plate, or weld on it."""
+    declared = """  fun travel1 (d : real) = ();
+  fun travel2 (d : real) = ();
+  fun turn (a : real) = ();
+  fun along1 (p : POSE, d : real) = ();
+  fun along2 (p : POSE, d : real) = ();
+  fun seam (p : POSE, a : real) = ();
+  fun overSeam (p : POSE) = ();
+"""
+    net = net.replace("  page Top\n", declared + "  page Top\n")
+    out = []
+    page = 0
+    for line in net.splitlines():
+        page = int(line[-1]) if line.startswith("  page Rob") else page
+        if "    trans Go" in line and random.random() < 0.8:
+            line = line.replace("action (", f"action ({_external(page, random)}", 1)
+        if "moveLinear (pose" in line and "trans Back" in line and random.random() < 0.5:
+            where = _number(random.choice([0.2, 1.0]) * random.uniform(-400.0, 400.0))
+            at = line.index("moveLinear (pose") + len("moveLinear (")
+            end = line.index(")", at) + 1
+            old = f"moveLinear ({line[at:end]})"
+            line = line.replace(old, f"along{page} ({line[at:end]}, {where})", 1)
+        out.append(line)
+    entries = """
+travel1 = { command = "move_external", track = "rail1" }
+travel2 = { command = "move_external", track = "rail2" }
+turn = { command = "move_external", turntable = "plate" }
+along1 = { command = "move_linear", frame = "world", track = "rail1" }
+along2 = { command = "move_linear", frame = "world", track = "rail2" }
+seam = { command = "move_linear", frame = "seam", turntable = "plate" }
+overSeam = { command = "move_joint", frame = "seam" }
+"""
+    toml = toml.replace("[robots.robot1]", entries.strip() + "\n[robots.robot1]", 1)
+    across = [random.choice(["[0.0, 1.0, 0.0]", "[1.0, 0.0, 0.0]"]) for _ in range(2)]
+    for i in (1, 2):
+        toml += (
+            f"[robots.robot{i}.axes.rail{i}]\ndirection = {across[i - 1]}\nfrom = -0.5\nto = 0.5\n"
+        )
+    x, high = apart / 2.0, random.uniform(0.3, 0.6)
+    toml += f"""[robots.robot1.axes.plate]
+kind = "turntable"
+pose = {{ x = {x:.3f}, y = {random.uniform(-0.4, 0.4):.3f}, z = {high:.3f} }}
+from = -200.0
+to = 200.0
+radius = {random.uniform(0.2, 0.45):.3f}
+objects = [{{ name = "work", size = [{random.uniform(0.2, 0.9):.3f}, 0.1, 0.1], pose = {{ z = 0.05 }} }}]
+[frames.seam]
+parent = "robot1.plate"
+z = 0.25
+"""
+    return "\n".join(out) + "\n", toml
+
+
+def _external(robot: int, random: Random) -> str:
+    """What goes before a task."""
+    wide = random.choice([0.2, 1.0])
+    where = _number(wide * random.uniform(-450.0, 450.0))
+    turned, more = (_number(wide * random.uniform(-150.0, 150.0)) for _ in range(2))
+    if robot == 2 or random.random() < 0.4:
+        return f"travel{robot} ({where}); "
+    a, b = (_number(random.uniform(-150.0, 150.0)) for _ in range(2))
+    return (
+        f"turn ({turned}); overSeam (pose ({a}, {b}, 100.0, 0.0)); "
+        f"seam (pose ({b}, {a}, 0.0, 0.0), {more}); overSeam (pose ({b}, {a}, 300.0, 0.0)); "
+    )
 
 
 def _supervisor(random: Random, counts: list[int]) -> list[str]:

@@ -2,6 +2,7 @@
 
 python -m tools.bench.tending_cells --measure 2,4,6
 python -m tools.bench.tending_cells --in-turns --measure 8,12
+python -m tools.bench.tending_cells --counted --measure 8,12,50
 python -m tools.bench.tending_cells --medium --measure 2,3
 """
 
@@ -28,6 +29,9 @@ from pn2code.verify.controller.control_types import Plan
 from pn2code.verify.controller.premises import Premises
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits
+
+COUNTED_FROM = 20_000
+"""States before tokens are counted up to a limit."""
 
 
 def looked(parts: int, limits: Limits, *, of_medium: bool) -> str:
@@ -75,14 +79,26 @@ def main() -> int:
     )
     parser.add_argument("--in-turns", action="store_true", help="not all states")
     parser.add_argument("--medium", action="store_true", help="the cell with its medium")
+    parser.add_argument(
+        "--counted", action="store_true", help="in turns, with tokens counted up to a limit"
+    )
     given = parser.parse_args()
     print(
         "| parts | how | states | arcs | answers | seconds | MiB | with compiling, all spaces, s |"
     )
     print("|---|---|---|---|---|---|---|---|")
     for parts in map(int, given.measure.split(",")):
-        for how, turns_from in (("all", None), ("in turns", 1))[given.in_turns :]:
-            limits = Limits(max_states=given.states, threads=1, traces=0, turns_from=turns_from)
+        ways = (("all", None, None), ("in turns", 1, None))[given.in_turns :]
+        if given.counted:
+            ways = (("counted", given.states, COUNTED_FROM),)
+        for how, turns_from, counts_from in ways:
+            limits = Limits(
+                max_states=given.states,
+                threads=1,
+                traces=0,
+                turns_from=turns_from,
+                counts_from=counts_from,
+            )
             print(
                 f"| {parts} | {how} | {looked(parts, limits, of_medium=given.medium)} |", flush=True
             )

@@ -2,7 +2,8 @@
 
 ./dev geometry                       a table of all examples (docs/benchmarks.md)
 ./dev geometry --pictures DIR        the pictures of docs/geometry.md
-./dev geometry --cells 40            random cells of two arms: what collides in PyBullet is never said to keep apart
+./dev geometry --cells 40            random cells of two arms, two thirds of them with tracks and a turntable: what
+                                     collides in PyBullet is never said to keep apart
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from tools.geometry.wander import wander
 
 from helpers.netbuilder import cpn
 from helpers.two_arm_cells import two_arm_cell
+from helpers.welding_cell import varied
 from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
 from pn2code.geometry.check import Geometry, examine
@@ -113,12 +115,19 @@ def ran(cell: Path, out: Path) -> str:
     return result.record.reason
 
 
+def random_cell(number: int) -> tuple[str, str]:
+    """In turns two arms, two arms with tracks and a turntable, and a welding pair."""
+    if number % 3 == 2:
+        return varied(Random(number))
+    return two_arm_cell(Random(number), Random(f"axes {number}") if number % 3 else None)
+
+
 def random_cells(folder: Path, count: int, seed: int, walks: int, *, is_run: bool) -> int:
     """Random cells next to runs of them in PyBullet, and random walks with moving arms."""
     said: dict[tuple[str, str], int] = {}
     wrong = 0
     for number in range(seed, seed + count):
-        net, toml = two_arm_cell(Random(number))
+        net, toml = random_cell(number)
         cell = folder / str(number)
         cell.mkdir()
         (cell / "cell.cpn").write_bytes(cpn(net))

@@ -50,7 +50,8 @@ _NAMES = {
     "LargeInt.int": "IntInf.int", "time": "IntInf.int", "CPN'Time.time": "IntInf.int",
     "Int.int": "int", "Real.real": "real", "String.string": "string", "Word.word": "word", "CPN'timed": "timed",
     "Word31.word": "word", "Position.int": "int", "Substring.substring": "substring", "IEEEReal.real_order": "order",
-    "Order.order": "order", "Word8Vector.elem": "Word8.word",
+    "Order.order": "order", "Word8Vector.elem": "Word8.word", "FmtFields.fmt_item": "fmt_item",
+    "CharVector.vector": "string", "CharVector.elem": "char",
 }  # fmt: skip
 _BASIC = {
     "Int": "int",

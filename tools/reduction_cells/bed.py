@@ -1,9 +1,11 @@
-"""One random cell: what turns say of it, held against the whole space, in three ways.
+"""One random cell: what turns say of it, held against the whole space, in several ways.
 
 * *the net of turns*: looked at in turns, and as a whole. If the former has no cycle the latter has none; it has as many
   dead states, each place holds the same, the same transitions occur, the same needs memory, an exception is raised in
   both or in none, and what is asked about single places, groups and orders has the same answers.
-* *the checks of the supervisor*: with turns and without, wherever turns say anything.
+* *limits*: the states in which tokens are counted up to a limit stand for all markings: whatever occurs, or is held, in
+  these does so in those, and what is said of those is true of these.
+* *the checks of the supervisor*: with turns and without, wherever turns say anything; and with limits.
 * *the medium*: the same.
 """
 
@@ -18,6 +20,7 @@ from typing import Any
 
 from tools.adversary.cells import random_cell as adversary_cell
 from tools.reduction_cells.flows import flow
+from tools.reduction_cells.limited import Limited
 from tools.reduction_cells.mutants import MUTANTS, NO_GROUPS, RASH
 
 from helpers.netbuilder import cpn
@@ -59,7 +62,7 @@ def make(seed: int, folder: Path) -> None:
     family = r.random()
     inputs: tuple[tuple[str, str], ...] = ()
     if family < 0.6:
-        net, toml = flow(r)
+        net, toml = flow(r, many=family >= 0.5)
     elif family < 0.75:
         net, toml = random_cell(r)
     else:
@@ -84,9 +87,15 @@ class _Cell:
             arms=Arms.of(opened.config, Diagnostics()),
         )
 
-    def checked(self, turns_from: int | None) -> Control | None:
+    def checked(self, turns_from: int | None, counts_from: int | None = None) -> Control | None:
         """The checks of the supervisor."""
-        limits = Limits(max_states=MOST, threads=1, traces=0, turns_from=turns_from)
+        limits = Limits(
+            max_states=MOST,
+            threads=1,
+            traces=0,
+            turns_from=turns_from,
+            counts_from=counts_from,
+        )
         return control.examine(self.partition, self.plan, limits, Diagnostics())
 
     def medium(self, turns_from: int | None) -> medium.Answer:
@@ -228,6 +237,10 @@ def judge(seed: int, folder: Path, *, mutants: bool, wants_medium: bool) -> Verd
         wrong += [f"first {first}: {x}" for x in differences(space, whole, reduced)]
         if mutants:
             shown |= set(_shown(space, table, whole, reduced))
+        if first:
+            bed = Limited.of(partition, cell.plan)
+            wrong += [] if bed is None else bed.judged(whole, counts)
+            shown |= set() if bed is None or not mutants else bed.shown(whole)
     wrong += _of_checks(cell, counts)
     if wants_medium:
         wrong += _of_medium(cell, counts)
@@ -247,11 +260,16 @@ def _shown(space: _Space, table: Turns, whole: Exploration, reduced: Exploration
 
 
 def _of_checks(cell: _Cell, counts: Counter[str]) -> Iterator[str]:
+    counted = cell.checked(MOST, FEW)
+    is_counted = counted is not None and counted.is_counted
+    counts["checks with limits"] += is_counted
     reduced = cell.checked(1)
     if reduced is None or not reduced.reduced or reduced.found is None:
         counts["checks of the whole"] += 1
-        return
-    counts["checks in turns"] += 1
+        if not is_counted:
+            return
+        reduced = None
+    counts["checks in turns"] += reduced is not None
     whole = cell.checked(None)
     if whole is None or whole.found is None:
         yield "the whole cannot be checked"
@@ -259,17 +277,33 @@ def _of_checks(cell: _Cell, counts: Counter[str]) -> Iterator[str]:
     if not whole.found.complete:
         counts["only in turns"] += 1
         return
-    for a, b in zip(reduced.checks, whole.checks, strict=True):
-        mine = (a.name, a.answer, a.is_accepted, None if a.name in _SIZES else a.value)
-        other = (b.name, b.answer, b.is_accepted, None if b.name in _SIZES else b.value)
-        if mine != other:
-            yield f"check: {mine} / {other}: {a.says} / {b.says}"
+    if counted is not None and is_counted:
+        yield from (f"with limits: {x}" for x in _other_checks(counted, whole, _LIMITED))
+        if counted.row()["dead_transitions"] != whole.row()["dead_transitions"]:
+            yield "with limits: transitions that never occur"
+    if reduced is None or reduced.found is None:
+        return
+    yield from _other_checks(reduced, whole, _SIZES)
     places = len(cell.partition.net.places)
     yield from found_differences(reduced.found, whole.found, places)
 
 
+def _other_checks(mine: Control, whole: Control, sizes: tuple[str, ...]) -> Iterator[str]:
+    for a, b in zip(mine.checks, whole.checks, strict=True):
+        one = (a.name, a.answer, a.is_accepted, None if a.name in sizes else a.value)
+        other = (b.name, b.answer, b.is_accepted, None if b.name in sizes else b.value)
+        if one != other:
+            yield f"check: {one} / {other}: {a.says} / {b.says}"
+        if a.name == "bounded-response" and (a.value or 0) < (b.value or 0):
+            yield f"check: {a.says} / {b.says}"
+
+
 _SIZES = ("non-blocking", "confluence")
 """Checks of which the value is a number of states, or of steps of one run."""
+_LIMITED = (*_SIZES, "bounded-response", "messages", "reach")
+"""The same where a state stands for many markings: there may be more of what is counted."""
+FEW = 40
+"""States before tokens are counted up to a limit."""
 
 
 def _of_medium(cell: _Cell, counts: Counter[str]) -> Iterator[str]:

@@ -5,10 +5,11 @@ from __future__ import annotations
 from random import Random
 
 
-def flow(r: Random) -> tuple[str, str]:
-    """The net and the cell.toml of a supervisor that feeds some parts to one to three devices."""
-    devices = r.choice([1, 2, 2, 3])
+def flow(r: Random, *, many: bool = False) -> tuple[str, str]:
+    """The net and the cell.toml of a supervisor that feeds some parts to one to three devices; or `many` to one."""
+    devices = 1 if many else r.choice([1, 2, 2, 3])
     parts = r.choice([1, 2, 2, 3]) if devices < 3 else r.choice([1, 2])
+    parts = r.choice([4, 5, 6]) if many else parts
     numbers = range(1, devices + 1)
     lines = [
         "net cell",

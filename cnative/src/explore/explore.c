@@ -54,6 +54,7 @@ static void print_help(void)
         "  --elements FILE     the table of binding elements that these two need\n"
         "  --dependency FILE   instead of it, for partial-order: which transitions depend on which\n"
         "  --turns FILE        the table by which programs take turns: each run is seen in one of its orders\n"
+        "  --counts FILE       the table of places whose tokens are counted up to a limit only; needs --turns\n"
         "  --spill DIR         keep large tables in files of a folder\n"
         "  --progress          lines of JSON on the standard error\n"
         "  --progress-every S  seconds between them (default 0.5)\n"
@@ -162,6 +163,7 @@ static bool read_valued(const char *option, const char *value, ex_options_t *opt
            || ((strcmp(option, "--elements") == 0) && read_text(value, &options->elements))
            || ((strcmp(option, "--dependency") == 0) && read_text(value, &options->dependency))
            || ((strcmp(option, "--turns") == 0) && read_text(value, &options->turns))
+           || ((strcmp(option, "--counts") == 0) && read_text(value, &options->counts))
            || ((strcmp(option, "--spill") == 0) && read_text(value, &options->spill))
            || ((strcmp(option, "--traces") == 0) && read_number(value, UINT32_MAX, &options->traces))
            || ((strcmp(option, "--dead-limit") == 0) && read_number(value, UINT32_MAX, &options->dead_limit))

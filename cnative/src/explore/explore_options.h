@@ -34,6 +34,7 @@ typedef struct ex_options {
     const char *elements;    /* file: the table that these need */
     const char *dependency;  /* file: the table that partial order needs where there is no such table */
     const char *turns;       /* file: the table by which programs take turns; NULL: they do not */
+    const char *counts;      /* file: the places whose tokens are counted up to a limit only; NULL: there are none */
     const char *spill;       /* folder; NULL: none */
     const char *write_graph; /* file; NULL: none */
     uint64_t write_limit;    /* most nodes of a graph that is written */

@@ -84,8 +84,8 @@ static uint64_t peak_mib(void)
 static void print_reductions(const ex_options_t *options, FILE *out)
 {
     const bool is_used[] = { options->is_time_reduced, options->is_stubborn, options->is_symmetric,
-                             options->turns != NULL };
-    static const char *const s_names[] = { "time", "partial-order", "symmetry", "turns" };
+                             options->turns != NULL, options->counts != NULL };
+    static const char *const s_names[] = { "time", "partial-order", "symmetry", "turns", "counts" };
     const char *between = "";
     (void)fprintf(out, ",\n \"reductions\": [");
     for (uint32_t i = 0U; i < (sizeof is_used / sizeof is_used[0]); i++) {

@@ -108,6 +108,7 @@ typedef struct ex_run {
         *owner_of; /* by transition: whose it is; priorities count among those of one owner. NULL: among all */
     struct ex_programs *programs; /* how programs choose among what is enabled; NULL: nobody chooses */
     bool has_turns;               /* in a state only some owners are looked at (explore_turns.c) */
+    struct ex_counts *counts;     /* of explore_counts.c; NULL: all tokens are counted */
     bool seeks_choice;            /* now it is looked whether programs ever do the first of several (`first`) */
     _Atomic bool has_choice;      /* they do, or it is not known */
     bool is_choiceless;           /* it has been looked in all states, and they never do: all orders are one */

@@ -172,7 +172,7 @@ static inline bool tb_is_enabled(const tb_cursor_t *c, uint32_t transition)
 
 /* The value of a formula without operators of time. */
 bool tb_holds(const tb_formula_t *f, const tb_cursor_t *c);
-/* 0: the formula is as wanted; else a guess how much is missing. */
+/* A guess how much is missing until the formula is as wanted; 0 if it is, and has no operator of time. */
 double tb_distance(const tb_formula_t *f, const tb_cursor_t *c, bool wanted);
 int64_t tb_sum(const tb_formula_t *sum, const tb_count_t *marking);
 
@@ -217,11 +217,14 @@ typedef struct tb_graph {
     uint32_t at; /* the marking at the cursor */
     tb_count_t *marking;
     uint32_t *fire;
-    uint64_t random; /* state of the numbers drawn for the order of successors; 0: as they come */
-    bool is_full;    /* memory is exhausted, a place is, or the time is over: successors are missing */
+    uint64_t random;  /* state of the numbers drawn for the order of successors; 0: none are */
+    uint32_t *rank;   /* transition -> its place in an order that is the same everywhere; NULL: there is none */
+    uint32_t *ranked; /* that order */
+    bool is_full;     /* memory is exhausted, a place is, or the time is over: successors are missing */
 } tb_graph_t;
 
-/* `seed`: from 1 on another order of the successors each; the first two are as they come. */
+/* `seed`: from 1 on another order of the successors each. That of the first one is as they come, those of even ones are
+ * the same in all markings. */
 void tb_graph_init(tb_graph_t *g, const tb_net_t *net, uint64_t seed);
 void tb_graph_free(tb_graph_t *g);
 
@@ -235,6 +238,24 @@ static inline uint32_t tb_successor(const tb_graph_t *g, uint32_t marking, uint3
 {
     return g->successor[g->first[marking] - 1U + which];
 }
+
+/* --- markings that wait ------------------------------------------------------------------------------------------- */
+
+typedef struct tb_waiting {
+    double distance;
+    uint32_t number;
+} tb_waiting_t;
+
+/* The nearest first, and of equal ones the one with the lowest number. All zero: empty. */
+typedef struct tb_heap {
+    tb_waiting_t *item;
+    uint32_t count;
+    uint32_t room;
+} tb_heap_t;
+
+void tb_heap_free(tb_heap_t *h);
+void tb_heap_push(tb_heap_t *h, double distance, uint32_t number);
+uint32_t tb_heap_pop(tb_heap_t *h);
 
 /* --- stubborn sets ------------------------------------------------------------------------------------------------ */
 

@@ -2,7 +2,7 @@
  * tables_distance.c - how far a marking is from one in which a formula is true: a guess that leads a search.
  *
  * Of a comparison it is what is missing to the limit, of `enabled` the tokens that are missing; of a conjunction the
- * sum.
+ * sum; of an operator of time it is the distance from what it speaks of, or is to come to.
  */
 #include "tables.h"
 
@@ -51,7 +51,6 @@ static double parts_distance(const tb_formula_t *f, const tb_cursor_t *c, bool w
     return total;
 }
 
-/* 0: the formula is as wanted. */
 double tb_distance(const tb_formula_t *f, const tb_cursor_t *c, bool wanted)
 {
     switch (f->op) {
@@ -62,6 +61,7 @@ double tb_distance(const tb_formula_t *f, const tb_cursor_t *c, bool wanted)
     case TB_ENABLED: return enabled_distance(f, c, wanted);
     case TB_DEAD: return wanted ? (double)c->enabled_count : ((c->enabled_count == 0U) ? 1.0 : 0.0);
     case TB_TRUE: return wanted ? 0.0 : 1e18;
-    default: return wanted ? 1e18 : 0.0;
+    case TB_FALSE: return wanted ? 1e18 : 0.0;
+    default: return tb_distance(f->part[f->count - 1U], c, wanted);
     }
 }

@@ -9,7 +9,41 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { FIRST_ROOM = 1 << 10, AS_THEY_COME = 2 /* seeds */ };
+enum { FIRST_ROOM = 1 << 10, AS_THEY_COME = 2 /* seeds */, FEW = 64 /* successors */ };
+
+/* A number below `count` (Marsaglia 2003). */
+static uint32_t drawn(tb_graph_t *g, uint32_t count)
+{
+    g->random ^= g->random << 13U;
+    g->random ^= g->random >> 7U;
+    g->random ^= g->random << 17U;
+    return (uint32_t)((g->random >> 11U) % count);
+}
+
+static void shuffle(tb_graph_t *g, uint32_t *item, uint32_t count)
+{
+    for (uint32_t i = count; (g->random != 0U) && (i > 1U); i--) {
+        const uint32_t other = drawn(g, i);
+        const uint32_t t = item[i - 1U];
+        item[i - 1U] = item[other];
+        item[other] = t;
+    }
+}
+
+/* The same transitions come first everywhere: a search that goes on in one place comes back to where it was. */
+static void rank_all(tb_graph_t *g)
+{
+    const uint32_t transitions = g->net->transitions;
+    g->ranked = tb_new(transitions, sizeof *g->ranked);
+    g->rank = tb_new(transitions, sizeof *g->rank);
+    for (uint32_t t = 0U; t < transitions; t++) {
+        g->ranked[t] = t;
+    }
+    shuffle(g, g->ranked, transitions);
+    for (uint32_t i = 0U; i < transitions; i++) {
+        g->rank[g->ranked[i]] = i;
+    }
+}
 
 void tb_graph_init(tb_graph_t *g, const tb_net_t *net, uint64_t seed)
 {
@@ -17,6 +51,9 @@ void tb_graph_init(tb_graph_t *g, const tb_net_t *net, uint64_t seed)
     uint32_t number = 0U;
     g->net = net;
     g->random = (seed > (uint64_t)AS_THEY_COME) ? ((seed * 0x9e3779b97f4a7c15U) | 1U) : 0U;
+    if ((seed % 2U) == 0U) {
+        rank_all(g);
+    }
     tb_store_init(&g->store, net, NULL);
     tb_cursor_init(&g->cursor, net);
     (void)tb_store_add(&g->store, g->cursor.marking, &number);
@@ -36,6 +73,8 @@ void tb_graph_free(tb_graph_t *g)
     tb_free(g->successor, g->successor_room, sizeof *g->successor);
     tb_free(g->marking, g->net->places, sizeof *g->marking);
     tb_free(g->fire, g->net->transitions, sizeof *g->fire);
+    tb_free(g->rank, g->net->transitions, sizeof *g->rank);
+    tb_free(g->ranked, g->net->transitions, sizeof *g->ranked);
     tb_cursor_free(&g->cursor);
     tb_store_free(&g->store);
 }
@@ -95,23 +134,36 @@ static uint32_t without_repeats(uint32_t *number, uint32_t count)
     return kept;
 }
 
-/* A number below `count` (Marsaglia 2003). */
-static uint32_t drawn(tb_graph_t *g, uint32_t count)
+/* The same, and what is left keeps its order. */
+static uint32_t first_ones(uint32_t *number, uint32_t count)
 {
-    g->random ^= g->random << 13U;
-    g->random ^= g->random >> 7U;
-    g->random ^= g->random << 17U;
-    return (uint32_t)((g->random >> 11U) % count);
+    uint32_t kept = 0U;
+    for (uint32_t i = 0U; i < count; i++) {
+        uint32_t k = 0U;
+        while ((k < kept) && (number[k] != number[i])) {
+            k++;
+        }
+        if (k == kept) {
+            number[kept] = number[i];
+            kept++;
+        }
+    }
+    return kept;
 }
 
 /* What is found first is looked at first, so that the order decides where a search goes. */
-static void shuffle(tb_graph_t *g, uint32_t count)
+static void put_in_order(tb_graph_t *g, uint32_t count)
 {
-    for (uint32_t i = count; (g->random != 0U) && (i > 1U); i--) {
-        const uint32_t other = drawn(g, i);
-        const uint32_t t = g->fire[i - 1U];
-        g->fire[i - 1U] = g->fire[other];
-        g->fire[other] = t;
+    if (g->rank == NULL) {
+        shuffle(g, g->fire, count);
+        return;
+    }
+    for (uint32_t i = 0U; i < count; i++) {
+        g->fire[i] = g->rank[g->fire[i]];
+    }
+    qsort(g->fire, count, sizeof *g->fire, by_number);
+    for (uint32_t i = 0U; i < count; i++) {
+        g->fire[i] = g->ranked[g->fire[i]];
     }
 }
 
@@ -129,7 +181,7 @@ bool tb_expand(tb_graph_t *g, uint32_t marking)
     for (uint32_t i = 0U; i < enabled; i++) {
         g->fire[i] = g->cursor.enabled[i];
     }
-    shuffle(g, enabled);
+    put_in_order(g, enabled);
     uint32_t *found = &g->successor[g->successors];
     for (uint32_t i = 0U; i < enabled; i++) {
         if (!tb_fire(&g->cursor, g->fire[i])) {
@@ -143,7 +195,8 @@ bool tb_expand(tb_graph_t *g, uint32_t marking)
             return false;
         }
     }
-    g->count[marking] = without_repeats(found, enabled);
+    const bool is_ranked = (g->rank != NULL) && (enabled <= (uint32_t)FEW);
+    g->count[marking] = is_ranked ? first_ones(found, enabled) : without_repeats(found, enabled);
     g->first[marking] = g->successors + 1U;
     g->successors += g->count[marking];
     return true;

@@ -7,68 +7,14 @@
  */
 #include "tables.h"
 
-enum { FIRST_WAITING = 1 << 10 };
-
-typedef struct waiting {
-    double distance;
-    uint32_t number;
-} waiting_t;
-
-/* The waiting markings: a heap, the nearest first, and of equal ones the oldest. */
-typedef struct heap {
-    waiting_t *item;
-    uint32_t count;
-    uint32_t room;
-} heap_t;
-
-static bool comes_before(const waiting_t *a, const waiting_t *b)
-{
-    return (a->distance < b->distance) || (!(a->distance > b->distance) && (a->number < b->number));
-}
-
-static void push(heap_t *h, double distance, uint32_t number)
-{
-    if (h->count == h->room) {
-        const uint32_t room = 2U * h->room;
-        h->item = tb_grown(h->item, h->room, room, sizeof *h->item);
-        h->room = room;
-    }
-    const waiting_t item = { distance, number };
-    uint32_t at = h->count;
-    h->count++;
-    while ((at > 0U) && comes_before(&item, &h->item[(at - 1U) / 2U])) {
-        h->item[at] = h->item[(at - 1U) / 2U];
-        at = (at - 1U) / 2U;
-    }
-    h->item[at] = item;
-}
-
-static uint32_t pop(heap_t *h)
-{
-    const uint32_t first = h->item[0].number;
-    h->count--;
-    const waiting_t item = h->item[h->count];
-    uint32_t at = 0U;
-    for (uint32_t child = 1U; child < h->count; child = (2U * at) + 1U) {
-        if (((child + 1U) < h->count) && comes_before(&h->item[child + 1U], &h->item[child])) {
-            child++;
-        }
-        if (!comes_before(&h->item[child], &item)) {
-            break;
-        }
-        h->item[at] = h->item[child];
-        at = child;
-    }
-    h->item[at] = item;
-    return first;
-}
+#include <string.h>
 
 typedef struct search {
     tb_question_t *question;
     tb_store_t store;
     tb_cursor_t cursor;
     tb_stubborn_t stubborn;
-    heap_t heap;
+    tb_heap_t heap;
     tb_count_t *marking;
     uint32_t *fire;
 } search_t;
@@ -83,7 +29,7 @@ static bool found(search_t *s, uint32_t number)
             tb_say(q, TB_YES, "STUBBORN_SETS");
             return true;
         }
-        push(&s->heap, distance, number);
+        tb_heap_push(&s->heap, distance, number);
         return false;
     }
     const int64_t sum = tb_sum(q->formula, s->cursor.marking);
@@ -91,7 +37,7 @@ static bool found(search_t *s, uint32_t number)
         q->least = sum;
         tb_say_bound(q, sum, false, "STUBBORN_SETS");
     }
-    push(&s->heap, -(double)sum, number);
+    tb_heap_push(&s->heap, -(double)sum, number);
     return false;
 }
 
@@ -105,7 +51,7 @@ static bool searched(search_t *s)
         return false;
     }
     while (s->heap.count > 0U) {
-        tb_store_get(&s->store, pop(&s->heap), s->marking);
+        tb_store_get(&s->store, tb_heap_pop(&s->heap), s->marking);
         tb_go_to(&s->cursor, s->marking);
         const bool is_reach = q->kind == TB_REACH;
         const uint32_t count =
@@ -131,9 +77,7 @@ static void answer(const tb_net_t *net, tb_question_t *q)
     tb_store_init(&s.store, net, NULL);
     tb_cursor_init(&s.cursor, net);
     tb_stubborn_init(&s.stubborn, net);
-    s.heap.room = (uint32_t)FIRST_WAITING;
-    s.heap.count = 0U;
-    s.heap.item = tb_new(s.heap.room, sizeof *s.heap.item);
+    (void)memset(&s.heap, 0, sizeof s.heap);
     s.marking = tb_new(net->places, sizeof *s.marking);
     s.fire = tb_new(net->transitions, sizeof *s.fire);
     if (searched(&s)) {
@@ -145,7 +89,7 @@ static void answer(const tb_net_t *net, tb_question_t *q)
     }
     tb_free(s.fire, net->transitions, sizeof *s.fire);
     tb_free(s.marking, net->places, sizeof *s.marking);
-    tb_free(s.heap.item, s.heap.room, sizeof *s.heap.item);
+    tb_heap_free(&s.heap);
     tb_stubborn_free(&s.stubborn);
     tb_cursor_free(&s.cursor);
     tb_store_free(&s.store);

@@ -17,6 +17,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from types import FrameType
 
 from pn2code.base.frozen import frozen
@@ -42,8 +43,16 @@ def note_start() -> None:
     _started = time.monotonic()
 
 
-class TimeIsOverError(BaseException):
-    """The deadline came while pure Python was at work. It is no error of what was done, so nothing catches it."""
+class OverError(BaseException):
+    """A deadline came while pure Python was at work. It is no error of what was done, so nothing catches it."""
+
+
+class TimeIsOverError(OverError):
+    """The time of some work is over: who has set the deadline goes on without it."""
+
+
+class CommandIsOverError(OverError):
+    """The time of a command is over that has no answer then; it passes those who wait for the end of other work."""
 
 
 @frozen
@@ -94,29 +103,38 @@ class Deadline:
         return left is not None and -left > GRACE * (self.seconds or 0.0) + GRACE_S
 
     @contextmanager
-    def enforced(self) -> Iterator[None]:
-        """While the block lasts it is left with `TimeIsOverError` when the time is over (in the main thread only).
+    def enforced(self, error: type[OverError] = TimeIsOverError) -> Iterator[None]:
+        """While the block lasts it is left with the error when the time is over (in the main thread only).
+
+        Blocks may be inside each other: the outer deadline counts again when the inner block has been left.
 
         Raises:
-            TimeIsOverError: the time is over, perhaps before the block has begun.
+            TimeIsOverError, CommandIsOverError: the time is over, perhaps before the block has begun.
         """
         left = self.left
         if left is None or threading.current_thread() is not threading.main_thread():
             yield
             return
         if left <= 0.0:
-            raise TimeIsOverError
-        before = signal.signal(signal.SIGALRM, self._ring)
+            raise error
+        ring = partial(self._ring, error=error)
+        before = signal.signal(signal.SIGALRM, ring)
+        outer, _ = signal.setitimer(signal.ITIMER_REAL, max(left, _LEAST_S), _AGAIN_S)
+        began = time.monotonic()
         try:
-            signal.setitimer(signal.ITIMER_REAL, max(left, _LEAST_S), _AGAIN_S)
             yield
         finally:
             signal.setitimer(signal.ITIMER_REAL, 0.0)
             signal.signal(signal.SIGALRM, before)
+            if outer > 0.0:
+                rest = outer - (time.monotonic() - began)
+                signal.setitimer(signal.ITIMER_REAL, max(rest, _LEAST_S), _AGAIN_S)
 
-    def _ring(self, number: int, frame: FrameType | None) -> None:
+    def _ring(
+        self, number: int, frame: FrameType | None, error: type[OverError] = TimeIsOverError
+    ) -> None:
         if self.is_over() and not _is_importing(frame) and not _is_leaving():
-            raise TimeIsOverError
+            raise error
 
 
 def _is_importing(frame: FrameType | None) -> bool:
@@ -134,7 +152,7 @@ def _is_importing(frame: FrameType | None) -> bool:
 def _is_leaving() -> bool:
     """Whether the blocks are being left already: what they tidy up on the way out is not broken off."""
     problem = sys.exc_info()[1]
-    while problem is not None and not isinstance(problem, TimeIsOverError):
+    while problem is not None and not isinstance(problem, OverError):
         problem = problem.__context__
     return problem is not None
 

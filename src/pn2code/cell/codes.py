@@ -70,6 +70,13 @@ PRIMITIVE_ENTRY = register(
     "docs/cell.md. An entry that names no function is an error, because the calls of the function that was meant "
     "would be missing from the scripts.",
 )
+PRIMITIVE_AXIS = register(
+    "primitive-axis",
+    "a robot is told to move what belongs to another one",
+    "External axes (`track`, `turntable` of an entry of [primitives]) and frames that turn with a turntable belong to "
+    "the robot in whose table they are. Only its own script moves them, so that where they stand is known when a move "
+    "begins.",
+)
 PRIMITIVE_UNNAMED = register(
     "primitive-unnamed",
     "a call in a robot's code segment is no command and has no effect",

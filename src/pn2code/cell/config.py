@@ -17,7 +17,7 @@ from pn2code.diagnostics import Origin
 from pn2code.robot.commands import Handling
 
 COMMANDS = PRIMITIVE["command"].words
-GOING: frozenset[CommandName] = frozenset({"move_joint", "move_axes", *LED})
+GOING: frozenset[CommandName] = frozenset({"move_joint", "move_axes", "move_external", *LED})
 """Commands that say where the arm goes; their functions may take a speed beside it."""
 MOTIONS: frozenset[CommandName] = GOING | {"move_home", "measure"}
 """Commands on which an arm moves."""
@@ -40,6 +40,9 @@ class Primitive:
         acceleration: of moves: percent of the acceleration of the cell; None: all of it.
         approach: of move_linear: mm; the arm comes first, on a joint move, to so far before the pose; 0: it does not.
         depart: of moves but move_circular: mm; the arm goes first straight back by so much; 0: it does not.
+        along: of moves: external axes that move as well, each with whether it is a track; the function takes their
+            positions, in mm and degrees, behind the poses.
+        tcp: of moves to poses: the tool frame that comes there; "": that of the tool.
     """
 
     function: str
@@ -52,6 +55,18 @@ class Primitive:
     acceleration: float | None = None
     approach: float = 0.0
     depart: float = 0.0
+    along: tuple[tuple[str, bool], ...] = ()
+    tcp: str = ""
+
+    @property
+    def places(self) -> int:
+        """How many poses or joint positions the function takes."""
+        return {"move_circular": 2, "move_external": 0}.get(self.command, 1)
+
+    @property
+    def takes(self) -> int:
+        """How many values the function takes, but for a speed."""
+        return self.places + len(self.along)
 
     @property
     def is_linear(self) -> bool:
@@ -199,6 +214,31 @@ class CellConfig:
         """The names of `[frames]`."""
         frames = self.geometry.get("frames")
         return tuple(frames) if isinstance(frames, dict) else ()
+
+    def external_axes(self, robot: str) -> dict[str, str]:
+        """The kinds of the external axes of a robot, by name; what is wrong in these tables, `robot.scene` reports."""
+        robots = self.geometry.get("robots")
+        table = robots.get(robot) if isinstance(robots, dict) else None
+        axes = table.get("axes") if isinstance(table, dict) else None
+        named = axes.items() if isinstance(axes, dict) else ()
+        return {name: str(x.get("kind", "track")) for name, x in named if isinstance(x, dict)}
+
+    def tcps(self, robot: str) -> tuple[str, ...]:
+        """The names of the further tool frames of a robot."""
+        robots = self.geometry.get("robots")
+        table = robots.get(robot) if isinstance(robots, dict) else None
+        tcps = table.get("tcps") if isinstance(table, dict) else None
+        return tuple(tcps) if isinstance(tcps, dict) else ()
+
+    def turns_with(self, frame: str) -> str:
+        """The turntable on which a frame is, as `ROBOT.AXIS`; "": it stands."""
+        frames = self.geometry.get("frames")
+        seen: set[str] = set()
+        while isinstance(frames, dict) and frame in frames and frame not in seen:
+            seen.add(frame)
+            table = frames[frame]
+            frame = str(table.get("parent", "")) if isinstance(table, dict) else ""
+        return frame if "." in frame else ""
 
     @property
     def parts_at_start(self) -> dict[str, int]:

@@ -7,7 +7,7 @@ one who understands it.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path, PurePath
 from typing import Any, cast
@@ -373,6 +373,8 @@ def _primitives(r: Tables, data: dict[str, Any]) -> dict[str, Primitive]:
             _scaled(r, table, at, command, "acceleration", 100.0),
             _scaled(r, table, at, command, "approach", 1000.0) or 0.0,
             _scaled(r, table, at, command, "depart", 1000.0) or 0.0,
+            tuple(_along(r, data, table, at, command)),
+            _tcp(r, data, table, at) if "tcp" in own else "",
         )
         _check_approach(r, out[name], at)
     return out
@@ -398,6 +400,58 @@ def _frame(
         )
         return ""
     return "" if command == "move_joint" and frame == "world" else frame
+
+
+def _tcp(r: Tables, data: dict[str, Any], table: dict[str, Any], at: KeyPath) -> str:
+    """A further tool frame of some robot."""
+    if "tcp" not in table:
+        return ""
+    name = str(r.get(table, at, PRIMITIVE["tcp"], ""))
+    known = {
+        tcp for x in _table(data.get("robots")).values() for tcp in _table(_table(x).get("tcps"))
+    }
+    if name and name not in known:
+        r.d.error(
+            codes.CELL_VALUE,
+            f"no robot has a tool frame `{name}`",
+            r.at(*at, "tcp"),
+            hint=did_you_mean(name, sorted(known), "")
+            or f"add a table `[robots.NAME.tcps.{name}]` (docs/robots.md)",
+        )
+    return name
+
+
+def _along(
+    r: Tables, data: dict[str, Any], table: dict[str, Any], at: KeyPath, command: str
+) -> Iterator[tuple[str, bool]]:
+    """External axes that move as well, each of the kind that its key says, of some robot."""
+    if command == "move_external" and not ({"track", "turntable"} & table.keys()):
+        r.d.error(
+            codes.CELL_KEY,
+            f"`primitives.{at[1]}` names no external axis",
+            r.at(*at),
+            hint='add `track = "..."` or `turntable = "..."`, the name of an axis of `[robots.NAME.axes]`',
+        )
+    for kind in ("track", "turntable"):
+        if kind not in table or kind not in PRIMITIVE.names(command):
+            continue
+        name = r.get(table, at, PRIMITIVE.key(kind, command), "")
+        robots = [_table(x) for x in _table(data.get("robots")).values()]
+        known = {
+            axis: _table(x).get("kind", "track")
+            for robot in robots
+            for axis, x in _table(robot.get("axes")).items()
+        }
+        own = [axis for axis, x in known.items() if x == kind]
+        if name and name not in own:
+            r.d.error(
+                codes.CELL_VALUE,
+                f"no robot has a {kind} `{name}`",
+                r.at(*at, kind),
+                hint=did_you_mean(name, own, "")
+                or f"add a table `[robots.NAME.axes.{name}]` (docs/robots.md)",
+            )
+        yield name, kind == "track"
 
 
 def _scaled(

@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 
 from pn2code.cell import codes
 from pn2code.cell.axes_types import is_axes
-from pn2code.cell.config import CellConfig, CommandName, Primitive
+from pn2code.cell.config import GOING, CellConfig, CommandName, Primitive
 from pn2code.cell.partition import Owner, Partition
 from pn2code.cell.pose_types import is_pose, pose_types
 from pn2code.cell.reach import Reach, bound
@@ -35,6 +35,7 @@ _TAKES: dict[CommandName, str] = {
     "move_linear": "POSE -> unit` or `POSE * real -> unit",
     "move_axes": "AXES -> unit` or `AXES * real -> unit",
     "move_circular": "POSE * POSE -> unit` or `POSE * POSE * real -> unit",
+    "move_external": "real -> unit` or `real * real -> unit",
     "move_home": "unit -> unit",
     "measure": "POSE -> POSE",
     "tool": "unit -> unit",
@@ -114,14 +115,13 @@ class _Checker:
                     else "declare it in the net, or remove the entry",
                 )
             elif not _fits(symbol.type, primitive):
+                takes = _taking(primitive)
                 self.d.error(
                     codes.PRIMITIVE_ENTRY,
                     f"`{name}` has type `{symbol.type}`, but a function for `{primitive.command}` has type "
-                    f"`{_TAKES[primitive.command]}`",
+                    f"`{takes}`",
                     at,
-                    notes=[
-                        text for word, text in _RECORDS.items() if word in _TAKES[primitive.command]
-                    ],
+                    notes=[text for word, text in _RECORDS.items() if word in takes],
                     hint=_other_commands(symbol.type),
                 )
             elif (
@@ -136,8 +136,8 @@ class _Checker:
                     at,
                     hint=f"give its argument the colour set of the poses: `fun {name} (p : POSE) = ...`",
                 )
-            elif primitive.speed is not None and moves_at_speed(symbol.type, primitive.command):
-                what = "joint position" if primitive.command == "move_axes" else "pose"
+            elif primitive.speed is not None and moves_at_speed(symbol.type, primitive):
+                what = _WHERE.get(primitive.command, "pose")
                 self.d.error(
                     codes.PRIMITIVE_ENTRY,
                     f"`{name}` takes a speed, and the entry has one, too",
@@ -258,6 +258,50 @@ class _Checker:
             body = self.reach.body(symbol)
             if symbol.uid not in self.primitives and body is not None:
                 self._lost(body, where, [])
+            primitive = self.primitives.get(symbol.uid)
+            if primitive is not None:
+                self._of_robot(symbol, primitive, owner, t, code)
+
+    def _of_robot(
+        self,
+        symbol: core.Symbol,
+        primitive: Primitive,
+        owner: Owner,
+        t: FlatTransition,
+        code: CodeSegment,
+    ) -> None:
+        """External axes, and frames that turn with one, are those of the robot that is told."""
+        own = self.config.external_axes(owner.name)
+        for axis, is_track in primitive.along:
+            kind = "track" if is_track else "turntable"
+            if own.get(axis) != kind:
+                self.d.error(
+                    codes.PRIMITIVE_AXIS,
+                    f"`{symbol.name}` moves {kind} `{axis}`, which {owner.phrase} does not have",
+                    code.action.span,
+                    notes=[f"it is called in the code segment of transition `{t.short}`"],
+                    hint=f"add `[robots.{owner.name}.axes.{axis}]` to {self.config.path.name}, or name another axis "
+                    f"in `primitives.{symbol.name}`",
+                )
+        if primitive.tcp and primitive.tcp not in self.config.tcps(owner.name):
+            self.d.error(
+                codes.PRIMITIVE_AXIS,
+                f"`{symbol.name}` moves tool frame `{primitive.tcp}`, which {owner.phrase} does not have",
+                code.action.span,
+                notes=[f"it is called in the code segment of transition `{t.short}`"],
+                hint=f"add `[robots.{owner.name}.tcps.{primitive.tcp}]` to {self.config.path.name}",
+            )
+        plate = self.config.turns_with(primitive.frame or "")
+        if plate and plate.split(".")[0] != owner.name:
+            self.d.error(
+                codes.PRIMITIVE_AXIS,
+                f"`{symbol.name}` moves in frame `{primitive.frame}`, which turns with `{plate}`, but {owner.phrase} "
+                "does not command that turntable",
+                code.action.span,
+                notes=[f"it is called in the code segment of transition `{t.short}`"],
+                hint="let the robot that has the turntable move in this frame, or give the others poses in a frame "
+                "that stands",
+            )
 
     def _lost(self, e: core.Exp, where: str, unused: list[core.Exp]) -> None:
         """Reports what no script carries out; `unused`: expressions inside whose values nobody wants."""
@@ -402,28 +446,50 @@ _RECORDS = {
 }
 
 
-def moves_at_speed(t: Type, command: CommandName) -> bool:
+_WHERE: dict[CommandName, str] = {
+    "move_axes": "joint position",
+    "move_external": "position of the axis",
+}
+
+
+def _taking(primitive: Primitive) -> str:
+    """The type of the function of an entry."""
+    text = _TAKES[primitive.command]
+    count = len(primitive.along)
+    if not count:
+        return text
+    places = {"move_axes": ["AXES"], "move_external": [], "move_circular": ["POSE", "POSE"]}
+    own = [*places.get(primitive.command, ["POSE"]), *["real"] * count]
+    return f"{' * '.join(own)} -> unit` or `{' * '.join([*own, 'real'])} -> unit"
+
+
+def _parts(t: Type, primitive: Primitive) -> list[Type] | None:
+    """What a function takes: poses or axes, positions of external axes, and a speed; None: not so many."""
+    count = primitive.takes
+    is_tuple = isinstance(t, TRecord) and t.fields and t.fields[0][0] == "1"
+    parts = [x for _, x in t.fields] if isinstance(t, TRecord) and is_tuple else [t]
+    return parts if len(parts) in (count, count + 1) else None
+
+
+def moves_at_speed(t: Type, primitive: Primitive) -> bool:
     """Whether a function takes a speed beside where to go: mm/s of the TCP, or percent of the speeds of the axes."""
-    if not isinstance(t, TFun):
+    if not isinstance(t, TFun) or primitive.command not in GOING:
         return False
-    match command, t.argument:
-        case "move_joint" | "move_linear", TRecord((("1", pose), ("2", speed))):
-            return _is_pose(pose) and speed in (REAL, INT)
-        case "move_axes", TRecord((("1", axes), ("2", speed))):
-            return is_axes(axes) and speed in (REAL, INT)
-        case "move_circular", TRecord((("1", via), ("2", end), ("3", speed))):
-            return is_pose(via) and is_pose(end) and speed in (REAL, INT)
-        case _:
-            return False
+    parts = _parts(t.argument, primitive)
+    return parts is not None and len(parts) > primitive.takes and _goes(parts, primitive)
 
 
-def _is_arc(t: Type) -> bool:
-    """Whether these are two poses: one on the way, and the end."""
-    match t:
-        case TRecord((("1", via), ("2", end))):
-            return is_pose(via) and is_pose(end)
+def _goes(parts: list[Type], primitive: Primitive) -> bool:
+    """Whether these say where a move goes: places, then numbers."""
+    places, numbers = parts[: primitive.places], parts[primitive.places :]
+    match primitive.command:
+        case "move_axes":
+            fit = all(map(is_axes, places))
+        case "move_circular":
+            fit = all(map(is_pose, places))
         case _:
-            return False
+            fit = all(map(_is_pose, places))
+    return fit and all(x in (REAL, INT) for x in numbers)
 
 
 def _fits(t: Type, primitive: Primitive) -> bool:
@@ -431,12 +497,9 @@ def _fits(t: Type, primitive: Primitive) -> bool:
         return False
     takes, gives = t.argument, t.result
     match primitive.command:
-        case "move_joint" | "move_linear":
-            return (_is_pose(takes) or moves_at_speed(t, primitive.command)) and gives == UNIT
-        case "move_axes":
-            return (is_axes(takes) or moves_at_speed(t, primitive.command)) and gives == UNIT
-        case "move_circular":
-            return (_is_arc(takes) or moves_at_speed(t, primitive.command)) and gives == UNIT
+        case "move_joint" | "move_linear" | "move_axes" | "move_circular" | "move_external":
+            parts = _parts(takes, primitive)
+            return parts is not None and _goes(parts, primitive) and gives == UNIT
         case "measure":
             return _is_pose(takes) and _is_pose(gives)
         case "wait":
@@ -447,7 +510,7 @@ def _fits(t: Type, primitive: Primitive) -> bool:
 
 def _other_commands(t: Type) -> str:
     """Which commands a function of this type can be."""
-    known = [c for c in _TAKES if _fits(t, Primitive("", c))]
+    known = [c for c in _TAKES if c != "move_external" and _fits(t, Primitive("", c))]
     if not known:
         return "change the function's declaration in the net"
     return f"a function of this type can be {' or '.join(f'`{c}`' for c in known)}"

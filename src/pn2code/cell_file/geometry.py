@@ -25,61 +25,10 @@ FRAME = Section(
         Key(
             "parent",
             "text",
-            'The frame in which this one is given: `"world"`, or the name of another one.',
+            'The frame in which this one is given: `"world"`, the name of another one, or a turntable, '
+            '`"ROBOT.AXIS"`, with which it turns.',
             "the name of a frame",
             default="world",
-        ),
-    )
-)
-BRANCHES = tuple(
-    f"{s}/{e}/{w}" for s in ("front", "back") for e in ("up", "down") for w in ("plus", "minus")
-)
-ROBOT = Section(
-    (
-        Key(
-            "instance",
-            "text",
-            "The substitution transition whose page instance is this robot's program.",
-            "a substitution transition",
-            required=True,
-        ),
-        Key(
-            "model",
-            "text",
-            "A robot that comes with pn2code, or a `.urdf` file ([robots.md](robots.md)). A run needs it.",
-            "the name of a robot model, or a .urdf file",
-            required="together",
-        ),
-        Key(
-            "tool",
-            "text",
-            'An end effector that comes with pn2code, a `.urdf` file, or `"none"`.',
-            "the name of an end effector, or a .urdf file",
-            default="none",
-        ),
-        Key(
-            "base",
-            "table",
-            "Where its base is in the world. A run needs it.",
-            _POSE,
-            required="together",
-            inner=POSE,
-        ),
-        Key(
-            "home",
-            "numbers",
-            "Its joint angles at HOME.",
-            default=(0.0, -90.0, 90.0, 0.0, 0.0, 0.0),
-            unit=_DEGREES,
-            counts=(6,),
-        ),
-        Key(
-            "branch",
-            "text",
-            "The only branch in which joint moves end: shoulder, elbow, sign of axis 5; `any`: the one that is reached "
-            "first.",
-            default="any",
-            words=("any", *BRANCHES),
         ),
     )
 )
@@ -345,6 +294,162 @@ OBJECT = Section(
         *_shape(),
     ),
     by="kind",
+)
+
+
+def _travel(only: tuple[str, ...], unit: str, pace: tuple[float, float, float]) -> tuple[Key, ...]:
+    """How far an external axis goes, and how fast."""
+    words = ("speed", "acceleration", "jerk")
+    units = (f"{unit}/s", f"{unit}/s\u00b2", f"{unit}/s\u00b3")
+    return (
+        Key("from", "number", "Its least position.", required=True, unit=unit, only=only),
+        Key("to", "number", "Its greatest position.", required=True, unit=unit, only=only),
+        Key("home", "number", "Where it is when a run begins.", default=0.0, unit=unit, only=only),
+        *(
+            Key(
+                word,
+                "number",
+                f"Its greatest {word}.",
+                default=value,
+                unit=own,
+                low=0.0,
+                above=True,
+                only=only,
+            )
+            for word, value, own in zip(words, pace, units, strict=True)
+        ),
+    )
+
+
+AXIS = Section(
+    (
+        Key(
+            "kind",
+            "text",
+            "What it moves: a track (or a lift) carries the arm, a turntable carries the work piece.",
+            "`track` or `turntable`",
+            default="track",
+            words=("track", "turntable"),
+        ),
+        Key(
+            "direction",
+            "numbers",
+            "Where the arm goes for positions above 0, in the frame of `base`; `[0, 0, 1]` is a lift.",
+            "three numbers, not all of them 0",
+            default=(1.0, 0.0, 0.0),
+            counts=(3,),
+            only=("track",),
+        ),
+        *_travel(("track",), "m", (0.5, 1.0, 10.0)),
+        Key(
+            "pose",
+            "table",
+            "The middle of its plate in the world; it turns about z.",
+            _POSE,
+            required=True,
+            inner=POSE,
+            only=("turntable",),
+        ),
+        *_travel(("turntable",), _DEGREES, (60.0, 120.0, 600.0)),
+        Key(
+            "radius",
+            "number",
+            "Radius of its plate.",
+            required=True,
+            unit="m",
+            low=0.0,
+            above=True,
+            only=("turntable",),
+        ),
+        Key(
+            "height",
+            "number",
+            "Thickness of its plate, below `pose`.",
+            default=0.05,
+            unit="m",
+            low=0.0,
+            above=True,
+            only=("turntable",),
+        ),
+        Key(
+            "objects",
+            "tables",
+            "Things that turn with it, in its frame, such as a fixture and the work piece; they are one part with it.",
+            inner=OBJECT,
+            only=("turntable",),
+        ),
+    ),
+    by="kind",
+)
+BRANCHES = tuple(
+    f"{s}/{e}/{w}" for s in ("front", "back") for e in ("up", "down") for w in ("plus", "minus")
+)
+ROBOT = Section(
+    (
+        Key(
+            "instance",
+            "text",
+            "The substitution transition whose page instance is this robot's program.",
+            "a substitution transition",
+            required=True,
+        ),
+        Key(
+            "model",
+            "text",
+            "A robot that comes with pn2code, or a `.urdf` file ([robots.md](robots.md)). A run needs it.",
+            "the name of a robot model, or a .urdf file",
+            required="together",
+        ),
+        Key(
+            "tool",
+            "text",
+            'An end effector that comes with pn2code, a `.urdf` file, or `"none"`.',
+            "the name of an end effector, or a .urdf file",
+            default="none",
+        ),
+        Key(
+            "base",
+            "table",
+            "Where its base is in the world. A run needs it.",
+            _POSE,
+            required="together",
+            inner=POSE,
+        ),
+        Key(
+            "home",
+            "numbers",
+            "Its joint angles at HOME.",
+            default=(0.0, -90.0, 90.0, 0.0, 0.0, 0.0),
+            unit=_DEGREES,
+            counts=(6,),
+        ),
+        Key(
+            "branch",
+            "text",
+            "The only branch in which joint moves end: shoulder, elbow, sign of axis 5; `any`: the one that is reached "
+            "first.",
+            default="any",
+            words=("any", *BRANCHES),
+        ),
+        Key(
+            "tcps",
+            "named",
+            "A further tool frame, in the frame of the flange, to which moves can refer (`tcp` of an entry of "
+            "`[primitives]`).",
+            inner=POSE,
+            entry="NAME",
+            is_word=True,
+        ),
+        Key(
+            "axes",
+            "named",
+            "An external axis, by its name, as of a robot: a track under the base, a turntable under the work piece "
+            "([robots.md](robots.md#external-axes)).",
+            inner=AXIS,
+            entry="NAME",
+            is_word=True,
+        ),
+    )
 )
 CONTACT = Section(
     (

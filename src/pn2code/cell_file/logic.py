@@ -132,6 +132,7 @@ CommandName = Literal[
     "move_axes",
     "move_linear",
     "move_circular",
+    "move_external",
     "move_home",
     "measure",
     "tool",
@@ -139,6 +140,8 @@ CommandName = Literal[
 ]
 LED: tuple[CommandName, ...] = ("move_linear", "move_circular")
 """Commands on which the TCP is led along a line or an arc, so that speeds are those of the TCP."""
+WITH_AXES: tuple[CommandName, ...] = ("move_joint", "move_axes", "move_external", *LED)
+"""Commands on which external axes move."""
 PRIMITIVE = Section(
     (
         Key(
@@ -183,7 +186,7 @@ PRIMITIVE = Section(
             low=0.0,
             above=True,
             high=1.0,
-            only=("move_joint", "move_axes", "move_home"),
+            only=("move_joint", "move_axes", "move_external", "move_home"),
         ),
         Key(
             "acceleration",
@@ -193,7 +196,28 @@ PRIMITIVE = Section(
             low=0.0,
             above=True,
             high=1.0,
-            only=("move_joint", "move_axes", "move_linear", "move_circular", "move_home"),
+            only=(*WITH_AXES, "move_home"),
+        ),
+        Key(
+            "tcp",
+            "text",
+            "Which tool frame comes to the pose, a name of `[robots.NAME.tcps]`; without it, the TCP of the tool.",
+            "the name of a tool frame of a robot",
+            only=("move_joint", *LED),
+        ),
+        Key(
+            "track",
+            "text",
+            "A track of the robot that moves as well: the function takes its position, too, in mm.",
+            "the name of a track of a robot",
+            only=WITH_AXES,
+        ),
+        Key(
+            "turntable",
+            "text",
+            "A turntable of the robot that moves as well: the function takes its position, too, in degrees.",
+            "the name of a turntable of a robot",
+            only=WITH_AXES,
         ),
         Key(
             "approach",

@@ -9,9 +9,18 @@ from pn2code.channels.directory import (
     PeerState,
     SharedDirectory,
     Status,
+    StatusFile,
     Written,
+    read_status,
 )
-from pn2code.channels.message import ChannelSpec, Message, Reason, Refused, specs_of
+from pn2code.channels.message import (
+    ChannelSpec,
+    Message,
+    Reason,
+    Refused,
+    is_empty,
+    specs_of,
+)
 from pn2code.channels.scalars import ScalarValue
 
 __all__ = [
@@ -29,7 +38,10 @@ __all__ = [
     "ScalarValue",
     "SharedDirectory",
     "Status",
+    "StatusFile",
     "Written",
+    "read_status",
+    "is_empty",
     "scalars_of",
     "specs_of",
 ]

@@ -109,7 +109,9 @@ class _ChannelState:
 
 
 @frozen
-class _StatusFile:
+class StatusFile:
+    """What a status file says (I9): `running`, `finished` or `stopped`, session, process, and in words why."""
+
     state: str
     session: str
     pid: int | None
@@ -205,6 +207,14 @@ class SharedDirectory(Closing):
             state.consumed = state.sent = 0
         self.set_status(Status.RUNNING)
         return True
+
+    @property
+    def began(self) -> float:
+        """When the supervisor announced itself (s, as `time.time` counts); now, where that is not known."""
+        try:
+            return self._status_path(self._supervisor).stat().st_mtime
+        except OSError:
+            return time.time()
 
     def peer(self, name: str | None = None) -> Peer:
         """What is known of another party (by default the supervisor)."""
@@ -373,14 +383,19 @@ class SharedDirectory(Closing):
             os.close(fd)
         return False
 
-    def _read_status(self, side: str) -> _StatusFile | None:
-        try:
-            text = self._status_path(side).read_text(encoding="utf-8", errors="replace")
-        except FileNotFoundError:
-            return None
-        lines = [*text.split("\n"), "", "", ""]
-        words = lines[1].split()
-        if len(words) != 2:
-            return None  # being written, or not ours
-        pid = int(words[1]) if words[1].isdigit() else None
-        return _StatusFile(lines[0], words[0], pid, lines[2])
+    def _read_status(self, side: str) -> StatusFile | None:
+        return read_status(self._status_path(side))
+
+
+def read_status(path: Path) -> StatusFile | None:
+    """What a status file says; None: it is not there, is being written, or is none."""
+    try:
+        text = path.read_text(encoding="utf-8", errors="replace")
+    except FileNotFoundError:
+        return None
+    lines = [*text.split("\n"), "", "", ""]
+    words = lines[1].split()
+    if len(words) != 2:
+        return None  # being written, or not ours
+    pid = int(words[1]) if words[1].isascii() and words[1].isdigit() else None
+    return StatusFile(lines[0], words[0], pid, lines[2])

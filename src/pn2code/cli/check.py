@@ -10,6 +10,7 @@ from typing import Annotated
 import typer
 
 from pn2code.cell.channel_table import lines as channel_lines
+from pn2code.cli.nets import in_time
 from pn2code.cli.options import (
     DEFAULT_INT_BITS,
     Format,
@@ -17,6 +18,7 @@ from pn2code.cli.options import (
     InputOption,
     IntBitsOption,
     JsonOption,
+    MaxSecondsOption,
     SetOption,
     code_of,
     parse_values,
@@ -72,6 +74,7 @@ def check(
     inputs: InputOption = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
+    max_seconds: MaxSecondsOption = None,
     form: FormatOption = Format.FULL,
 ) -> None:
     """Check the syntax, types, bindings and hierarchy of a net, and the cell beside it.
@@ -92,12 +95,14 @@ def check(
             as_json=as_json,
             inputs=inputs,
             int_bits=int_bits,
+            max_seconds=max_seconds,
             form=form,
         )
         return
     _refuse_without(layout=layout, traces=traces, pictures=pictures, full=full)
     d = Diagnostics()
-    checked = examined(net, parse_values(settings), d, int_bits=int_bits, inputs=inputs)
+    with in_time(max_seconds, net, "the net was checked", form):
+        checked = examined(net, parse_values(settings), d, int_bits=int_bits, inputs=inputs)
     result = checked.examined
     elements = result.document.elements if result.document else {}
     numbers = {key: elements.get(key, 0) for key in COUNTED}

@@ -12,7 +12,7 @@ import typer
 from pn2code.base.deadline import Deadline
 from pn2code.base.os_reason import os_reason
 from pn2code.base.progress_line import Line
-from pn2code.cli.nets import open_net, playing
+from pn2code.cli.nets import in_time, open_net, playing
 from pn2code.cli.options import Exit, Format, print_diagnostics, stop
 from pn2code.diagnostics import Diagnostics
 from pn2code.verify.exploring.limits import Limits, cores
@@ -34,6 +34,7 @@ def check_geometry(
     as_json: bool,
     inputs: Path | None,
     int_bits: int,
+    max_seconds: float | None,
     form: Format,
 ) -> None:
     """Looks at all moves and pairs of a cell, prints what is found, and leaves with its exit code."""
@@ -41,13 +42,15 @@ def check_geometry(
     from pn2code.geometry.report import text
 
     d = Diagnostics()
-    opened = open_net(path, values, form, int_bits=int_bits, warnings=d, inputs=inputs)
+    late = "all moves and pairs were looked at"
+    with in_time(max_seconds, path, late, form):
+        opened = open_net(path, values, form, int_bits=int_bits, warnings=d, inputs=inputs)
     folder = traces or Path(f"{opened.flat.name}.geometry")
     is_new = not folder.exists()
     limits = Limits(deadline=Deadline.of_command(None), threads=cores())
     line = Line(shown=not as_json, plain=True, first="reading the cell ...")
     try:
-        with playing(form), line as progress:
+        with in_time(max_seconds, path, late, form), playing(form), line as progress:
             found = examine(opened, layout, limits, folder, d, progress.stage)
         if found is None or d.has_errors:
             stop(d, form)

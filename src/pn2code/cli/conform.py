@@ -12,7 +12,7 @@ import typer
 
 from pn2code.base.progress_line import Line
 from pn2code.cell.locate import locate
-from pn2code.cli.nets import refuse_wide
+from pn2code.cli.nets import in_time, refuse_wide
 from pn2code.cli.options import (
     DEFAULT_INT_BITS,
     Exit,
@@ -21,6 +21,7 @@ from pn2code.cli.options import (
     InputOption,
     IntBitsOption,
     JsonOption,
+    MaxSecondsOption,
     SetOption,
     UncheckedOption,
     parse_values,
@@ -73,6 +74,7 @@ def conform(
     as_json: JsonOption = False,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
+    max_seconds: MaxSecondsOption = None,
     form: FormatOption = Format.FULL,
 ) -> None:
     """Compare the compiled net, the supervisor and each robot program with the net, state by state.
@@ -83,7 +85,10 @@ def conform(
     if int_bits != DEFAULT_INT_BITS:
         where = locate(net, Diagnostics())  # what is wrong there is said below
         refuse_wide(None if where is None else where[1], int_bits)
-    with Line(shown=not as_json, plain=True, first="reading and checking the net ...") as progress:
+    with (
+        in_time(max_seconds, net, "the programs were compared with the net", form),
+        Line(shown=not as_json, plain=True, first="reading and checking the net ...") as progress,
+    ):
         found = conform_cell(
             net,
             d,

@@ -8,12 +8,14 @@ from typing import Annotated, NoReturn
 import typer
 
 from pn2code import pipeline
+from pn2code.cli.nets import in_time
 from pn2code.cli.options import (
     OUTPUT_FLAGS,
     Exit,
     Format,
     FormatOption,
     InputOption,
+    MaxSecondsOption,
     SetOption,
     UncheckedOption,
     parse_values,
@@ -45,6 +47,7 @@ def generate(
     ] = False,
     unchecked: UncheckedOption = False,
     inputs: InputOption = None,
+    max_seconds: MaxSecondsOption = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,
 ) -> None:
@@ -57,9 +60,10 @@ def generate(
     d = Diagnostics()
     if output is not None and not check:
         _expect_writable(output)
-    result = pipeline.generate(
-        net, d, values=parse_values(settings), checked=not unchecked, inputs=inputs
-    )
+    with in_time(max_seconds, net, "the programs were generated, so nothing was written", form):
+        result = pipeline.generate(
+            net, d, values=parse_values(settings), checked=not unchecked, inputs=inputs
+        )
     if result is None:
         stop(d, form)
     print_but_known(d, net, form)

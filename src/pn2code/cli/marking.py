@@ -18,10 +18,10 @@ from pn2code.cli.options import (
     InputOption,
     IntBitsOption,
     JsonOption,
+    MaxSecondsOption,
     SeedOption,
     SetOption,
     parse_values,
-    seconds_option,
 )
 from pn2code.semantics.game import report
 
@@ -44,10 +44,7 @@ def marking(
     seed: SeedOption = DEFAULT_SEED,
     files: FilesOption = None,
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
-    max_seconds: Annotated[
-        float | None,
-        seconds_option("Stop after S seconds, without an answer."),
-    ] = None,
+    max_seconds: MaxSecondsOption = None,
     form: FormatOption = Format.FULL,
 ) -> None:
     """Print the initial marking of each place in the form of CPN Tools."""

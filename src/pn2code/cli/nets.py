@@ -8,7 +8,7 @@ from pathlib import Path
 
 import typer
 
-from pn2code.base.deadline import Deadline, TimeIsOverError
+from pn2code.base.deadline import CommandIsOverError, Deadline
 from pn2code.cell.codes import INPUT_MISSING
 from pn2code.cell.config import CellConfig
 from pn2code.cli.options import DEFAULT_INT_BITS, Exit, Format, print_diagnostics, stop
@@ -81,9 +81,9 @@ def in_time(
     from pn2code.verify.codes import TIME_OVER
 
     try:
-        with Deadline.of_command(seconds).enforced():
+        with Deadline.of_command(seconds).enforced(CommandIsOverError):
             yield
-    except TimeIsOverError:
+    except CommandIsOverError:
         d = Diagnostics()
         hint = "give it more time with `--max-seconds`"
         d.warning(TIME_OVER, f"the time was up before {what}", Origin(str(net)), hint=hint)

@@ -30,6 +30,8 @@ class Exit:
     """a limit was hit"""
     INTERNAL = 70
     """a bug in pn2code"""
+    INTERRUPTED = 130
+    """Ctrl-C, or a signal to end"""
     UNREAD = 141
     """the reader of the output went before the end, as for a program that SIGPIPE ends"""
 
@@ -65,6 +67,12 @@ def finite(number: float | None) -> float | None:
 def seconds_option(help_text: str) -> Any:
     """The option that limits the time of a command, with what happens then."""
     return typer.Option(metavar="S", min=0.0, callback=finite, help=help_text)
+
+
+MaxSecondsOption = Annotated[
+    float | None, seconds_option("Stop after S seconds, without an answer (exit code 3).")
+]
+"""Of verbs that say nothing of what they have not done to the end."""
 
 
 def port_option(help_text: str) -> Any:

@@ -11,13 +11,14 @@ import typer
 
 from pn2code.base.os_reason import os_reason
 from pn2code.base.progress_line import Line
-from pn2code.cli.nets import open_net, playing
+from pn2code.cli.nets import in_time, open_net, playing
 from pn2code.cli.options import (
     OUTPUT_FLAGS,
     Format,
     FormatOption,
     InputOption,
     JsonOption,
+    MaxSecondsOption,
     SetOption,
     parse_values,
     print_diagnostics,
@@ -59,6 +60,7 @@ def reach(
     ] = Path("reach"),
     as_json: JsonOption = False,
     inputs: InputOption = None,
+    max_seconds: MaxSecondsOption = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,
 ) -> None:
@@ -69,9 +71,11 @@ def reach(
     from pn2code.geometry.reach_look import Wanted, look
 
     d = Diagnostics()
-    opened = open_net(cell, parse_values(settings), form, warnings=d, inputs=inputs)
+    late = "all bases were looked at"
+    with in_time(max_seconds, cell, late, form):
+        opened = open_net(cell, parse_values(settings), form, warnings=d, inputs=inputs)
     line = Line(shown=not as_json, plain=True, first="reading the cell ...")
-    with playing(form), line as progress:
+    with in_time(max_seconds, cell, late, form), playing(form), line as progress:
         limits = Limits(threads=cores())
         found = look(opened, Wanted(layout, robot, around, steps), limits, d, progress.stage)
     if found is None or d.has_errors:

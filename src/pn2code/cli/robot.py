@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Annotated, NoReturn
 import typer
 
 from pn2code.base.os_reason import os_reason
+from pn2code.base.writable import why_file_unwritable
 from pn2code.cell.codes import CELL_MISSING
 from pn2code.cell.divide import divide
 from pn2code.cell.locate import locate
@@ -81,6 +82,14 @@ def robot(
             help="With --cell, move this many times as fast as a real robot.",
         ),
     ] = 1.0,
+    trace: Annotated[
+        Path | None,
+        typer.Option(
+            "--trace",
+            metavar="FILE",
+            help="Write what the robot does to FILE (*.trace.jsonl) while it does it, for `pn2code watch`.",
+        ),
+    ] = None,
     wait: Annotated[
         float,
         typer.Option(min=0.0, callback=finite, help="How many seconds to wait for the supervisor."),
@@ -141,7 +150,13 @@ def robot(
             sense=lambda sensor: sensors.ask(name, sensor),
             wait_s=wait,
         )
-        ended = player.run()
+        if trace is None:
+            ended = player.run()
+        else:
+            from pn2code.run.journals import journalled
+
+            _expect_writable(trace)
+            ended = journalled(player, trace)
     if ended.code:
         typer.echo(f"pn2code: {name} stopped: {ended.reason}", err=True)
         raise typer.Exit(Exit.USAGE if ended.code is RobotExit.SYSTEM else int(ended.code))
@@ -223,6 +238,11 @@ def _check_files(
                 file.span,
                 hint="generate the script from this cell again, or choose the robot with --name",
             )
+
+
+def _expect_writable(trace: Path) -> None:
+    if why := why_file_unwritable(trace, makes_folders=False):
+        _usage(f"cannot write `{trace}`: {why}")
 
 
 def _usage(text: str) -> NoReturn:

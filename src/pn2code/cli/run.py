@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from pn2code.base.os_reason import os_reason
+from pn2code.cli.interrupts import Interrupts
 from pn2code.cli.options import (
     OUTPUT_FLAGS,
     BackendChoice,
@@ -30,7 +31,7 @@ from pn2code.diagnostics import Diagnostics
 if TYPE_CHECKING:
     from pn2code.live.view import LiveView
     from pn2code.replay.motion import Motion
-    from pn2code.run.cell import RunResult
+    from pn2code.run.cell import Prepared, RunResult
 
 EPILOG = """Examples:
 
@@ -137,6 +138,8 @@ def run(
     """Run a cell: build the supervisor, run it together with the robots' programs, and report.
 
     All programs run in lock-step, as fast as possible, so that two runs give the same trace.
+
+    Ctrl-C stops the cell safely and writes the results as far as it went; a second one ends everything at once.
     """
     # PyBullet, SciPy and the like take half a second to load: only this verb needs them.
     from rich.console import Console
@@ -198,17 +201,25 @@ def run(
             observers.append(album)
         if view is not None:
             observers.append(view)
-        with trouble_told(out):
-            result = run_cell(
-                cell,
-                options,
-                d,
-                observers,
-                ready=view.ready if view is not None else None,
-                interrupted=view.interrupted if view is not None else None,
-            )
+        wish = Interrupts()
+        with trouble_told(out), ExitStack() as running:
+
+            def ready(prepared: Prepared) -> None:
+                if view is not None:
+                    view.ready(prepared)
+                running.enter_context(wish)  # until now Ctrl-C ends the program
+
+            def interrupted() -> str:
+                who = view.interrupted() if view is not None else ""
+                return who or ("an interrupt" if wish.is_wanted() else "")
+
+            result = run_cell(cell, options, d, observers, ready=ready, interrupted=interrupted)
             if view is not None and view.has_failed:
                 typer.echo("pn2code: the live page has ended before the run did", err=True)
+        if result is not None and wish.is_wanted():
+            progress.clear()
+            trace = out / f"{result.prepared.generated.partition.net.name}.trace.jsonl"
+            typer.echo(f"pn2code: interrupted; the run as far as it went is in {trace}", err=True)
         if result is not None and pictures:
             progress.say("drawing charts")
             from pn2code.report import charts
@@ -237,7 +248,7 @@ def run(
         console.print("No pictures of the cell were made, because it has no arms.")
     console.print(f"results in {out}/", style="dim")
     if result.record.verdict != "finished":
-        raise typer.Exit(Exit.MODEL)
+        raise typer.Exit(Exit.INTERRUPTED if wish.is_wanted() else Exit.MODEL)
 
 
 def _live_view(port: int, speed: float) -> LiveView:

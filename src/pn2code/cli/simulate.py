@@ -226,7 +226,7 @@ def _made(request: Request, engine: Engine | None, d: Diagnostics, form: Format)
     if outcome is None:
         if request.interrupted():  # while the net was compiled
             typer.echo("pn2code: interrupted", err=True)
-            raise typer.Exit(130)
+            raise typer.Exit(Exit.INTERRUPTED)
         stop(d, form)
     return outcome
 
@@ -264,4 +264,4 @@ def _json(opened: OpenNet, outcome: Outcome) -> dict[str, Any]:
 def _code(outcome: Outcome) -> int:
     if outcome.why in ("error", "replay"):
         return Exit.MODEL
-    return 130 if outcome.why == "interrupted" else Exit.OK
+    return Exit.INTERRUPTED if outcome.why == "interrupted" else Exit.OK

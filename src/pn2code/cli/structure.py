@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from pn2code.cli.nets import open_net
+from pn2code.cli.nets import in_time, open_net
 from pn2code.cli.options import (
     DEFAULT_INT_BITS,
     Format,
@@ -16,6 +16,7 @@ from pn2code.cli.options import (
     InputOption,
     IntBitsOption,
     JsonOption,
+    MaxSecondsOption,
     SetOption,
     parse_values,
 )
@@ -36,11 +37,13 @@ def structure(
     inputs: InputOption = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     int_bits: IntBitsOption = DEFAULT_INT_BITS,
+    max_seconds: MaxSecondsOption = None,
     form: FormatOption = Format.FULL,
 ) -> None:
     """Compute invariants, siphons, traps, bounds and classes of a net from its structure alone."""
-    opened = open_net(net, parse_values(settings), form, int_bits=int_bits, inputs=inputs)
-    analysis = analyse(opened.flat, storage=opened.storage)
+    with in_time(max_seconds, net, "the structure was analysed", form):
+        opened = open_net(net, parse_values(settings), form, int_bits=int_bits, inputs=inputs)
+        analysis = analyse(opened.flat, storage=opened.storage)
     if as_json:
         typer.echo(json.dumps(report.as_json(analysis), indent=1))
     else:

@@ -10,7 +10,7 @@ import typer
 
 from pn2code.base.os_reason import os_reason
 from pn2code.base.progress_line import Line
-from pn2code.cli.nets import open_net, playing
+from pn2code.cli.nets import in_time, open_net, playing
 from pn2code.cli.options import (
     OUTPUT_FLAGS,
     Exit,
@@ -18,6 +18,7 @@ from pn2code.cli.options import (
     FormatOption,
     InputOption,
     JsonOption,
+    MaxSecondsOption,
     SetOption,
     finite,
     parse_values,
@@ -76,6 +77,7 @@ def time(
     full: Annotated[bool, typer.Option("--full", help="Print all commands.")] = False,
     as_json: JsonOption = False,
     inputs: InputOption = None,
+    max_seconds: MaxSecondsOption = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,
 ) -> None:
@@ -87,20 +89,23 @@ def time(
     from pn2code.timing.report import text
 
     d = Diagnostics()
-    opened = open_net(cell, parse_values(settings), form, warnings=d, inputs=inputs)
+    late = "everything was measured"
+    with in_time(max_seconds, cell, late, form):
+        opened = open_net(cell, parse_values(settings), form, warnings=d, inputs=inputs)
     if run is not None:
         if within is not None or out is not None or layout is not None:
             raise typer.BadParameter(
                 "a run is one of one layout: `--layout`, `--within` and `-o` have no meaning with it",
                 param_hint="--run",
             )
-        _look_at(opened, run, d, full=full, as_json=as_json, form=form)
+        with in_time(max_seconds, cell, late, form):
+            _look_at(opened, run, d, full=full, as_json=as_json, form=form)
         return
     line = Line(shown=not as_json, plain=True, first="reading the cell ...")
     try:
         if out is not None:
             out.mkdir(parents=True, exist_ok=True)
-        with playing(form), line as progress:
+        with in_time(max_seconds, cell, late, form), playing(form), line as progress:
             limits = Limits(threads=cores())
             found = look(opened, layout, limits, out, d, progress.stage)
         if found is None or d.has_errors:

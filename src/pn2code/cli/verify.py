@@ -52,6 +52,7 @@ from pn2code.verdict.whole import (
 from pn2code.verify.codes import REPORT_UNWRITABLE, TIME_OVER
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import (
+    COUNTS_FROM,
     TURNS_FROM,
     Approximation,
     Limits,
@@ -299,6 +300,7 @@ def verify(
         traces=most_traces,
         reductions=() if no_reduction else tuple(dict.fromkeys(reduce)),
         turns_from=None if no_reduction else TURNS_FROM,
+        counts_from=None if no_reduction else COUNTS_FROM,
     )
     checks = Checks(controller=check_controller, channel_model=check_channel_model)
     is_cell = opened.config is not None and check_controller

@@ -101,7 +101,7 @@ class Probe:
         try:
             self.tables = self._line()
             self.first = self._answer()
-        except ProbeError:
+        except BaseException:  # also when the time is over
             self.close()
             raise
 

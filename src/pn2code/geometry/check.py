@@ -82,7 +82,7 @@ def examine(
         GameError: a declaration or an initial marking raises an exception.
     """
     config = cell_of(opened, d)
-    if config is None or not _is_there(config, d):
+    if config is None or not is_there(config, d):
         return None
     partition = partition_of(opened, config, d)
     if partition is None:
@@ -133,7 +133,8 @@ def cell_of(opened: OpenNet, d: Diagnostics) -> CellConfig | None:
     return opened.config
 
 
-def _is_there(config: CellConfig, d: Diagnostics) -> bool:
+def is_there(config: CellConfig, d: Diagnostics) -> bool:
+    """Whether the library that measures distances is installed; without it that is reported."""
     if importlib.util.find_spec("pybullet") is not None:
         return True
     d.error(

@@ -20,6 +20,7 @@ from pn2code.geometry.activities import Activity, spot
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.sweeps import Apart, Sweeper
 from pn2code.geometry.tracks import ArmShape, Track
+from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.kinematics import MOST_CONDITION
 from pn2code.robot.motion import LinearTrajectory
@@ -132,10 +133,10 @@ class Comparison:
         assert leg.path is not None
         kinematics = self.cell.robot(leg.robot).kinematics
         q = leg.path.on_way(np.linspace(0.0, 1.0, _SAMPLES if leg.is_moving else 1))
-        if isinstance(leg.path, LinearTrajectory):
+        if isinstance(leg.path, LinearTrajectory | AlongTrajectory):
             q = np.vstack([q, leg.path.grid])
         arm = kinematics.arm
-        off = np.minimum(q - arm.lower, arm.upper - q).min(axis=0)
+        off = np.minimum(q - arm.lower, arm.upper - q).min(axis=0)[kinematics.joints]
         axis = int(np.argmin(off))
         worst = max(c.condition for c in kinematics.conditioning_many(q))
         return Margins(float(off[axis]), axis, worst if worst <= MOST_CONDITION else math.inf)

@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from pn2code.base.frozen import frozen
-from pn2code.robot.commands import Command
+from pn2code.robot.commands import Command, MoveCircular, MoveJoint, MoveLinear
 from pn2code.robot.executor import MotionKind, RobotExecutor
 from pn2code.robot.motion import MotionFault, Still, Trajectory
 from pn2code.robot.robot_cell import RobotCell
@@ -117,6 +117,12 @@ class Planner:
         executor.finish()
         end = self._stand(stand.robot, executor.q, executor.T_base_tcp)
         return Leg(number, stand.robot, command, motion.kind, motion.trajectory, stand, end)
+
+    def seen_from_arm(self, stand: Stand, command: MoveJoint | MoveLinear | MoveCircular) -> Array:
+        """Where a move to a pose leads the TCP, seen from where the tracks have carried the base of the arm then."""
+        executor = self._executors[stand.robot]
+        executor.stand(stand.q, stand.T_base_tcp)
+        return executor.seen_from_arm(command)
 
     def _stand(self, robot: str, q: Array, T_base_tcp: Array) -> Stand:  # noqa: N803
         key = (

@@ -81,7 +81,7 @@ class Follower:
         is_fine &= (np.nan_to_num(leap, nan=np.inf) <= y[:, :-1] + y[:, 1:] + 1e-9).all(axis=1)
         line = self._path.line
         rotation = self._k.forward_many(flat)[:, :3, :3]
-        spin = (rotation @ (line.axis * line.angle)).reshape(*q.shape[:2], 3)
+        spin = line.spins(rotation).reshape(*q.shape[:2], 3)
         shift = line.shifts(s.ravel()).reshape(spin.shape)
         twist = np.concatenate([shift, spin], axis=2)
         turns = np.zeros(q.shape)

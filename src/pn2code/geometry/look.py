@@ -150,7 +150,7 @@ class Look:
         why = ""
         for apart, what in ((scene, ""), (itself, " of itself")):
             if apart.outcome == "touch" and answer != "no":
-                answer, why = "no", _touch(apart) + what
+                answer, why = "no", touch_in_words(apart) + what
             elif apart.outcome == "open" and answer == "yes":
                 answer, why = "unknown", apart.why
         return Move(
@@ -262,7 +262,7 @@ def _met(
         transitions,
         doing,
         "no" if is_touch else "unknown",
-        _touch(apart) if is_touch else apart.why,
+        touch_in_words(apart) if is_touch else apart.why,
         apart.where,
         apart.where.distance if apart.where else 0.0,
         tuple((r, tuple(map(float, q))) for r, q in zip(robots, apart.joints, strict=False) if r),
@@ -274,7 +274,8 @@ def _least(apart: Apart) -> float | None:
     return None if apart.outcome == "open" else apart.least
 
 
-def _touch(apart: Apart) -> str:
+def touch_in_words(apart: Apart) -> str:
+    """Which links overlap, by how much and where."""
     gap = apart.where
     assert gap is not None
     at = ", ".join(f"{1000.0 * v:.0f}" for v in gap.point)

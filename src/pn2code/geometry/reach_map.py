@@ -4,9 +4,10 @@ task = Task.of(situations, robot)             # poses of its TCP in the world: e
 found = reach_map(robot, task, bases)         # Map: of each base reach, conditioning, margin of the limits
 found.reach[i], found.condition[i], found.limit[i]
 
-A base keeps its height and its directions; x and y are looked at. A joint move may end in any branch, or in the one
-that the robot must have; a line must stay in one branch from its beginning to its end, in samples. Clearances are not
-looked at here: `check --geometry` does, for a base that was chosen.
+Where tracks carry the arm, they do so as the net says, and the map is of where they begin. A base keeps its height and
+its directions; x and y are looked at. A joint move may end in any branch, or in the one that the robot must have; a
+line must stay in one branch from its beginning to its end, in samples. Clearances are not looked at here: `check
+--geometry` does, for a base that was chosen.
 """
 
 from __future__ import annotations
@@ -14,16 +15,28 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pn2code.base.frozen import frozen
 from pn2code.geometry.situations import Situations
-from pn2code.robot.commands import MoveAxes, MoveCircular, MoveHome, MoveJoint, MoveLinear
+from pn2code.geometry.words import words
+from pn2code.robot.along import AlongTrajectory
+from pn2code.robot.commands import (
+    MoveAxes,
+    MoveCircular,
+    MoveExternal,
+    MoveHome,
+    MoveJoint,
+    MoveLinear,
+    tcp_of,
+)
 from pn2code.robot.kinematics import BRANCHES, CHARACTERISTIC_LENGTH, TURN, Kinematics
 from pn2code.robot.model import AXES
 from pn2code.robot.motion import LinearTrajectory
 from pn2code.robot.robot_cell import CellRobot
 from pn2code.robot.transforms import Array, inverse, matrix_of
 
+_OF_ARM = (MoveHome, MoveAxes, MoveExternal)
 LINE_STEP = 0.05
 """m: samples of lines."""
 _AT_ONCE = 400_000
@@ -37,21 +50,25 @@ class Task:
     Args:
         poses: `T_world_tcp`, (n, 4, 4).
         groups: those that must be reached in one branch, as slices of them: a pose, or the samples of a line.
+        names: of the groups, the commands in words; (): they have none.
     """
 
     poses: Array
     groups: tuple[slice, ...]
+    names: tuple[str, ...] = ()
 
     @staticmethod
     def of(found: Situations, robot: CellRobot) -> Task:
         """All that a robot is told, from wherever it can be then; joint positions belong to the arm, not the task."""
         parts: list[Array] = []
+        names: list[str] = []
         seen: set[tuple[float, ...]] = set()
         for leg in found.doing.planner.legs:
-            if leg.robot != robot.name or isinstance(leg.command, MoveHome | MoveAxes):
+            if leg.robot != robot.name or isinstance(leg.command, _OF_ARM):
                 continue
             own: Array | None = None
-            if isinstance(leg.path, LinearTrajectory):
+            planner = found.doing.planner
+            if isinstance(leg.path, LinearTrajectory | AlongTrajectory):
                 line = leg.path.line
                 count = max(2, int(np.ceil(line.length / LINE_STEP)) + 1)
                 own = robot.T_world_base @ line.at(np.linspace(0.0, 1.0, count))
@@ -59,19 +76,27 @@ class Task:
                 isinstance(leg.command, MoveJoint | MoveLinear | MoveCircular)
                 and leg.command.frame != "tool"
             ):
-                own = matrix_of(leg.command.target)[None]
-                if leg.command.frame != "world":
-                    own = matrix_of(found.doing.planner.cell.frames[leg.command.frame]) @ own
+                if robot.axes:
+                    own = (robot.T_world_base @ planner.seen_from_arm(leg.start, leg.command))[None]
+                else:
+                    own = matrix_of(leg.command.target)[None]
+                    if leg.command.frame != "world":
+                        own = matrix_of(planner.cell.frames[leg.command.frame]) @ own
             if own is None:
                 continue
+            tcp = "" if leg.command is None else tcp_of(leg.command)
+            if tcp and (not robot.axes or isinstance(leg.path, LinearTrajectory | AlongTrajectory)):
+                back = inverse(robot.tcps[tcp].T_flange_tcp) @ robot.kinematics.T_flange_tcp
+                own = own @ back
             key = tuple(np.round(own[[0, -1]], _DIGITS).ravel().tolist())
             if key not in seen:
                 seen.add(key)
                 parts.append(own)
+                names.append(words(leg.command))
         ends = np.cumsum([len(p) for p in parts], dtype=int).tolist()
         groups = tuple(slice(e - len(p), e) for e, p in zip(ends, parts, strict=True))
         poses = np.concatenate(parts) if parts else np.zeros((0, 4, 4))
-        return Task(poses, groups)
+        return Task(poses, groups, tuple(names))
 
 
 @frozen(eq=False)
@@ -108,55 +133,88 @@ def grid(robot: CellRobot, around: float, steps: int) -> Array:
 
 def reach_map(robot: CellRobot, task: Task, bases: Array) -> Map:
     """What the arm could do from each of them."""
-    count = len(task.poses)
-    each = max(1, _AT_ONCE // max(1, count * len(BRANCHES)))
-    parts = [_part(robot, task, bases[i : i + each]) for i in range(0, len(bases), each)]
-    reach, condition, limit = (np.concatenate(column) for column in zip(*parts, strict=True))
-    return Map(bases, reach, condition, limit)
+    frames = np.repeat(robot.T_world_base[None], len(bases), axis=0)
+    frames[:, :2, 3] = bases
+    found = judge(robot, task, frames)
+    return Map(bases, found.reach, found.condition, found.limit)
 
 
-def _part(robot: CellRobot, task: Task, bases: Array) -> tuple[Array, Array, Array]:
-    kinematics = robot.kinematics
-    T_base_world = np.repeat(inverse(robot.T_world_base)[None], len(bases), axis=0)  # noqa: N806
-    turn = T_base_world[:, :3, :3]
-    where = np.column_stack([bases, np.full(len(bases), robot.base.z)])
-    T_base_world[:, :3, 3] = -(turn @ where[..., None])[..., 0]
+@frozen(eq=False)
+class Judged:
+    """What an arm could do from each of n bases, in the branches that are best conditioned.
+
+    Args:
+        reach: the part of the task that is reached inside the limits, 0 to 1; reached: which groups, (n, groups).
+        condition: the worst condition number over what is reached; inf: nothing is.
+        limit: rad, the least margin of a limit; -inf: nothing is.
+        q: joint positions for each pose, (n, poses, 6), with the turns that leave most; NaN: it is not reached.
+    """
+
+    reach: Array
+    reached: NDArray[np.bool_]
+    condition: Array
+    limit: Array
+    q: Array
+
+
+def judge(robot: CellRobot, task: Task, T_world_base: Array) -> Judged:  # noqa: N803
+    """What the arm could do with its base at each of these frames, (n, 4, 4)."""
+    each = max(1, _AT_ONCE // max(1, len(task.poses) * len(BRANCHES)))
+    starts = range(0, len(T_world_base), each)
+    parts = [_judged(robot, task, T_world_base[i : i + each]) for i in starts]
+    columns = zip(*((p.reach, p.reached, p.condition, p.limit, p.q) for p in parts), strict=True)
+    return Judged(*(np.concatenate(column) for column in columns))
+
+
+def _judged(robot: CellRobot, task: Task, frames: Array) -> Judged:
+    kinematics = robot.kinematics.alone
+    count = len(frames)
+    T_base_world = np.zeros_like(frames)  # noqa: N806
+    turn = frames[:, :3, :3].transpose(0, 2, 1)
+    T_base_world[:, :3, :3] = turn
+    T_base_world[:, :3, 3] = -(turn @ frames[:, :3, 3, None])[..., 0]
+    T_base_world[:, 3, 3] = 1.0
     poses = (T_base_world[:, None] @ task.poses).reshape(-1, 4, 4)
     rows = kinematics.all_branches(poses)
-    margin, inside = _margins(kinematics, rows)
+    rows, margin = _in_middle(kinematics, rows)
+    inside = margin >= 0.0
     condition = np.full(rows.shape[:2], np.inf)
     condition[inside] = _conditions(kinematics, rows[inside])
-    shape = (len(bases), len(task.poses), len(BRANCHES))
+    shape = (count, len(task.poses), len(BRANCHES))
+    rows = rows.reshape(*shape, AXES)
     margin, condition = margin.reshape(shape), condition.reshape(shape)
-    reached = np.zeros(len(bases))
-    worst, least = np.zeros(len(bases)), np.full(len(bases), np.inf)
-    for group in task.groups:
+    reached = np.zeros((count, len(task.groups)), bool)
+    worst, least = np.zeros(count), np.full(count, np.inf)
+    q = np.full((count, len(task.poses), AXES), np.nan)
+    there = np.arange(count)
+    for number, group in enumerate(task.groups):
         own = condition[:, group].max(axis=1)
         is_line = group.stop - group.start > 1
         if robot.branch is not None and not is_line:
             others = [b.index for b in BRANCHES if b != robot.branch]
             own[:, others] = np.inf
         best = own.argmin(axis=1)
-        there = np.arange(len(bases))
         found = own[there, best]
         ok = np.isfinite(found)
-        reached += ok
+        reached[:, number] = ok
         worst = np.where(ok, np.maximum(worst, found), worst)
         near = margin[:, group].min(axis=1)[there, best]
         least = np.where(ok, np.minimum(least, near), least)
-    nothing = reached == 0
+        chosen = np.take_along_axis(rows[:, group], best[:, None, None, None], axis=2)[:, :, 0]
+        q[:, group] = np.where(ok[:, None, None], chosen, np.nan)
+    nothing = ~reached.any(axis=1)
     worst[nothing], least[nothing] = np.inf, -np.inf
-    return reached / max(1, len(task.groups)), worst, least
+    reach = reached.sum(axis=1) / max(1, len(task.groups))
+    return Judged(reach, reached, worst, least, q)
 
 
-def _margins(kinematics: Kinematics, rows: Array) -> tuple[Array, Array]:
-    """Of each row the least distance from a limit with the turns that leave most, and whether it is inside."""
+def _in_middle(kinematics: Kinematics, rows: Array) -> tuple[Array, Array]:
+    """Each row with the turns that leave most to the limits, and how much that is; -inf: it is outside."""
     lower, upper = kinematics.arm.lower, kinematics.arm.upper
     middle = (lower + upper) / 2.0
     q = rows + TURN * np.round((middle - rows) / TURN)
-    margin = np.minimum(q - lower, upper - q).min(axis=-1)
-    inside = np.nan_to_num(margin, nan=-1.0) >= 0.0
-    return np.where(inside, margin, -np.inf), inside
+    margin = np.nan_to_num(np.minimum(q - lower, upper - q).min(axis=-1), nan=-1.0)
+    return q, np.where(margin >= 0.0, margin, -np.inf)
 
 
 def _conditions(kinematics: Kinematics, q: Array) -> Array:

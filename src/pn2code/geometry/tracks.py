@@ -20,13 +20,13 @@ import numpy as np
 from pn2code.base.frozen import frozen
 from pn2code.geometry.legs import Leg
 from pn2code.geometry.lines import Follower
+from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.chain import cross
-from pn2code.robot.model import AXES
 from pn2code.robot.motion import JointTrajectory, LinearTrajectory, Still
 from pn2code.robot.parts import Part
 from pn2code.robot.robot_cell import CellRobot
-from pn2code.robot.transforms import Array, Numbers
+from pn2code.robot.transforms import Array, Flags, Numbers
 from pn2code.robot.urdf import Joint, Urdf
 
 
@@ -36,7 +36,7 @@ class Link:
 
     Args:
         name: as in messages, "robot1/link_4".
-        joint: how many axes move it, 0 .. 6.
+        joint: which axis moves it last, from 1; 0: none; one more than there are: it is on the flange.
         corners: (8, 3); ends: of the capsule's axis, (2, 3); radius: of the capsule.
     """
 
@@ -80,11 +80,20 @@ class ArmShape:
     def holding(self, part: Part, low: Array, high: Array) -> Link:
         """A part that its tool carries, as a further link."""
         frame = self.robot.kinematics.T_flange_tcp @ part.frame
-        return Link.of(f"{self.robot.name}/{part.name}", AXES + 1, frame, low, high)
+        beyond = len(self.robot.arm.axes) + 1
+        return Link.of(f"{self.robot.name}/{part.name}", beyond, frame, low, high)
+
+    def moved(self, link: Link) -> Flags:
+        """By which axes a link is moved, (axes,)."""
+        joints = self.robot.kinematics.joints
+        count = len(self.robot.arm.axes)
+        if joints.stop < link.joint <= count:  # a turntable
+            return np.asarray(np.arange(count) == link.joint - 1)
+        return np.asarray(np.arange(count) < min(link.joint, joints.stop))
 
 
 def _frames(robot: CellRobot) -> list[tuple[str, int, Array]]:
-    """Each link with how many axes move it (7: it is on the flange), and its frame in that of the last of them."""
+    """Each link with the axis that moves it last (`Link.joint`), and its frame in that of this axis."""
     arm = robot.arm
     moving = {name: i for i, name in enumerate(arm.axes)}
     out = []
@@ -93,7 +102,7 @@ def _frames(robot: CellRobot) -> list[tuple[str, int, Array]]:
         out.append((link, joint, frame))
     if robot.tool is not None:
         for link in robot.tool.urdf.links:
-            out.append((f"tool_{link}", AXES + 1, _placed(robot.tool.urdf, link, {})[1]))
+            out.append((f"tool_{link}", len(arm.axes) + 1, _placed(robot.tool.urdf, link, {})[1]))
     return out
 
 
@@ -117,7 +126,7 @@ class Knots:
     """Pieces of a leg, each by its middle.
 
     Args:
-        q: joint positions in the middle, (n, 6).
+        q: joint positions in the middle, (n, axes).
         ends: of the capsules in the world, (n, links, 2, 3).
         spread: (n, links), see above.
     """
@@ -151,6 +160,8 @@ class Track:
         self._corners = np.stack([x.corners for x in self.links])
         self._ends = np.stack([x.ends for x in self.links])
         self._joints = np.array([x.joint for x in self.links])
+        self._moved = np.stack([shape.moved(x) for x in self.links])
+        self._tracks = shape.robot.arm.tracks
         self.names = {x.name: i for i, x in enumerate(self.links)}
         self._rows: dict[tuple[float, float], tuple[int, int]] = {}
         self._kept: list[Knots] = []
@@ -158,8 +169,9 @@ class Track:
         self.is_still = isinstance(leg.path, Still) or (
             isinstance(leg.path, JointTrajectory) and not np.any(leg.path.turns)
         )
-        if isinstance(leg.path, LinearTrajectory):
-            self._follower = Follower(shape.robot.kinematics, leg.path)
+        path = leg.path.led if isinstance(leg.path, AlongTrajectory) else leg.path
+        if isinstance(path, LinearTrajectory):
+            self._follower = Follower(path.kinematics, path)
 
     @property
     def robot(self) -> str:
@@ -197,11 +209,15 @@ class Track:
         if self._follower is not None:
             q, turns = self._follower.pieces(a, b)
             rigid = (b - a) / 2.0
+            if isinstance(path, AlongTrajectory):
+                q, own = path.whole(q, (a + b) / 2.0), turns
+                turns = np.abs(path.delta) * rigid[:, None]
+                turns[:, path.joints] = own
         elif isinstance(path, JointTrajectory):
             q = path.on_way((a + b) / 2.0)
             turns = np.abs(path.turns) * ((b - a) / 2.0)[:, None]
         else:
-            q, turns = path.on_way(a), np.zeros((len(a), AXES))
+            q, turns = path.on_way(a), np.zeros((len(a), len(self.shape.robot.arm.axes)))
         return self._placed(q, turns, rigid)
 
     def _placed(self, q: Array, turns: Array, rigid: Array | None) -> Knots:
@@ -217,25 +233,33 @@ class Track:
         corners = self._corners @ turn + shift
         ends = (self._ends @ turn + shift) @ base[:3, :3].T + base[:3, 3]
         spread = np.zeros((len(q), len(self.links)))
-        for j in reversed(range(AXES)):
-            arms = corners - frames[j][:, None, None, :3, 3]
-            off = np.sqrt((cross(axes[:, None, None, j], arms) ** 2).sum(-1).max(axis=2))
-            more = spread + turns[:, j, None] * (off + spread)
-            spread = np.where(self._joints > j, more, spread)
+        for j in reversed(range(turns.shape[1])):
+            if j < self._tracks:
+                more = spread + turns[:, j, None]
+            else:
+                arms = corners - frames[j][:, None, None, :3, 3]
+                off = np.sqrt((cross(axes[:, None, None, j], arms) ** 2).sum(-1).max(axis=2))
+                more = spread + turns[:, j, None] * (off + spread)
+            spread = np.where(self._moved[:, j], more, spread)
         if rigid is not None:
+            last = kinematics.joints.stop
             for i, link in enumerate(self.links):
-                if link.joint >= AXES:
+                if link.joint in (last, turns.shape[1] + 1):
                     spread[:, i] = np.minimum(spread[:, i], self._on_line(link, rigid))
         return Knots(q, ends, spread)
 
     def _on_line(self, link: Link, half: Array) -> Array:
         """How far a link beyond the last axis goes in half a piece of a line: as the TCP does."""
         path = self.leg.path
-        assert isinstance(path, LinearTrajectory)
+        assert isinstance(path, LinearTrajectory | AlongTrajectory)
         kinematics = self.shape.robot.kinematics
-        tcp = kinematics.T_flange_tcp
+        led = path.led if isinstance(path, AlongTrajectory) else path
+        tcp = led.kinematics.T_flange_tcp
         corners = link.corners
-        if link.joint == AXES:
+        if link.joint == kinematics.joints.stop:
             corners = (corners - kinematics.T_axis_flange[:3, 3]) @ kinematics.T_axis_flange[:3, :3]
         arm = float(np.linalg.norm(corners - tcp[:3, 3], axis=1).max())
-        return np.asarray(half * (path.line.length + path.line.angle * arm))
+        carried = 0.0
+        if isinstance(path, AlongTrajectory):
+            carried = float(np.abs(path.delta[: self._tracks]).sum())
+        return np.asarray(half * (path.line.length + path.line.angle * arm + carried))

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 
 from pn2code.robot.commands import (
+    Along,
     Command,
     Measure,
     MoveAxes,
     MoveCircular,
+    MoveExternal,
     MoveHome,
     MoveJoint,
     MoveLinear,
@@ -45,14 +47,16 @@ def words(command: Command | None) -> str:
         case None:
             return "stands"
         case MoveJoint(target=pose, frame=frame):
-            return f"joint {numbers(pose)}{_within(frame)}"
+            return f"joint {numbers(pose)}{_within(frame)}{_by(command.tcp)}{_with(command.along)}"
         case MoveAxes(axes=axes):
-            return f"axes {' '.join(_short(math.degrees(v)) for v in axes)}"
+            return f"axes {' '.join(_short(math.degrees(v)) for v in axes)}{_with(command.along)}"
+        case MoveExternal(along=along):
+            return f"external{_with(along)}"
         case MoveLinear(target=pose, frame=frame):
-            return f"linear {numbers(pose)}{_within(frame)}"
+            return f"linear {numbers(pose)}{_within(frame)}{_by(command.tcp)}{_with(command.along)}"
         case MoveCircular(target=pose, via=via, frame=frame):
             places = " ".join(_short(1000.0 * v) for v in (via.x, via.y, via.z))
-            return f"circular {numbers(pose)} via {places}{_within(frame)}"
+            return f"circular {numbers(pose)} via {places}{_within(frame)}{_by(command.tcp)}{_with(command.along)}"
         case MoveHome():
             return "home"
         case Measure():
@@ -65,6 +69,20 @@ def words(command: Command | None) -> str:
 
 def _within(frame: str) -> str:
     return "" if frame == "world" else f" in {frame}"
+
+
+def _by(tcp: str) -> str:
+    return f" by {tcp}" if tcp else ""
+
+
+def _with(along: tuple[Along, ...]) -> str:
+    """External axes, in mm and degrees."""
+    shown = (
+        f"{a.axis} {_short(a.position * (1000.0 if a.is_track else math.degrees(1.0)))}"
+        for a in along
+    )
+    text = ", ".join(shown)
+    return f" with {text}" if text else ""
 
 
 def numbers(pose: Pose) -> str:

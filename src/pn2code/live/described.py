@@ -4,25 +4,27 @@ from __future__ import annotations
 
 from typing import Any
 
+from pn2code.pipeline import Generated
 from pn2code.reading.document import Document
 from pn2code.replay import cell, net, programs
 from pn2code.replay.description import VERSION
 from pn2code.robot.parts import Parts
-from pn2code.run.cell import Prepared
+from pn2code.robot.robot_cell import RobotCell
 from pn2code.run.record import GAP_S
 
 Json = dict[str, Any]
 
 
-def describe(prepared: Prepared, document: Document, speed: float) -> Json:
+def describe(generated: Generated, robot_cell: RobotCell, document: Document, speed: float) -> Json:
     """A description (docs/replay.md) of a run in which nothing has happened yet.
 
     Args:
-        prepared: what will run.
+        generated: the programs of a cell.
+        robot_cell: its arms.
         document: its net as drawn.
         speed: seconds of the run in a second of the wall clock.
     """
-    partition, robot_cell = prepared.generated.partition, prepared.robot_cell
+    partition, config = generated.partition, generated.config
     described: Json = {
         "pn2code": {"run": VERSION},
         "kind": "run",
@@ -31,7 +33,7 @@ def describe(prepared: Prepared, document: Document, speed: float) -> Json:
         "speed": speed,
         "end": 0.0,
         "verdict": {"word": "", "reason": "", "final": []},
-        "facts": [["layout", str(prepared.config.layout)]],
+        "facts": [["layout", config.layout if config else ""]],
         "net": net.describe(document, partition.net),
         "happenings": {
             "parties": [{"name": o.name, "kind": o.kind.value} for o in partition.owners],
@@ -42,7 +44,7 @@ def describe(prepared: Prepared, document: Document, speed: float) -> Json:
             "events": [],
             "curves": [],
         },
-        "programs": programs.describe(prepared.generated.files, partition.net),
+        "programs": programs.describe(generated.files, partition.net),
         "cell": None,
         "motion": None,
     }

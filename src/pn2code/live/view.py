@@ -87,7 +87,7 @@ class LiveView(Closing):
         if document is None:  # the file has changed meanwhile
             return
         near = prepared.robot_cell.scene.warning_clearance
-        described = describe(prepared, document, self._speed)
+        described = describe(prepared.generated, prepared.robot_cell, document, self._speed)
         if not self._handing.finish(_BUILDING_S):
             return  # the server does not read: nothing is told
         self._handing.give(Cell(partition, config, near, described))

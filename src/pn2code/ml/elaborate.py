@@ -57,6 +57,7 @@ from pn2code.ml.typing.environment import (
     HiddenEntry,
     Scope,
     UnsupportedEntry,
+    library_scope,
 )
 from pn2code.ml.typing.expressions import Expressions
 from pn2code.ml.typing.inference import ICon, TypeTooLargeError, from_type
@@ -138,6 +139,8 @@ class Elaborator:
         )
         self._repeats = Repeats()
         self._library: set[str] = set()
+        self._library_top = Scope(library_scope())
+        self._from_library: set[str] = set()
         self._colsets = Colsets(self._ctx, self._declare, self._plain, self._fold)
 
     # --- declarations
@@ -487,7 +490,7 @@ class Elaborator:
         Errors go to `d`. Afterwards all names mean again what they meant before.
         """
         top, made, fixities = self._ctx.top, len(self._made), dict(self._fixities)
-        kept, declared = top.kept(), set(self._library)
+        kept, declared = top.kept(), (set(self._library), set(self._from_library))
         before = self._d, self._ctx.d, self._ctx.errors
         result = Aside()
         self._d = self._ctx.d = d
@@ -504,7 +507,7 @@ class Elaborator:
             top.values, top.types, top.structures = kept.values, kept.types, kept.structures
             top.signatures, top.functors = kept.signatures, kept.functors
             self._d, self._ctx.d, self._ctx.errors = before
-            self._fixities, self._library = fixities, declared
+            self._fixities, (self._library, self._from_library) = fixities, declared
             self._repeats.clear()
 
     # --- inscriptions
@@ -669,15 +672,34 @@ class Elaborator:
         return made
 
     def with_library(self, text: SourceText) -> None:
-        """Declares what the text mentions of the library of SML/NJ, unless the net has something of that name."""
-        top = self._ctx.top
+        """Declares what the text mentions of the library of SML/NJ, unless the net has something of that name.
+
+        The library's texts see none of the net's names: a colour `first` does not change what `first` is in them.
+        """
+        top, library_top = self._ctx.top, self._library_top
         for name in library.mentioned(text.text):
-            own = (top.structures, top.functors, top.signatures)
-            if name in self._library or any(name.removeprefix("more/") in known for known in own):
-                continue
-            self._library.add(name)
+            bare = name.removeprefix("more/")
+            if top is not library_top:
+                own = (top.structures, top.functors, top.signatures, self._ctx.colsets)
+                if name in self._from_library or any(bare in known for known in own):
+                    continue
+                self._from_library.add(name)
+            if name not in self._library:
+                self._library.add(name)
+                self._declare_in_library(name)
+            if top is not library_top:
+                top.take(library.declared(name), library_top)
+
+    def _declare_in_library(self, name: str) -> None:
+        """Declares something of the library where only the library is in scope."""
+        before = self._ctx.top, self._ctx.scope, self._ctx.colsets, self._fixities
+        self._ctx.top = self._ctx.scope = self._library_top
+        self._ctx.colsets, self._fixities = {}, dict(INFIX)
+        try:
             origin = Origin(f"library/{name}.sml", 1, 1)
             self.declarations(SourceText(library.declaration(name), origin))
+        finally:
+            self._ctx.top, self._ctx.scope, self._ctx.colsets, self._fixities = before
 
     def _border(self, text: SourceText, work: Callable[[], T]) -> T | None:
         """Runs one text's elaboration; leaves a clean state behind, and reports texts beyond Python's stack."""

@@ -46,7 +46,7 @@ def frame(matrix: Array) -> list[float]:
 
 
 def _robot(robot: CellRobot, store: Meshes) -> Json:
-    """Links are numbered, the base first; each joint says between which links it is, and which axis turns it."""
+    """Links are numbered, the base first; each joint says between which links it is, and which axis moves it."""
     trees = [("", robot.arm.urdf)] + ([(_TOOL, robot.tool.urdf)] if robot.tool else [])
     links = [prefix + name for prefix, tree in trees for name in (tree.root, *_children(tree))]
     number = {name: i for i, name in enumerate(links)}
@@ -58,6 +58,7 @@ def _robot(robot: CellRobot, store: Meshes) -> Json:
             "frame": frame(j.T_parent_joint),
             "axis": list(j.axis),
             "moves": axes.get(j.name, -1) if prefix == "" else -1,
+            **({"slides": True} if j.type == "prismatic" else {}),
         }
         for prefix, tree in trees
         for j in _from_root(tree)

@@ -38,6 +38,10 @@ class GrowingCourse(Course):
         self._told_tokens = 0
         self._first: list[list[int]] | None = None
 
+    def begin_unknown(self) -> None:
+        """The marking is not known yet, and perhaps never: nothing is shown of it until `begin`."""
+        self._first = []
+
     def begin(self, game: Game) -> None:
         """The marking with which it begins."""
         super().begin(game)

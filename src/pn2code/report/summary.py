@@ -202,6 +202,20 @@ def page(summary: dict[str, Any]) -> RenderableType:
     for name, value in summary["accuracy"].items():
         facts.add_row(name, f"{value:.2e} mm")
 
+    parts: list[RenderableType] = [head, "", facts, _times(summary)]
+    parts += [
+        Text(f"warning: {w['text']} ({w['robot']}, {w['t']:.2f} s)", "yellow")
+        for w in summary["warnings"]
+    ]
+    return Group(*parts)
+
+
+MOST_COLUMNS = 4
+"""Robots and devices that stand side by side in a table on the screen."""
+
+
+def _times(summary: Mapping[str, Any]) -> Table:
+    """How long activities took, and how long each robot and device worked."""
     # A supervisor of one page has no activities.
     kinds = ("times", "seconds") if summary["activities"] else ()
     times = Table(box=box.SIMPLE_HEAD, pad_edge=False)
@@ -210,6 +224,9 @@ def page(summary: dict[str, Any]) -> RenderableType:
     for kind in kinds:
         times.add_column(kind, justify="right")
     robots = list(summary["robots"])
+    shares = [f"{100 * entry['utilisation']:.0f} %" for entry in summary["robots"].values()]
+    if len(robots) > MOST_COLUMNS:
+        return _by_robot(times, summary, dict(zip(robots, shares, strict=True)))
     for robot in robots:
         times.add_column(f"{robot} busy", justify="right")
     for entry in summary["activities"]:
@@ -219,12 +236,21 @@ def page(summary: dict[str, Any]) -> RenderableType:
             f"{entry['seconds']:.2f}",
             *(f"{entry['busy'][robot]:.2f}" for robot in robots),
         )
-    shares = [f"{100 * entry['utilisation']:.0f} %" for entry in summary["robots"].values()]
     times.add_section()
     times.add_row("utilisation", *("" for _ in kinds), *shares)
-    parts: list[RenderableType] = [head, "", facts, times]
-    parts += [
-        Text(f"warning: {w['text']} ({w['robot']}, {w['t']:.2f} s)", "yellow")
-        for w in summary["warnings"]
-    ]
-    return Group(*parts)
+    return times
+
+
+def _by_robot(times: Table, summary: Mapping[str, Any], shares: Mapping[str, str]) -> Table:
+    """The same with a row for each robot; how long each worked for an activity is in summary.json."""
+    if not summary["activities"]:
+        times.add_column("utilisation", justify="right")
+        for robot, share in shares.items():
+            times.add_row(robot, share)
+        return times
+    for entry in summary["activities"]:
+        times.add_row(entry["name"], str(entry["times"]), f"{entry['seconds']:.2f}")
+    times.add_section()
+    for robot, share in shares.items():
+        times.add_row(f"{robot} busy", "", share)
+    return times

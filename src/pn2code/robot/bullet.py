@@ -12,7 +12,7 @@ import importlib.util
 import os
 import sys
 import tempfile
-from collections.abc import Container, Iterator, Sequence
+from collections.abc import Collection, Container, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from html import escape
@@ -69,7 +69,10 @@ def _silent() -> Iterator[None]:
 
 @record
 class _Loaded:
-    """A robot in PyBullet: body, its links by index, which joints move, which pairs are tested."""
+    """A robot in PyBullet: body, its links by index, which joints move, which pairs are tested.
+
+    Of `plates` one is a turntable of the robot: of these pairs some may touch. `root` is the base link of the arm.
+    """
 
     robot: CellRobot
     body: int
@@ -77,6 +80,8 @@ class _Loaded:
     index: dict[str, int]
     joints: list[int]
     pairs: list[tuple[int, int]]
+    plates: list[tuple[int, int]]
+    root: int
 
 
 @record
@@ -102,7 +107,7 @@ class _Side:
     Args:
         robot: whose it is, "" if it stands.
         links: names by index, of a robot; whole: the name of a body without links.
-        base: the robot whose base link it has; ignored_by: robots that stand on it.
+        base: the robot whose base link it has, and `root` which it is; ignored_by: robots that stand on it.
     """
 
     robot: str
@@ -111,6 +116,7 @@ class _Side:
     whole: str = ""
     base: str = ""
     ignored_by: tuple[str, ...] = ()
+    root: int = -1
 
     @property
     def key(self) -> str:
@@ -215,13 +221,17 @@ class BulletBackend:
             parents[i] = (info[16], info[2] == self._p.JOINT_FIXED)
         index = {name: i for i, name in links.items()}
         assert index[root] == -1
+        tables = {index[name] for name in robot.arm.tables}
+        pairs = _self_pairs(links, parents, tree.self_ignore, tables)
         return _Loaded(
             robot,
             body,
             links,
             index,
             [joints[a] for a in robot.arm.axes],
-            _self_pairs(links, parents, tree.self_ignore),
+            [x for x in pairs if tables.isdisjoint(x)],
+            [x for x in pairs if not tables.isdisjoint(x)],
+            index[robot.root],
         )
 
     def _load_body(self, body: Body, looks: bool) -> _Standing:
@@ -259,6 +269,23 @@ class BulletBackend:
         for placed in self._parts.values():
             if placed.part.holder == robot:
                 self._move(placed)
+
+    def set_base(self, robot: str, base: Pose) -> None:
+        """Puts the base of a robot elsewhere; what it stands on stays."""
+        self._p.resetBasePositionAndOrientation(
+            self._robots[robot].body,
+            (base.x, base.y, base.z),
+            self._p.getQuaternionFromEuler((base.rx, base.ry, base.rz)),
+            physicsClientId=self._client,
+        )
+        self._known = {}
+        # The joints are set again, so that all links follow.
+        self._q.pop(robot, None)
+
+    @property
+    def things(self) -> tuple[str, ...]:
+        """The names of what stands in the scene."""
+        return tuple(thing.body.name for thing in self._scene)
 
     def set_part(self, part: Part) -> None:
         """Shows a part where it is from now on."""
@@ -337,7 +364,11 @@ class BulletBackend:
                     for other in self._standing()
                     for gap in self._between("scene", side, other, limit)
                 ]
-                self._known["self", me] = [*self._self(a, limit), *self._carried(a, limit)]
+                self._known["self", me] = [
+                    *self._self(a, limit),
+                    *self._on_plates(a, limit),
+                    *self._carried(a, limit),
+                ]
             out += self._known["scene", me] + self._known["self", me]
         return tuple(_closest(out))
 
@@ -374,7 +405,7 @@ class BulletBackend:
                 )
                 skip_base = first.base != "" and first.base in second.ignored_by
                 for c in found:
-                    if skip_base and c[3] == -1:
+                    if skip_base and c[3] == first.root:
                         continue
                     one, two = first.link(c[3]), second.link(c[4])
                     allowed = self._allowed(one, two)
@@ -389,7 +420,19 @@ class BulletBackend:
             ):
                 one, two = (f"{a.robot.name}/{a.links[k]}" for k in (i, j))
                 yield Clearance("self", a.robot.name, one, two, c[8], None, c[5], c[6])
+        yield from self._on_plates(a, limit)
         yield from self._carried(a, limit)
+
+    def _on_plates(self, a: _Loaded, limit: float) -> Iterator[Clearance]:
+        """Between the turntables of a robot, with what is on them, and the rest of it; its tool may touch them."""
+        for i, j in a.plates:
+            found = self._p.getClosestPoints(
+                a.body, a.body, limit, i, j, physicsClientId=self._client
+            )
+            one, two = (f"{a.robot.name}/{a.links[k]}" for k in (i, j))
+            allowed = self._allowed(one, two)
+            for c in found:
+                yield Clearance("self", a.robot.name, one, two, c[8], allowed, c[5], c[6])
 
     def box(self, robot: str, link: str) -> tuple[Array, Array] | None:
         """The corners of a box around a link's collision shapes in its frame, a little too large; None: it has none."""
@@ -432,7 +475,7 @@ class BulletBackend:
         """A robot, and the part that it carries."""
         name = a.robot.name
         links = {i: f"{name}/{link}" for i, link in a.links.items()}
-        yield _Side(name, a.body, links, "", a.robot.name)
+        yield _Side(name, a.body, links, "", a.robot.name, root=a.root)
         for part in self._parts.values():
             if part.part.holder == name:
                 whole = f"{name}/{part.part.name}"
@@ -455,7 +498,7 @@ class BulletBackend:
             best: Clearance | None = None
             touching: dict[tuple[str, str], Clearance] = {}
             for c in found:
-                if skip_base and c[3] == -1:
+                if skip_base and c[3] == a.root:
                     continue
                 name_a, name_b = a.link(c[3]), b.link(c[4])
                 allowed = self._allowed(name_a, name_b)
@@ -480,7 +523,7 @@ class BulletBackend:
     def _carried(self, a: _Loaded, limit: float) -> list[Clearance]:
         """Between the part that a robot carries and the robot itself, but for its tool and the last axis."""
         name = a.robot.name
-        last = a.joints[-1]
+        last = a.joints[a.robot.kinematics.joints.stop - 1]
         near = {i for i, link in a.links.items() if link.startswith("tool_") or i >= last}
         best: Clearance | None = None
         for side in self._sides(a):
@@ -608,9 +651,15 @@ def _closest(items: Sequence[Clearance]) -> Iterator[Clearance]:
 
 
 def _self_pairs(
-    links: dict[int, str], parents: dict[int, tuple[int, bool]], ignore: frozenset[frozenset[str]]
+    links: dict[int, str],
+    parents: dict[int, tuple[int, bool]],
+    ignore: frozenset[frozenset[str]],
+    tables: Collection[int] = (),
 ) -> list[tuple[int, int]]:
-    """Pairs of links that could meet: not in one rigid piece, and their pieces not joined by a joint."""
+    """Pairs of links that could meet: not in one rigid piece, and their pieces not joined by a joint.
+
+    Turntables (`tables`) stand apart from whatever they are joined to.
+    """
     piece = {-1: -1}
     above: dict[int, int] = {}
     for i, (parent, fixed) in sorted(parents.items()):
@@ -622,6 +671,7 @@ def _self_pairs(
         for j in sorted(links):
             a, b = piece[i], piece[j]
             joined = above.get(a) == b or above.get(b) == a
+            joined = joined and i not in tables and j not in tables
             if i < j and a != b and not joined and frozenset((links[i], links[j])) not in ignore:
                 out.append((i, j))
     # Far ends first: they are the likeliest to be near something, and the first answer cuts the rest.

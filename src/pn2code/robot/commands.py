@@ -27,6 +27,15 @@ class Pose:
 
 
 @frozen
+class Along:
+    """Where an external axis of the robot goes on a move: m of a track, rad of a turntable."""
+
+    axis: str
+    position: float
+    is_track: bool
+
+
+@frozen
 class MoveJoint:
     """PTP to a TCP pose.
 
@@ -34,26 +43,40 @@ class MoveJoint:
         speed: the fraction (0..1] of the configured joint speed.
         frame: in which the pose is given: "world", or a name of `[frames]`.
         acceleration: the fraction (0..1] of the configured acceleration, as of all moves.
+        along: external axes that move together with the arm, as of all moves but HOME; others stand still.
+        tcp: which comes to the pose, a name of `[robots.NAME.tcps]`, as of all moves to poses; "": that of the tool.
     """
 
     target: Pose
     speed: float = 1.0
     frame: str = "world"
     acceleration: float = 1.0
+    along: tuple[Along, ...] = ()
+    tcp: str = ""
 
 
 @frozen
 class MoveAxes:
-    """PTP to a joint position, rad; `speed` and `acceleration` as of `MoveJoint`."""
+    """PTP to a joint position, rad; the rest as of `MoveJoint`."""
 
     axes: tuple[float, ...]
+    speed: float = 1.0
+    acceleration: float = 1.0
+    along: tuple[Along, ...] = ()
+
+
+@frozen
+class MoveExternal:
+    """External axes go somewhere, the joints of the arm stand still; the rest as of `MoveJoint`."""
+
+    along: tuple[Along, ...]
     speed: float = 1.0
     acceleration: float = 1.0
 
 
 @frozen
 class MoveHome:
-    """PTP to the robot's HOME joint position."""
+    """PTP to the arm's HOME joint position; external axes stay where they are."""
 
     speed: float = 1.0
     acceleration: float = 1.0
@@ -72,6 +95,8 @@ class MoveLinear:
     frame: str = "world"
     speed: float | None = None
     acceleration: float = 1.0
+    along: tuple[Along, ...] = ()
+    tcp: str = ""
 
 
 @frozen
@@ -88,6 +113,8 @@ class MoveCircular:
     frame: str = "world"
     speed: float | None = None
     acceleration: float = 1.0
+    along: tuple[Along, ...] = ()
+    tcp: str = ""
 
 
 @frozen
@@ -132,7 +159,7 @@ class Wait:
     duration: float
 
 
-Move = MoveJoint | MoveAxes | MoveHome | MoveLinear | MoveCircular
+Move = MoveJoint | MoveAxes | MoveExternal | MoveHome | MoveLinear | MoveCircular
 Command = Move | ToolAction | Measure | Wait
 
 
@@ -141,3 +168,8 @@ def without_pace(move: Move) -> Move:
     if isinstance(move, MoveLinear | MoveCircular):
         return replace(move, speed=None, acceleration=1.0)
     return replace(move, speed=1.0, acceleration=1.0)
+
+
+def tcp_of(command: Command) -> str:
+    """The tool frame that a command refers to; "": that of the tool."""
+    return command.tcp if isinstance(command, MoveJoint | MoveLinear | MoveCircular) else ""

@@ -19,20 +19,25 @@ from typing import Literal, assert_never
 import numpy as np
 
 from pn2code.base.frozen import frozen
+from pn2code.robot.along import AlongTrajectory, Led, plan_led
+from pn2code.robot.carried import WithAxes
 from pn2code.robot.commands import (
+    Along,
     Command,
     Measure,
     Move,
     MoveAxes,
     MoveCircular,
+    MoveExternal,
     MoveHome,
     MoveJoint,
     MoveLinear,
     Pose,
     ToolAction,
     Wait,
+    tcp_of,
 )
-from pn2code.robot.model import AXES
+from pn2code.robot.kinematics import Kinematics
 from pn2code.robot.motion import (
     LinearTrajectory,
     MotionFault,
@@ -51,6 +56,7 @@ from pn2code.robot.transforms import Array, describe, difference, inverse, matri
 CHECK_LENGTH = 0.005  # m: on a line, samples are no further apart than this on average,
 CHECK_ANGLE = math.radians(2.0)  # nor than this
 MotionKind = Literal["ptp", "lin", "circ", "tool", "measure", "wait"]
+_OWN = np.eye(4)
 _NO_FRAMES: Mapping[str, Pose] = MappingProxyType({})
 
 
@@ -112,6 +118,8 @@ class RobotExecutor:
         self.robot = robot
         self._config = config
         self._limits = robot.limits(config)
+        own = inverse(robot.kinematics.T_flange_tcp)
+        self._tcps = {name: own @ k.T_flange_tcp for name, k in robot.tcps.items()}
         self._frames = {name: matrix_of(pose) for name, pose in frames.items()}
         self._T_world_base = robot.T_world_base
         self._T_base_world = inverse(self._T_world_base)
@@ -170,9 +178,11 @@ class RobotExecutor:
             case MoveJoint():
                 return self._to_pose(command, now)
             case MoveHome():
-                return self._to_axes(command, now, np.array(self.robot.home))
+                return self._to_axes(command, now, self._home())
             case MoveAxes():
                 return self._to_axes(command, now, self._axes(command))
+            case MoveExternal():
+                return self._to_axes(command, now, self._towards(command.along))
             case MoveLinear():
                 return self._linear(command, now)
             case MoveCircular():
@@ -191,49 +201,149 @@ class RobotExecutor:
         """Raises MotionFault, with robot and pose, when no joint position puts the TCP where a move leads.
 
         Of a line or an arc only its end is looked at, in the branch of joint moves; nothing of increments, which begin
-        wherever the tool is.
+        wherever the tool is. Of a pose that external axes decide on as well nothing is known, either (`depends`).
         """
         told: Command = command
         if isinstance(command, MoveLinear | MoveCircular):
-            told = MoveJoint(command.target, frame=command.frame)
+            told = MoveJoint(command.target, frame=command.frame, tcp=command.tcp)
         try:
             match command:
                 case MoveAxes():
                     self._axes(command)
+                case MoveExternal():
+                    self._towards(command.along)
                 case MoveHome():
                     pass
-                case MoveJoint() | MoveLinear() | MoveCircular() if command.frame != "tool":
-                    self._found(command.target, command.frame)
+                case MoveJoint() | MoveLinear() | MoveCircular():
+                    q = self._towards(command.along)
+                    if command.frame != "tool" and not self.depends(command):
+                        self._found(command, q)
         except MotionFault as fault:
             raise self._named(fault, told) from None
 
-    def _found(self, pose: Pose, frame: str) -> tuple[Array, Array]:
-        """The joint position nearest to where it is, and the target in the base frame."""
-        target = self._in_base(pose, frame)
-        found = self.robot.kinematics.nearest(target, self.q, self.robot.branch)
+    def seen_from_arm(self, command: MoveJoint | MoveLinear | MoveCircular) -> Array:
+        """The pose that a move leads to, from the base of the arm, wherever tracks have carried it then."""
+        k = self.robot.kinematics
+        q = np.array(self.q)
+        for a in command.along:
+            q[self.robot.index(a.axis)] = a.position
+        target = self._of_tool(self._in_base(command.target, command, q), command)
+        return inverse(k.T_base_arm(q)) @ target if isinstance(k, WithAxes) else target
+
+    def depends(self, command: Move) -> bool:
+        """Whether it depends on where external axes stand what joint positions a move to a pose leads to."""
+        return bool(self.undecided(command))
+
+    def undecided(self, command: Move) -> frozenset[str]:
+        """The external axes on which it depends so, and which the move does not tell where to go."""
+        if isinstance(command, MoveAxes | MoveExternal | MoveHome) or command.frame == "tool":
+            return frozenset()
+        needed = {a.name for a in self.robot.axes.tracks}
+        if command.frame in self.robot.turning:
+            index, _ = self.robot.turning[command.frame]
+            needed.add(self.robot.arm.axes[index])
+        return frozenset(needed - {a.axis for a in command.along})
+
+    def _found(
+        self, command: MoveJoint | MoveLinear | MoveCircular, q: Array
+    ) -> tuple[Array, Array]:
+        """The joint position nearest to `q`, with the external axes as there, and where the tool's TCP is then."""
+        target = self._of_tool(self._in_base(command.target, command, q), command)
+        found = self.robot.kinematics.nearest(target, q, self.robot.branch)
         if found is None:
-            raise self._unreachable(target)
+            raise self._unreachable(target, q)
         return found.q, target
 
-    def _in_base(self, pose: Pose, frame: str) -> Array:
+    def _tcp(self, command: MoveJoint | MoveLinear | MoveCircular) -> tuple[Kinematics, Array]:
+        """The kinematics to the TCP that a move refers to, and where that is in the frame of the tool's own."""
+        if not command.tcp:
+            return self.robot.kinematics, _OWN
+        if command.tcp not in self._tcps:
+            raise MotionFault("bad-command", f"it has no tool frame `{command.tcp}`")
+        return self.robot.tcps[command.tcp], self._tcps[command.tcp]
+
+    def _of_tool(self, frame: Array, command: MoveJoint | MoveLinear | MoveCircular) -> Array:
+        """Where the tool's own TCP is when the one that a move refers to is at `frame`."""
+        return np.asarray(frame @ inverse(self._tcp(command)[1])) if command.tcp else frame
+
+    def _begins(self, command: MoveLinear | MoveCircular) -> Array:
+        """Where the TCP that a move refers to is when it begins, in the base frame."""
+        return (
+            np.asarray(self._T_base_tcp @ self._tcp(command)[1])
+            if command.tcp
+            else self._T_base_tcp
+        )
+
+    def _in_base(
+        self, pose: Pose, command: MoveJoint | MoveLinear | MoveCircular, q: Array
+    ) -> Array:
         """A pose of the world, of a frame that has a name, or of the tool, in the base frame."""
-        own = self._checked(pose)
+        plate, own = self._given(pose, command)
+        if plate is None:
+            return own
+        k = self.robot.kinematics
+        assert isinstance(k, WithAxes), "a plate is an external axis"
+        return np.asarray(k.T_base_table(plate, float(q[plate])) @ own)
+
+    def _given(
+        self, pose: Pose, command: MoveJoint | MoveLinear | MoveCircular
+    ) -> tuple[int | None, Array]:
+        """A pose on the plate of a turntable, by its index; or, of other frames, in the base frame."""
+        own, frame = self._checked(pose), command.frame
         if frame == "world":
-            return np.asarray(self._T_base_world @ own)
+            return None, np.asarray(self._T_base_world @ own)
         if frame == "tool":
-            return np.asarray(self._T_base_tcp @ own)
+            assert not isinstance(command, MoveJoint), "increments are on lines and arcs"
+            return None, np.asarray(self._begins(command) @ own)
+        if frame in self.robot.turning:
+            index, place = self.robot.turning[frame]
+            return index, matrix_of(place) @ own
         if frame not in self._frames:
-            raise MotionFault("bad-command", f"there is no frame `{frame}` in cell.toml")
-        return np.asarray(self._T_base_world @ (self._frames[frame] @ own))
+            raise MotionFault(
+                "bad-command", f"there is no frame `{frame}` in cell.toml that it can move in"
+            )
+        return None, np.asarray(self._T_base_world @ (self._frames[frame] @ own))
 
     def _axes(self, command: MoveAxes) -> Array:
         """The joint position of a command, which is inside the limits."""
-        q = np.array(command.axes)
-        if q.shape != (AXES,) or not np.isfinite(q).all():
+        k = self.robot.kinematics
+        own = np.array(command.axes)
+        if own.shape != k.alone.arm.lower.shape or not np.isfinite(own).all():
+            count = len(k.alone.arm.lower)
             raise MotionFault(
-                "bad-command", f"a joint position has {AXES} finite angles, not {command.axes}"
+                "bad-command", f"a joint position has {count} finite angles, not {command.axes}"
             )
-        check_axes(self.robot.kinematics, q)
+        q = self._towards(command.along)
+        q[k.joints] = own
+        check_axes(k, q)
+        return q
+
+    def _home(self) -> Array:
+        """The arm at HOME, external axes where they are."""
+        q = np.array(self.robot.home)
+        joints = self.robot.kinematics.joints
+        q[: joints.start], q[joints.stop :] = self.q[: joints.start], self.q[joints.stop :]
+        return q
+
+    def _towards(self, along: tuple[Along, ...]) -> Array:
+        """The joint position with external axes where a command takes them, which is inside their limits."""
+        q = np.array(self.q)
+        for a in along:
+            axis = self.robot.axes.axis(a.axis)
+            if axis is None or axis.is_track is not a.is_track:
+                kind = "track" if a.is_track else "turntable"
+                raise MotionFault("bad-command", f"it has no {kind} `{a.axis}`")
+            if not math.isfinite(a.position):
+                raise MotionFault("bad-command", f"`{a.axis}` cannot go to {a.position}")
+            i = self.robot.index(a.axis)
+            arm = self.robot.arm
+            if not axis.lower - 1e-9 <= a.position <= axis.upper + 1e-9:
+                raise MotionFault(
+                    "joint-limit",
+                    f"{arm.called(i)} would be at {arm.shown(i, a.position)} {arm.unit(i)}, outside "
+                    f"{arm.shown(i, axis.lower)} .. {arm.shown(i, axis.upper)}",
+                )
+            q[i] = a.position
         return q
 
     def _limited(self, command: Move) -> MotionLimits:
@@ -253,40 +363,62 @@ class RobotExecutor:
         )
 
     def _to_pose(self, command: MoveJoint, now: float) -> Motion:
-        q, target = self._found(command.target, command.frame)
+        q, target = self._found(command, self._towards(command.along))
         path = plan_ptp(self.robot.kinematics, self.q, q, self._limited(command), command.speed)
         return self._moving(command, "ptp", now, path, q, target)
 
-    def _to_axes(self, command: MoveHome | MoveAxes, now: float, q: Array) -> Motion:
+    def _to_axes(self, command: MoveHome | MoveAxes | MoveExternal, now: float, q: Array) -> Motion:
         k = self.robot.kinematics
         path = plan_ptp(k, self.q, q, self._limited(command), command.speed)
         return self._moving(command, "ptp", now, path, q, k.forward(q))
 
     def _linear(self, command: MoveLinear, now: float) -> Motion:
-        target = self._in_base(command.target, command.frame)
+        if self.robot.axes or command.along:
+            return self._along(command, "lin", now)
+        target = self._in_base(command.target, command, self.q)
         path = plan_lin(
-            self.robot.kinematics,
+            self._tcp(command)[0],
             self.q,
-            self._T_base_tcp,
+            self._begins(command),
             target,
             self._limited(command),
             command.speed,
         )
-        return self._moving(command, "lin", now, path, path.q(path.duration), target)
+        end = self._of_tool(target, command)
+        return self._moving(command, "lin", now, path, path.q(path.duration), end)
+
+    def _along(self, command: MoveLinear | MoveCircular, kind: MotionKind, now: float) -> Motion:
+        """A line or an arc of a robot that has external axes."""
+        end = self._towards(command.along)
+        k, _ = self._tcp(command)
+        assert isinstance(k, WithAxes), "it has external axes"
+        plate, target = self._given(command.target, command)
+        via = None
+        if isinstance(command, MoveCircular):
+            _, via = self._given(command.via, command)
+        wanted = Led(self.q, end, self._begins(command), plate, target, via)
+        path = plan_led(k, wanted, self._limited(command), command.speed)
+        last = path.q(path.duration)
+        if plate is not None:
+            target = k.T_base_table(plate, float(last[plate])) @ target
+        return self._moving(command, kind, now, path, last, self._of_tool(target, command))
 
     def _circular(self, command: MoveCircular, now: float) -> Motion:
-        via = self._in_base(command.via, command.frame)
-        target = self._in_base(command.target, command.frame)
+        if self.robot.axes or command.along:
+            return self._along(command, "circ", now)
+        via = self._in_base(command.via, command, self.q)
+        target = self._in_base(command.target, command, self.q)
         path = plan_circ(
-            self.robot.kinematics,
+            self._tcp(command)[0],
             self.q,
-            self._T_base_tcp,
+            self._begins(command),
             via,
             target,
             self._limited(command),
             command.speed,
         )
-        return self._moving(command, "circ", now, path, path.q(path.duration), target)
+        end = self._of_tool(target, command)
+        return self._moving(command, "circ", now, path, path.q(path.duration), end)
 
     def _checked(self, pose: Pose) -> Array:
         values = (pose.x, pose.y, pose.z, pose.rx, pose.ry, pose.rz)
@@ -294,8 +426,11 @@ class RobotExecutor:
             raise MotionFault("bad-command", f"the pose has a number that is not finite: {values}")
         return matrix_of(pose)
 
-    def _unreachable(self, target: Array) -> MotionFault:
-        rows = self.robot.kinematics.all_branches(target[None])[0]
+    def _unreachable(self, target: Array, q: Array) -> MotionFault:
+        alone = self.robot.kinematics.alone
+        if isinstance(self.robot.kinematics, WithAxes):
+            target = inverse(self.robot.kinematics.T_base_arm(q)) @ target
+        rows = alone.all_branches(target[None])[0]
         there = rows[~np.isnan(rows[:, 0])]
         if not len(there):
             centre = float(np.linalg.norm(target[:3, 3]))
@@ -306,9 +441,9 @@ class RobotExecutor:
             return MotionFault(
                 "unreachable",
                 f"branch {self.robot.branch} does not reach the pose inside the joint limits"
-                + other_branches(self.robot.kinematics, target, self.robot.branch),
+                + other_branches(alone, target, self.robot.branch),
             )
-        margins = [self.robot.kinematics.limit_margin(q) for q in there]
+        margins = [alone.limit_margin(row) for row in there]
         margin, axis = max(margins)
         return MotionFault(
             "joint-limit",
@@ -351,7 +486,9 @@ class RobotExecutor:
         self._next = (q_end, T_end)
         target = pose_of(self._T_world_base @ T_end)
         step = self._config.sample
-        if isinstance(path, LinearTrajectory) and kind == "circ":
+        if isinstance(path, AlongTrajectory) or (
+            isinstance(path, LinearTrajectory) and (kind == "circ" or tcp_of(command))
+        ):
             way, turn = path.line.length, path.line.angle
             parts = math.ceil(max(way / CHECK_LENGTH, turn / CHECK_ANGLE, 1.0) - 1e-6)
             step = max(step, path.duration / parts)

@@ -12,8 +12,9 @@ z = 0.15
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 
+from pn2code.base.frozen import frozen
 from pn2code.cell_file.geometry import FRAME
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes
@@ -26,8 +27,20 @@ WORLD = "world"
 _TAKEN = (WORLD, "tool")
 
 
-def read_frames(t: Table) -> dict[str, Pose]:
-    """The frames by name, each in the world; what is wrong is reported."""
+@frozen
+class Frames:
+    """By name: those that stand, each in the world; and those on a turntable, with its robot and name, on its plate."""
+
+    standing: Mapping[str, Pose]
+    turning: Mapping[str, tuple[str, str, Pose]]
+
+
+def read_frames(t: Table, plates: Collection[str] = ()) -> Frames:
+    """The frames; what is wrong is reported.
+
+    Args:
+        plates: the turntables, each as `ROBOT.AXIS`.
+    """
     own: dict[str, tuple[Pose, str]] = {}
     for name, table in t.named(FRAME):
         if name in _TAKEN or not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name):
@@ -38,14 +51,20 @@ def read_frames(t: Table) -> dict[str, Pose]:
                 hint="a letter, then letters, digits and `_`; not `world` or `tool`, which are frames already",
             )
         parent = table.text("parent")
-        if parent != WORLD and parent not in t.data:
-            near = did_you_mean(parent, (WORLD, *t.data)) or f"add a table `[frames.{parent}]`"
+        if parent != WORLD and parent not in t.data and parent not in plates:
+            near = did_you_mean(parent, (WORLD, *t.data, *plates))
+            near = near or f"add a table `[frames.{parent}]`"
             table.wrong("parent", "`world` or the name of another frame", near)
             parent = WORLD
         own[name] = read_own_pose(table), parent
     out: dict[str, Pose] = {}
+    turning: dict[str, tuple[str, str, Pose]] = {}
     for name in own:
         line = _line(own, name)
+        if line[-1] in plates:
+            robot, axis = line[-1].split(".")
+            turning[name] = (robot, axis, pose_of(_in_world(own, line)))
+            continue
         if line[-1] != WORLD:
             t.d.error(
                 codes.ROBOT_VALUE,
@@ -55,7 +74,7 @@ def read_frames(t: Table) -> dict[str, Pose]:
             )
             continue
         out[name] = pose_of(_in_world(own, line))
-    return out
+    return Frames(out, turning)
 
 
 def _line(own: Mapping[str, tuple[Pose, str]], name: str) -> list[str]:

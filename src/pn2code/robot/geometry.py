@@ -8,8 +8,9 @@ for distances, which stay convex and fast, and a smooth mesh for the eye.
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import lru_cache, partial
 
 import numpy as np
@@ -19,9 +20,13 @@ from pn2code.robot import looks
 from pn2code.robot.commands import Pose
 from pn2code.robot.looks import Look
 from pn2code.robot.panel import FLANGE, cut, frame, stand_parts, stand_places, stringers
-from pn2code.robot.robot_cell import PanelConfig, RobotCell
+from pn2code.robot.robot_cell import CellRobot, PanelConfig, RobotCell
 from pn2code.robot.scene_objects import SceneObject
 from pn2code.robot.transforms import Array, matrix_of, pose_of
+
+_HALF = 0.46
+"""m: half as wide is what a robot stands on."""
+_RAIL = (0.32, 0.34, 0.37, 1.0)
 
 
 @frozen
@@ -63,7 +68,9 @@ def bodies(cell: RobotCell) -> tuple[Body, ...]:
     if scene.floor:
         out.append(_floor(cell))
     for robot in cell.robots:
-        if robot.base.z > 0.05:
+        if robot.axes.tracks:
+            out += _rail(robot)
+        elif robot.base.z > 0.05:
             out.append(_pedestal(robot.name, robot.base))
     if scene.panel is not None:
         out += panel_bodies(scene.panel)
@@ -82,7 +89,7 @@ def _upright_box(low: Sequence[float], high: Sequence[float]) -> Solid:
 
 
 def _floor(cell: RobotCell) -> Body:
-    points = [(r.base.x, r.base.y) for r in cell.robots]
+    points = [(float(x), float(y)) for r in cell.robots for x, y in _stands_at(r)]
     if cell.scene.panel is not None:
         p = cell.scene.panel
         points += [(p.x_from, p.axis_y - p.radius), (p.x_to, p.axis_y)]
@@ -94,12 +101,52 @@ def _floor(cell: RobotCell) -> Body:
     return Body("floor", (solid,), partial(looks.floor, low, high), None, names)
 
 
+def _stands_at(robot: CellRobot) -> Array:
+    """Where the arm can stand, (n, 2): at the ends of its tracks, and at their zero; then its turntables."""
+    base = robot.T_world_base
+    ends = [
+        [np.zeros(3), *(x * track.direction for x in (track.lower, track.upper))]
+        for track in robot.axes.tracks
+    ]
+    own = [sum(x, np.zeros(3)) for x in itertools.product(*ends)]
+    own += [a.T_base_axis[:3, 3] for a in robot.axes.tables]
+    return np.array(
+        [
+            [robot.base.x, robot.base.y],
+            *(base[:3, :3] @ np.array(own).T + base[:3, 3:4]).T[1:, :2].tolist(),
+        ]
+    )
+
+
 def _pedestal(robot: str, base: Pose) -> Body:
     """What a robot whose base is above the floor stands on."""
-    half = 0.46
+    half = _HALF
     pose = matrix_of(Pose(base.x, base.y, base.z / 2.0, 0.0, 0.0, base.rz))
     solids = (_box(pose, (2 * half, 2 * half, base.z)),)
     return Body(f"{robot}_pedestal", solids, partial(looks.pedestal, half, base), None, (robot,))
+
+
+def _rail(robot: CellRobot) -> Iterator[Body]:
+    """Under the arm, wherever its tracks carry it, down to the floor; none where it comes down to the floor itself."""
+    ends = [
+        [x * track.direction for x in (track.lower, track.upper)] for track in robot.axes.tracks
+    ]
+    base = robot.T_world_base
+    places = np.array([sum(x) for x in itertools.product(*ends)]) @ base[:3, :3].T + base[:3, 3]
+    top = float(places[:, 2].min())
+    if top <= 0.05:
+        return
+    yaw = robot.base.rz
+    across = np.array([[math.cos(yaw), math.sin(yaw)], [-math.sin(yaw), math.cos(yaw)]])
+    flat = places[:, :2] @ across.T
+    low, high = flat.min(axis=0) - _HALF, flat.max(axis=0) + _HALF
+    x, y = across.T @ ((low + high) / 2.0)
+    size = (*(high - low).tolist(), top)
+    pose = Pose(float(x), float(y), top / 2.0, 0.0, 0.0, yaw)
+    solids = (Solid("box", pose, size),)
+    name = f"{robot.name}_rail"
+    thing = SceneObject(name, "box", pose, _RAIL, size=size)
+    yield Body(name, solids, partial(looks.thing, thing), None, (robot.name,))
 
 
 @lru_cache(maxsize=4)  # layouts differ in their robots, seldom in the panel

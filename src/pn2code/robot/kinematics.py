@@ -141,12 +141,20 @@ class Kinematics:
         self.T_flange_tcp = T_flange_tcp
         self._chain = chain
         self._form = form
+        self.alone: Kinematics = self
+        """Of the arm without its external axes, from its own base."""
+        self.joints = slice(0, len(arm.lower))
+        """Where the joints of the arm are in a joint position."""
 
     @classmethod
     def of(cls, arm: Arm, tool: Tool | None, at: Origin, d: Diagnostics) -> Kinematics | None:
         """The kinematics of an arm; None (and a diagnostic) if there is no closed form for it."""
+        return cls.to(arm, np.eye(4) if tool is None else tool.T_flange_tcp, at, d)
+
+    @classmethod
+    def to(cls, arm: Arm, frame: Array, at: Origin, d: Diagnostics) -> Kinematics | None:
+        """The same of a TCP that is given in the frame of the flange."""
         chain, derived = _chain(arm)
-        frame = np.eye(4) if tool is None else tool.T_flange_tcp
         if not isinstance(derived, str):
             return cls(arm, frame, chain, SphericalWrist(*derived, frame))
         form = parallel.derive(chain, frame)

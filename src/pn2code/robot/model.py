@@ -9,6 +9,7 @@ the cell's folder. The URDF is the only description: axes, limits and speeds are
 
 from __future__ import annotations
 
+import math
 from functools import lru_cache
 from pathlib import Path
 
@@ -36,6 +37,7 @@ class Arm:
         chain: all joints from the base to the flange; six of them move.
         lower: limits, rad; upper likewise.
         velocity: greatest axis speeds, rad/s.
+        tables: turntables, which are external axes beside the chain; of tracks, which are in it, `tracks` is how many.
     """
 
     name: str
@@ -45,11 +47,30 @@ class Arm:
     lower: Array
     upper: Array
     velocity: Array
+    tables: tuple[str, ...] = ()
+    tracks: int = 0
 
     @property
     def axes(self) -> tuple[str, ...]:
-        """Names of the six moving joints, from the base."""
-        return tuple(j.name for j in self.chain if j.type != "fixed")
+        """Names of the moving joints, from the base; turntables last."""
+        return (*(j.name for j in self.chain if j.type != "fixed"), *self.tables)
+
+    def shown(self, axis: int, value: float, digits: int = 2) -> str:
+        """A position of an axis for people, without its unit: degrees, or mm of a track."""
+        factor = 1000.0 if axis < self.tracks else math.degrees(1.0)
+        return f"{value * factor:.{digits}f}"
+
+    def unit(self, axis: int) -> str:
+        """`deg`, or `mm` of a track."""
+        return "mm" if axis < self.tracks else "deg"
+
+    def called(self, axis: int) -> str:
+        """An axis in messages: its number and name, as the maker counts; external axes have a name alone."""
+        name = self.axes[axis]
+        own = axis - self.tracks
+        if 0 <= own < len(self.axes) - self.tracks - len(self.tables):
+            return f"axis {own + 1} (`{name}`)"
+        return f"external axis `{name}`"
 
 
 @frozen(eq=False)

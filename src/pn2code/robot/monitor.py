@@ -217,11 +217,10 @@ class Monitor:
     def _own_fault(self, s: Sample, t: float, moving: bool) -> Fault | None:
         at = f"at TCP pose {describe(s.pose)}"
         if s.limit_margin < -1e-9:
-            name = self._cell.robot(s.robot).arm.axes[s.limit_axis]
-            degrees = math.degrees(s.q[s.limit_axis])
+            arm, i = self._cell.robot(s.robot).arm, s.limit_axis
             message = (
-                f"robot `{s.robot}`: axis {s.limit_axis + 1} (`{name}`) is at {degrees:.2f} deg, "
-                f"{math.degrees(-s.limit_margin):.2f} deg outside its limits, {at}"
+                f"robot `{s.robot}`: {arm.called(i)} is at {arm.shown(i, s.q[i])} {arm.unit(i)}, "
+                f"{arm.shown(i, -s.limit_margin)} {arm.unit(i)} outside its limits, {at}"
             )
             return Fault("joint-limit", s.robot, message, t, s.pose)
         if moving and s.conditioning.sigma_min < SINGULAR_SIGMA:

@@ -20,7 +20,6 @@ import numpy as np
 from pn2code.base.frozen import frozen
 from pn2code.robot.commands import Pose
 from pn2code.robot.kinematics import Branch, Kinematics, condition_text
-from pn2code.robot.model import AXES
 from pn2code.robot.transforms import (
     Array,
     pose_of,
@@ -130,7 +129,7 @@ class Still:
 
     def qd(self, t: float) -> Array:
         """Zero."""
-        return np.zeros(AXES)
+        return np.zeros_like(self.position)
 
     def sample(self, times: Array) -> Array:
         """The position, repeated."""
@@ -141,7 +140,7 @@ class Still:
         return self.sample(s)
 
 
-class _Law:
+class Law:
     """A jerk-limited law of one parameter from 0 to 1, from rest to rest; `duration` s."""
 
     def __init__(self, velocity: float, acceleration: float, jerk: float) -> None:
@@ -177,7 +176,7 @@ class JointTrajectory:
     acceleration or jerk.)
     """
 
-    def __init__(self, start: Array, target: Array, law: _Law | None) -> None:
+    def __init__(self, start: Array, target: Array, law: Law | None) -> None:
         self._start, self._target, self._law = start, target, law
         self._way = target - start
         self.duration = 0.0 if law is None else law.duration
@@ -196,7 +195,7 @@ class JointTrajectory:
     def qd(self, t: float) -> Array:
         """Joint speed, rad/s."""
         if self._law is None or not 0.0 < t < self.duration:
-            return np.zeros(AXES)
+            return np.zeros_like(self._way)
         return np.asarray(self._law.at(t)[1] * self._way)
 
     def sample(self, times: Array) -> Array:
@@ -239,6 +238,15 @@ class Way(Protocol):
     def shifts(self, s: Array) -> Array:
         """Velocity of the TCP's place (m) for one unit of s, (n, 3)."""
 
+    def spins(self, turns: Array) -> Array:
+        """How the tool turns (rad) for one unit of s, where its rotations are (n, 3, 3): (n, 3)."""
+
+
+def own_spins(axis: Array, angle: float, turns: Array) -> Array:
+    """Of a tool that turns evenly about an axis in its own frame."""
+    spin = axis * angle
+    return np.stack([r @ spin for r in turns])
+
 
 class Line:
     """Straight from one pose to another, turning about one axis at constant ratio (slerp)."""
@@ -264,6 +272,10 @@ class Line:
     def shifts(self, s: Array) -> Array:
         """The same everywhere."""
         return np.broadcast_to(self.shift, (len(s), 3))
+
+    def spins(self, turns: Array) -> Array:
+        """About its axis."""
+        return own_spins(self.axis, self.angle, turns)
 
 
 class Arc:
@@ -328,14 +340,19 @@ class Arc:
         t = (s * self.sweep)[:, None]
         return np.asarray(self.length * (np.cos(t) * self._v - np.sin(t) * self._u))
 
+    def spins(self, turns: Array) -> Array:
+        """About its axis."""
+        return own_spins(self.axis, self.angle, turns)
+
 
 class LinearTrajectory:
     """LIN and CIRC: the TCP on a line or an arc, joints by the closed-form inverse on one branch."""
 
     def __init__(
-        self, kinematics: Kinematics, line: Way, branch: Branch, law: _Law, start: Array
+        self, kinematics: Kinematics, line: Way, branch: Branch, law: Law, start: Array
     ) -> None:
         self._k, self.line, self.branch, self._law = kinematics, line, branch, law
+        self.kinematics = kinematics
         self.duration = law.duration
         count = max(
             2,
@@ -360,7 +377,7 @@ class LinearTrajectory:
     def qd(self, t: float) -> Array:
         """Joint speed, rad/s."""
         if not 0.0 < t < self.duration:
-            return np.zeros(AXES)
+            return np.zeros(self.grid.shape[1])
         now = np.array([t])
         return np.asarray(self.rates(self.q(t)[None], np.array([self.rate(t)]), self.way(now))[0])
 
@@ -371,8 +388,7 @@ class LinearTrajectory:
     def rates(self, q: Array, rate: Array, s: Array) -> Array:
         """Joint speeds (n, 6) at joint positions (n, 6) for speeds along the way (1/s), at fractions s of it."""
         now = self._k.forward_many(q)
-        spin = self.line.axis * self.line.angle
-        spins = np.stack([r @ spin for r in now[:, :3, :3]])
+        spins = self.line.spins(now[:, :3, :3])
         twist = np.concatenate([self.line.shifts(s), spins], axis=1) * rate[:, None]
         return np.asarray((np.linalg.pinv(self._k.jacobian_many(q)) @ twist[..., None])[..., 0])
 
@@ -399,7 +415,7 @@ def plan_ptp(
     if way.max() < _SAME:
         return JointTrajectory(start, target, None)
     far = way > _SAME
-    law = _Law(
+    law = Law(
         float((limits.velocity[far] * speed / way[far]).min()),
         float((limits.acceleration[far] / way[far]).min()),
         float((limits.jerk[far] / way[far]).min()),
@@ -423,19 +439,28 @@ def plan_lin(
     Raises MotionFault: a pose on the way is out of reach or of the limits, or an axis would have to
     turn faster than it can (a singularity, where the conditioning says so).
     """
+    line = Line(T_start, T_target)
+    pace = line_pace(line, limits, speed)
+    return Still(start, 0.0) if pace is None else led(kinematics, line, Law(*pace), start, limits)
+
+
+Pace = tuple[float, float, float]
+"""Greatest speed, acceleration and jerk of the fraction of a way, 1/s, 1/s2, 1/s3."""
+
+
+def line_pace(line: Line, limits: MotionLimits, speed: float | None) -> Pace | None:
+    """Of a line; None: it has no length, and turns nothing."""
     wanted = limits.linear_velocity if speed is None else speed
     _check_speed(wanted, math.inf, "linear speed must be above 0")
-    line = Line(T_start, T_target)
     if line.length < _SAME and line.angle < _SAME:
-        return Still(start, 0.0)
+        return None
     # One unit of the law is the whole way; pure turns are limited by the angular speed alone.
     fast = min(
         wanted / line.length if line.length > _SAME else math.inf,
         limits.angular_velocity / line.angle if line.angle > _SAME else math.inf,
     )
     size = max(line.length, line.angle)
-    law = _Law(fast, limits.linear_acceleration / size, limits.linear_jerk / size)
-    return _led(kinematics, line, law, start, limits)
+    return fast, limits.linear_acceleration / size, limits.linear_jerk / size
 
 
 def plan_circ(
@@ -457,9 +482,14 @@ def plan_circ(
 
     Raises MotionFault as `plan_lin` does, and where there is no arc.
     """
+    arc = Arc(T_start, T_via, T_target)
+    return led(kinematics, arc, Law(*arc_pace(arc, limits, speed)), start, limits)
+
+
+def arc_pace(arc: Arc, limits: MotionLimits, speed: float | None) -> Pace:
+    """Of an arc, as `plan_circ` says."""
     wanted = limits.linear_velocity if speed is None else speed
     _check_speed(wanted, math.inf, "linear speed must be above 0")
-    arc = Arc(T_start, T_via, T_target)
     most, jerk, r = limits.linear_acceleration, limits.linear_jerk, arc.radius
     v = min(wanted, math.sqrt(most * r / math.sqrt(2.0)), (jerk * r * r / 4.0) ** (1.0 / 3.0))
     turning = limits.angular_velocity / arc.angle if arc.angle > _SAME else math.inf
@@ -467,12 +497,11 @@ def plan_circ(
     v = fast * arc.length
     a = min(most / math.sqrt(2.0), jerk * r / (6.0 * v))
     size = max(arc.length, arc.angle)
-    law = _Law(fast, a / size, 0.5 * jerk / size)
-    return _led(kinematics, arc, law, start, limits)
+    return fast, a / size, 0.5 * jerk / size
 
 
-def _led(
-    kinematics: Kinematics, way: Way, law: _Law, start: Array, limits: MotionLimits
+def led(
+    kinematics: Kinematics, way: Way, law: Law, start: Array, limits: MotionLimits
 ) -> LinearTrajectory:
     """The joint positions along a way, checked."""
     out = LinearTrajectory(kinematics, way, kinematics.branch_of(start), law, start)
@@ -491,20 +520,19 @@ def _check_speed(value: float, most: float, message: str) -> None:
 
 
 def _check_limits(kinematics: Kinematics, path: Array, times: Array | None = None) -> None:
-    margins = np.minimum(path - kinematics.arm.lower, kinematics.arm.upper - path)
+    arm = kinematics.arm
+    margins = np.minimum(path - arm.lower, arm.upper - path)
     low = margins.min(axis=1)
     if (low >= -1e-9).all():
         return
     first = int(np.argmax(low < -1e-9))
     axis = int(np.argmin(margins[first]))
-    name = kinematics.arm.axes[axis]
     value, lower, upper = (
-        math.degrees(v)
-        for v in (path[first, axis], kinematics.arm.lower[axis], kinematics.arm.upper[axis])
+        arm.shown(axis, v) for v in (path[first, axis], arm.lower[axis], arm.upper[axis])
     )
     raise MotionFault(
         "joint-limit",
-        f"axis {axis + 1} (`{name}`) would be at {value:.2f} deg, outside {lower:.2f} .. {upper:.2f}",
+        f"{arm.called(axis)} would be at {value} {arm.unit(axis)}, outside {lower} .. {upper}",
         pose=pose_of(kinematics.forward(path[first])),
         q=tuple(path[first].tolist()),
         time=None if times is None else float(times[first]),
@@ -548,7 +576,6 @@ def _check_line(kinematics: Kinematics, lin: LinearTrajectory, limits: MotionLim
     first = int(np.argmax((load > 1.0).any(axis=1)))
     axis = int(np.argmax(load[first]))
     condition = kinematics.conditioning(path[first])
-    name = kinematics.arm.axes[axis]
     # Steps far above the exact speeds: the branch leaps, as over a straight wrist.
     leap = step[first, axis] > 2.0 * exact[first, axis] + 0.5
     singular = leap or condition.condition > SINGULAR_CONDITION
@@ -562,7 +589,7 @@ def _check_line(kinematics: Kinematics, lin: LinearTrajectory, limits: MotionLim
     needed = math.degrees(load[first, axis] * limits.axis_velocity[axis])
     raise MotionFault(
         "singularity" if singular else "axis-speed",
-        f"{what}axis {axis + 1} (`{name}`) would have to turn at {needed:.0f} deg/s, but can do "
+        f"{what}{kinematics.arm.called(axis)} would have to turn at {needed:.0f} deg/s, but can do "
         f"{math.degrees(limits.axis_velocity[axis]):.0f}",
         pose=pose_of(kinematics.forward(path[first])),
         q=tuple(path[first].tolist()),

@@ -9,9 +9,11 @@ from dataclasses import field
 import numpy as np
 
 from pn2code.base.frozen import frozen
+from pn2code.robot.carried import STAND
 from pn2code.robot.commands import Pose
+from pn2code.robot.external import Externals
 from pn2code.robot.kinematics import Branch, Kinematics
-from pn2code.robot.model import AXES, Arm, Tool
+from pn2code.robot.model import Arm, Tool
 from pn2code.robot.motion import MotionLimits
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.scene_objects import SceneObject
@@ -92,8 +94,11 @@ class CellRobot:
 
     Args:
         base: of its base frame in the world.
-        home: joint position, rad.
+        home: joint position, rad (m of tracks).
         branch: the only one joint moves may end in; None: the fastest to reach.
+        axes: its external ones; `home` has all.
+        tcps: kinematics to further tool frames, by name.
+        turning: frames that turn with a turntable of it, by name: the axis, by its index, and the pose on its plate.
     """
 
     name: str
@@ -103,19 +108,39 @@ class CellRobot:
     base: Pose
     home: tuple[float, ...]
     branch: Branch | None
+    axes: Externals = field(default_factory=Externals)
+    turning: Mapping[str, tuple[int, Pose]] = field(default_factory=dict)
+    tcps: Mapping[str, Kinematics] = field(default_factory=dict)
+
+    @property
+    def root(self) -> str:
+        """The base link of its arm: what stands on the floor, or on a track."""
+        tree = self.arm.urdf
+        mount = next((j for j in tree.joints if j.name == f"{STAND}_mount"), None)
+        return mount.child if self.axes and mount is not None else tree.root
 
     @property
     def T_world_base(self) -> Array:  # noqa: N802
         """The base frame."""
         return matrix_of(self.base)
 
+    def index(self, axis: str) -> int:
+        """Where an external axis is in joint positions; KeyError if there is none so called."""
+        joints = self.kinematics.joints
+        return self.axes.index(axis, joints.stop - joints.start)
+
     def limits(self, motion: MotionConfig) -> MotionLimits:
         """What this arm may do under a motion configuration."""
-        ones = np.ones(AXES)
+        ones = np.ones(len(self.arm.velocity))
+        velocity = self.arm.velocity * motion.joint_speed
+        acceleration, jerk = ones * motion.joint_acceleration, ones * motion.joint_jerk
+        for axis in self.axes:
+            i = self.index(axis.name)
+            velocity[i], acceleration[i], jerk[i] = axis.velocity, axis.acceleration, axis.jerk
         return MotionLimits(
-            velocity=self.arm.velocity * motion.joint_speed,
-            acceleration=ones * motion.joint_acceleration,
-            jerk=ones * motion.joint_jerk,
+            velocity=velocity,
+            acceleration=acceleration,
+            jerk=jerk,
             axis_velocity=self.arm.velocity,
             linear_velocity=motion.linear_speed,
             linear_acceleration=motion.linear_acceleration,

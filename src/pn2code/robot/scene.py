@@ -12,6 +12,7 @@ from __future__ import annotations
 import fnmatch
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,9 @@ from pn2code.cell_file.keys import Section
 from pn2code.diagnostics import Diagnostics
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes
-from pn2code.robot.frames import read_frames
+from pn2code.robot.carried import WithAxes, with_axes
+from pn2code.robot.external import read_axes
+from pn2code.robot.frames import Frames, read_frames
 from pn2code.robot.kinematics import BRANCH_NAMES, Kinematics
 from pn2code.robot.model import find_arm, find_tool
 from pn2code.robot.parts_table import PartKind, read_kinds, read_places
@@ -35,7 +38,8 @@ from pn2code.robot.robot_cell import (
 )
 from pn2code.robot.scene_objects import SceneObject, read_object
 from pn2code.robot.table import Locate, Table, is_number
-from pn2code.robot.table_poses import read_pose
+from pn2code.robot.table_poses import read_own_pose, read_pose
+from pn2code.robot.transforms import matrix_of
 
 RADIANS = "angles in cell.toml are in degrees; if these are radians, multiply them by 57.2958"
 FEW_RADIANS = 3.2
@@ -77,11 +81,23 @@ def load(
     names = tuple(geometry.get("robots", {}))
     kinds = read_kinds(table("parts", None), folder)
     places = read_places(table("places", None))
-    frames = read_frames(table("frames", None))
+    plates = [f"{r.name}.{a.name}" for r in robots for a in r.axes.tables]
+    frames = read_frames(table("frames", None), plates)
+    robots = tuple(_with_frames(r, frames) for r in robots)
     scene = _scene(table("scene", SCENE), robots, names, kinds, folder)
     if len(d.errors) != before:
         return None
-    return RobotCell(robots, motion, scene, kinds, places, frames)
+    return RobotCell(robots, motion, scene, kinds, places, frames.standing)
+
+
+def _with_frames(robot: CellRobot, frames: Frames) -> CellRobot:
+    """A robot with the frames that turn with its turntables."""
+    turning = {
+        name: (robot.index(axis), pose)
+        for name, (owner, axis, pose) in frames.turning.items()
+        if owner == robot.name
+    }
+    return replace(robot, turning=turning) if turning else robot
 
 
 def _motion(t: Table) -> MotionConfig:
@@ -108,6 +124,9 @@ def _robot(t: Table, name: str, folder: Path) -> CellRobot | None:
     base = read_pose(t, "base")
     home_deg = t.numbers("home")
     branch_name = t.text("branch")
+    axes = read_axes(t, name, base, folder)
+    frames = t.table("tcps").named(t.inner("tcps")) if t.has("tcps") else ()
+    further = {key: read_own_pose(p) for key, p in frames}
     t.done()
     if arm is None or (tool is None and tool_name != "none"):
         return None
@@ -125,7 +144,21 @@ def _robot(t: Table, name: str, folder: Path) -> CellRobot | None:
     kinematics = Kinematics.of(arm, tool, t.at("model"), t.d)
     if kinematics is None:
         return None
-    return CellRobot(name, arm, tool, kinematics, base, home, BRANCH_NAMES.get(branch_name))
+    branch = BRANCH_NAMES.get(branch_name)
+    tcps = {
+        key: own
+        for key, pose in further.items()
+        if (own := Kinematics.to(arm, matrix_of(pose), t.at("model"), t.d)) is not None
+    }
+    if not axes:
+        return CellRobot(name, arm, tool, kinematics, base, home, branch, tcps=tcps)
+    whole = with_axes(arm, axes, name, t.at("axes"), t.d)
+    if whole is None:
+        return None
+    home = (*(a.home for a in axes.tracks), *home, *(a.home for a in axes.tables))
+    carried = WithAxes(kinematics, axes, whole)
+    tcps = {key: WithAxes(own, axes, whole) for key, own in tcps.items()}
+    return CellRobot(name, whole, tool, carried, base, home, branch, axes, tcps=tcps)
 
 
 def _scene(

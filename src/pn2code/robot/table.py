@@ -145,6 +145,17 @@ class Table:
         """The tables within this one, each with its name."""
         return [(name, self._inner(self.data[name], (name,), inner)) for name in self.data]
 
+    def inner(self, name: str) -> Section:
+        """What is in each of the tables with chosen names that a key has."""
+        inner = self._key(name).inner
+        assert inner is not None, "it is a key of tables"
+        return inner
+
+    def expected(self, name: str) -> str:
+        """What the value of a key may be, in words."""
+        key = self._key(name)
+        return key.expected or _expected(key)
+
     def tables(self, name: str) -> list[Table]:
         """The tables of a list; none if it is not there."""
         inner = self._key(name).inner

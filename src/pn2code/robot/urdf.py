@@ -109,6 +109,11 @@ def _parsed(path: Path, data: bytes) -> Urdf:
     return _tree(path, etree.fromstring(data, parser))
 
 
+def tree_of(path: Path, root: Any) -> Urdf:
+    """The tree of a text that is made, not read; names of meshes are relative to the folder of `path`."""
+    return _tree(path, root)
+
+
 def _tree(path: Path, root: Any) -> Urdf:
     if root.tag != "robot":
         raise _BadError(

@@ -7,8 +7,10 @@ moves.of(primitive, argument, at, span)     # [Move(JOINT, before(p, 100 mm)), M
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+
 from pn2code.cell.axes_types import are_axes
-from pn2code.cell.config import CommandName, Primitive
+from pn2code.cell.config import Primitive
 from pn2code.diagnostics import Span
 from pn2code.robot_scripts import codes
 from pn2code.robot_scripts.values import Rec, Scalar, UnsupportedError, Value, as_quantity
@@ -16,23 +18,29 @@ from pn2code.tdl import tree as t
 from pn2code.tdl import types as tdl
 
 
-def with_speed(command: CommandName, argument: Value) -> tuple[Value, Value | None]:
-    """What a function takes, without the speed beside it; and the speed, if it takes one."""
-    takes = 2 if command == "move_circular" else 1
-    if not isinstance(argument, Rec) or len(argument.fields) != takes + 1:
-        return argument, None
-    speed = argument.get(str(takes + 1))
-    if takes == 1:
-        return argument.get("1"), speed
-    return Rec(argument.fields[:takes]), speed
+def parts_of(primitive: Primitive, argument: Value) -> tuple[Value, list[Value], Value | None]:
+    """What a function takes: poses or a joint position, positions of external axes, and the speed, if it has one."""
+    if not isinstance(argument, Rec) or not argument.fields or argument.fields[0][0] != "1":
+        return (argument, [], None) if primitive.places else (Rec(()), [argument], None)
+    fields = argument.fields
+    takes, places = primitive.takes, primitive.places
+    speed = fields[takes][1] if len(fields) > takes else None
+    own = fields[0][1] if places == 1 else Rec(fields[:places])
+    return own, [value for _, value in fields[places:takes]], speed
 
 
-def of(primitive: Primitive, argument: Value, at: t.Expression | None, span: Span) -> list[t.Move]:
+def of(
+    primitive: Primitive,
+    argument: Value,
+    positions: Sequence[Value],
+    at: t.Expression | None,
+    span: Span,
+) -> list[t.Move]:
     """The moves of a call.
 
     Args:
         primitive: the command.
-        argument: where the arm goes.
+        argument: where the arm goes; positions: where external axes go.
         at: how fast.
         span: of the call.
 
@@ -41,31 +49,46 @@ def of(primitive: Primitive, argument: Value, at: t.Expression | None, span: Spa
     """
     name, frame = primitive.function, primitive.frame
     ramp = None if primitive.acceleration is None else t.Quantity(primitive.acceleration, "%")
+    along = tuple(_external(primitive, positions, span))
+    tcp = primitive.tcp
     out: list[t.Move] = []
     if primitive.depart:
         speed = at if primitive.is_linear else None
         back = _pose(0.0, 0.0, -primitive.depart)
-        out.append(t.Move(t.Motion.LINEAR, back, "tool", speed, None, ramp))
+        out.append(t.Move(t.Motion.LINEAR, back, "tool", speed, None, ramp, tcp=tcp))
     match primitive.command:
         case "move_linear":
             goal = pose(argument, name, span)
             if primitive.approach:
                 distance = t.Quantity(primitive.approach, "mm")
                 before = t.CallExpression("before", (goal, distance))
-                out.append(t.Move(t.Motion.JOINT, before, frame, _ALL, None, ramp))
-            out.append(t.Move(t.Motion.LINEAR, goal, frame, at, None, ramp))
+                out.append(t.Move(t.Motion.JOINT, before, frame, _ALL, None, ramp, along, tcp))
+            out.append(t.Move(t.Motion.LINEAR, goal, frame, at, None, ramp, along, tcp))
         case "move_circular":
             assert isinstance(argument, Rec), "the cell has been checked"
             via, goal = (pose(argument.get(label), name, span) for label in ("1", "2"))
-            out.append(t.Move(t.Motion.CIRCULAR, goal, frame, at, via, ramp))
+            out.append(t.Move(t.Motion.CIRCULAR, goal, frame, at, via, ramp, along, tcp))
         case "move_axes":
-            out.append(t.Move(t.Motion.JOINT, _axes(argument, name, span), None, at, None, ramp))
+            axes = _axes(argument, name, span)
+            out.append(t.Move(t.Motion.JOINT, axes, None, at, None, ramp, along))
+        case "move_external":
+            out.append(t.Move(t.Motion.EXTERNAL, None, None, at, None, ramp, along))
         case "move_joint":
             goal = pose(argument, name, span)
-            out.append(t.Move(t.Motion.JOINT, goal, frame, at, None, ramp))
+            out.append(t.Move(t.Motion.JOINT, goal, frame, at, None, ramp, along, tcp))
         case _:
             out.append(t.Move(t.Motion.JOINT, None, None, at, None, ramp))
     return out
+
+
+def _external(primitive: Primitive, positions: Sequence[Value], span: Span) -> Iterator[t.Along]:
+    for (axis, is_track), value in zip(primitive.along, positions, strict=True):
+        if not isinstance(value, Scalar):
+            raise UnsupportedError(
+                f"`{primitive.function}` takes the position of `{axis}`", span, codes.PRIMITIVE
+            )
+        kind = tdl.Type.LENGTH if is_track else tdl.Type.ANGLE
+        yield t.Along(axis, as_quantity(value, kind).exp, is_track)
 
 
 _ALL = t.Quantity(100.0, "%")

@@ -359,13 +359,12 @@ class StepTranslator:
     def _moves(self, primitive: Primitive, argument: Value, span: Span) -> list[t.Move]:
         """What a call of a primitive that moves the arm makes it do."""
         at: t.Expression | None = None
+        places, positions, speed = moves.parts_of(primitive, argument)
         if primitive.speed is not None:
             at = t.Quantity(primitive.speed, "mm/s" if primitive.is_linear else "%")
-        else:
-            argument, speed = moves.with_speed(primitive.command, argument)
-            if speed is not None:
-                at = self._speed(speed, span, is_linear=primitive.is_linear)
-        return moves.of(primitive, argument, at, span)
+        elif speed is not None:
+            at = self._speed(speed, span, is_linear=primitive.is_linear)
+        return moves.of(primitive, places, positions, at, span)
 
     def _speed(self, given: Value, span: Span, *, is_linear: bool) -> t.Expression:
         """The speed that a function takes beside the pose; one that is known is possible."""

@@ -48,5 +48,13 @@ class MovingArm:
             return text
         return f"{text}, at TCP pose {describe(self._executor.pose)}"
 
+    def joints(self) -> list[float] | None:
+        """How the arm stands now (rad); None: a device has none."""
+        if isinstance(self._executor, DeviceExecutor):
+            return None
+        motion = self._executor.motion
+        q = self._executor.q if motion is None else motion.q(min(self._now(), motion.ends))
+        return [float(v) for v in q]
+
     def _now(self) -> float:
         return time.monotonic() * self._speed

@@ -47,6 +47,7 @@ from pn2code.robot.robot_cell import RobotCell
 from pn2code.run.device import DeviceExecutor
 from pn2code.run.engine import Engine, Observer
 from pn2code.run.files import RobotFiles
+from pn2code.run.journals import ROBOTS, SUPERVISOR, RunJournal, say_where
 from pn2code.run.punctuality import Punctuality
 from pn2code.run.realtime import RealtimeEngine
 from pn2code.run.record import RunRecord, RunWarning
@@ -289,7 +290,7 @@ def _start(
 ) -> Engine | None:
     partition = prepared.generated.partition
     shared = stack.enter_context(shared_directory(partition.net.name))
-    trace_path = options.out / "supervisor.trace.jsonl"
+    trace_path = options.out / SUPERVISOR
     supervisor = stack.enter_context(
         SupervisorProcess(
             prepared.program,
@@ -338,6 +339,11 @@ def _start(
         )
         files = RobotFiles(side, GRACE_S if options.realtime else 0.0)
         engine.add_robot(name, script, program, files, executor)
+    if options.realtime:
+        say_where(options.out, prepared.config, options.values, shared)
+        first = next(iter(sides.values()), None)
+        session, began = (first.session or "", first.began) if first else ("", time.time())
+        engine.observers.append(RunJournal(options.out / ROBOTS, session, began))
     return engine
 
 
@@ -381,7 +387,7 @@ def _engine(
         "cell": prepared.robot_cell,
         "backend": backend,
         "monitor": Monitor(prepared.robot_cell, backend),
-        "observers": observers,
+        "observers": list(observers),
     }
     if options.realtime:
         parties = {

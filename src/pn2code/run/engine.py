@@ -26,23 +26,27 @@ import numpy as np
 from pn2code.base.frozen import record
 from pn2code.cell.partition import Partition
 from pn2code.emission.output import Block, OutputFile
+from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.backend import Backend
 from pn2code.robot.commands import (
+    Along,
     Command,
     Handling,
     Measure,
     MoveAxes,
     MoveCircular,
+    MoveExternal,
     MoveHome,
     MoveJoint,
     MoveLinear,
     Pose,
     ToolAction,
     Wait,
+    tcp_of,
 )
 from pn2code.robot.executor import Motion, RobotExecutor
-from pn2code.robot.monitor import Monitor
-from pn2code.robot.motion import MotionFault
+from pn2code.robot.monitor import Monitor, Sample
+from pn2code.robot.motion import LinearTrajectory, MotionFault
 from pn2code.robot.parts import PartFault
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array, matrix_of, pose_of
@@ -316,6 +320,7 @@ class Engine:
         for _ in range(result.fired):
             self._supervisor_fired()
         if result.stopped is not None:
+            self._heed()  # Ctrl-C in a terminal reaches the supervisor as well
             raise CellStoppedError(f"the supervisor stopped: {result.stopped}")
         self._next_model_time = result.next_time
         self._answer_due = result.due
@@ -557,7 +562,7 @@ class Engine:
         self.record.sample(verdict)
         for robot, seen in zip(self._arms(), verdict.samples, strict=True):
             if robot.motion is not None and robot.motion.kind == "lin":
-                off = distance_to_line(seen.pose, robot.motion.start, robot.motion.target)
+                off = _off_line(robot.motion, seen)
                 self.record.note_error("off the line on linear moves", off)
         for observer in self.observers:
             observer.sampled(self, t, joints)
@@ -598,6 +603,8 @@ def kind_and_label(command: Command) -> tuple[str, str]:
             return "joint", "joint"
         case MoveAxes():
             return "joint", "axes"
+        case MoveExternal():
+            return "joint", "external"
         case MoveHome():
             return "home", "home"
         case MoveLinear():
@@ -612,6 +619,31 @@ def kind_and_label(command: Command) -> tuple[str, str]:
             return "wait", "wait"
 
 
+def _off_line(motion: Motion, seen: Sample) -> float:
+    """How far the TCP is off its line, m; on a turntable off the line on its plate."""
+    path = motion.trajectory
+    if isinstance(path, LinearTrajectory) and tcp_of(motion.command):
+        ends = path.line.at(np.array([0.0, 1.0]))
+        return distance_to_line(pose_of(path.kinematics.forward(seen.q)), *map(pose_of, ends))
+    if not isinstance(path, AlongTrajectory):
+        return distance_to_line(seen.pose, motion.start, motion.target)
+    now = path.on_plate(seen.q)
+    first, last = (pose_of(x) for x in path.way.inner.at(np.array([0.0, 1.0])))
+    return distance_to_line(pose_of(now), first, last)
+
+
+def _with(along: tuple[Along, ...]) -> str:
+    """External axes, in the units of the scripts."""
+    shown = (
+        f"{a.axis} {a.position * 1000:.4f} mm"
+        if a.is_track
+        else f"{a.axis} {np.degrees(a.position):.4f} deg"
+        for a in along
+    )
+    text = ", ".join(shown)
+    return f" with {text}" if text else ""
+
+
 def _words(command: Command) -> str:
     """A command in the units of the scripts."""
     match command:
@@ -621,9 +653,15 @@ def _words(command: Command) -> str:
             deg = " ".join(f"{np.degrees(v):.4f}" for v in (p.rx, p.ry, p.rz))
             frame = "world" if isinstance(command, Measure) else command.frame
             within = "" if frame in ("world", "tool") else f" in {frame}"
-            return f"{kind_and_label(command)[1]} {mm} mm, {deg} deg{within}"
+            moved = () if isinstance(command, Measure) else command.along
+            tcp = "" if isinstance(command, Measure) else command.tcp
+            by = f" by {tcp}" if tcp else ""
+            return f"{kind_and_label(command)[1]} {mm} mm, {deg} deg{within}{by}{_with(moved)}"
         case MoveAxes(axes=axes):
-            return f"axes {' '.join(f'{np.degrees(v):.4f}' for v in axes)} deg"
+            shown = " ".join(f"{np.degrees(v):.4f}" for v in axes)
+            return f"axes {shown} deg{_with(command.along)}"
+        case MoveExternal(along=along):
+            return f"external{_with(along)}"
         case MoveHome():
             return "home"
         case ToolAction(action=action):

@@ -126,6 +126,7 @@ class RealtimeEngine(Engine):
         if peer.state is PeerState.FINISHED:
             self._finished = True
         elif peer.state is not PeerState.RUNNING:
+            self._heed()  # Ctrl-C in a terminal reaches the supervisor as well
             ended = self.supervisor.close()
             words = {PeerState.STOPPED: "has stopped", PeerState.DEAD: "has died"}
             why = peer.reason or ended.reason

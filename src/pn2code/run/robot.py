@@ -149,6 +149,10 @@ def _nothing(_sensor: str) -> None:
     return None
 
 
+def _alone(_session: str, _began: float) -> None:
+    return None
+
+
 @dataclass(slots=True)
 class RobotPlayer:
     """Runs one robot from the supervisor's announcement to the end.
@@ -161,6 +165,7 @@ class RobotPlayer:
         sense: what a sensor says; None: nothing.
         interrupted: asked at every turn; True stops the robot safely.
         wait_s: how long to wait for the supervisor.
+        joined: is told the session and when it began (s, as `time.time` counts), once there is one.
     """
 
     program: CheckedProgram
@@ -172,6 +177,7 @@ class RobotPlayer:
     interrupted: Callable[[], bool] = _never
     sense: Callable[[str], SensedValue | None] = _nothing
     wait_s: float = 10.0
+    joined: Callable[[str, float], None] = _alone
     _files: RobotFiles = field(init=False)
     _looked: float = 0.0
     _absent_since: float | None = None
@@ -181,6 +187,7 @@ class RobotPlayer:
         self._files = RobotFiles(self.shared, GRACE_S)
         try:
             self._join()
+            self.joined(self.shared.session or "", self.shared.began)
             self._play()
             self._files.finished()
         except _StopError as stop:

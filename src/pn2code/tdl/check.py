@@ -364,7 +364,7 @@ class _Checker:
             case t.Move():
                 self.move(s)
             case t.Speed(motion, value):
-                if motion is t.Motion.CIRCULAR:
+                if motion in (t.Motion.CIRCULAR, t.Motion.EXTERNAL):
                     self.d.error(
                         codes.SPEED,
                         "circular moves have the speed of linear moves",
@@ -403,6 +403,9 @@ class _Checker:
             self.speed(s.motion, s.speed)
         if s.acceleration is not None:
             self.fraction(s.acceleration, "acceleration")
+        self.along(s)
+        if s.motion is t.Motion.EXTERNAL:
+            return
         is_position = s.target is None or isinstance(s.target, t.Axes)
         what = "`home`" if s.target is None else "`axes(...)`"
         if s.frame is None:
@@ -434,6 +437,23 @@ class _Checker:
                 hint="write `move $linear ... in tool`, or leave the frame out",
             )
 
+    def along(self, s: t.Move) -> None:
+        """External axes: each once, in its unit."""
+        names: set[str] = set()
+        for a in s.along:
+            kind, what = (Type.LENGTH, "track") if a.is_track else (Type.ANGLE, "turntable")
+            self.expect(a.position, kind, f"the position of {what} `{a.axis}`")
+            if a.axis in names:
+                self.d.error(codes.EXTERNAL, f"`{a.axis}` is told twice where to go", a.span)
+            names.add(a.axis)
+        if s.along and s.target is None and s.motion is not t.Motion.EXTERNAL:
+            self.d.error(
+                codes.EXTERNAL,
+                "on the way home external axes stand still",
+                s.along[0].span,
+                hint="move them with `move $external with ...`, before or after",
+            )
+
     def goal(self, s: t.Move) -> None:
         """Where a move goes: an arc by way of somewhere, nothing else so."""
         if isinstance(s.target, t.Axes):
@@ -460,7 +480,7 @@ class _Checker:
             )
 
     def speed(self, motion: t.Motion, value: t.Expression) -> None:
-        if motion is t.Motion.JOINT:
+        if motion in (t.Motion.JOINT, t.Motion.EXTERNAL):
             self.fraction(value, "joint speed")
             return
         if not self.expect(value, Type.SPEED, "linear speed"):

@@ -105,6 +105,12 @@ FRAME = register(
     "`move $joint` goes to an absolute pose; only `move $linear` and `move $circular` can be incremental "
     "(`in tool`). HOME and `axes(...)` are joint positions, which have no frame.",
 )
+EXTERNAL = register(
+    "tdl-external",
+    "a move and external axes do not go together",
+    "`move $external with $track rail = 1200 mm` moves external axes alone; other moves can move them together with "
+    "the arm: `move $linear p in seam with $turntable plate = 30 deg`. On `move $joint home` they stand still.",
+)
 UNKNOWN_MOTION = register(
     "tdl-unknown-motion",
     "there is no such motion",

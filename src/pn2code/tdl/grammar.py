@@ -33,7 +33,10 @@ block: statement*
 ?statement: move | speed | wait_time | wait_until | read | clear | write | assign | compute | tool
           | measure | sense | mark | stop | call | return | label | goto | exit | if | while | loop
 
-move: "move" MOTION target via? ("in" frame)? pace? ramp?
+move: "move" MOTION target via? ("in" frame)? along? pace? ramp?
+    | "move" MOTION along pace? ramp?
+along: "with" external ("," external)*
+external: MOTION NAME ("=" expression)?
 ?target: HOME | axes | expression
 axes: "axes" "(" expression ("," expression)* ")"
 via: "via" expression

@@ -342,34 +342,43 @@ class Interpreter:
         ramp = 1.0 if s.acceleration is None else self._number(s.acceleration)
         if not 0 < ramp <= 1:
             raise ScriptError(f"acceleration {ramp * 100:g} % is not above zero and at most 100 %")
-        if s.motion is t.Motion.JOINT:
+        along = tuple(map(self._external, s.along))
+        if s.motion in (t.Motion.JOINT, t.Motion.EXTERNAL):
             joint = 1.0 if speed is None else speed
             if not 0 < joint <= 1:
                 raise ScriptError(
                     f"joint speed {joint * 100:g} % is not above zero and at most 100 %"
                 )
+            if s.motion is t.Motion.EXTERNAL:
+                return commands.MoveExternal(along, joint, ramp)
             match s.target:
                 case None:
                     return commands.MoveHome(joint, ramp)
                 case t.Axes(angles):
                     axes = tuple(math.radians(self._number(a)) for a in angles)
-                    return commands.MoveAxes(axes, joint, ramp)
+                    return commands.MoveAxes(axes, joint, ramp, along)
                 case target:
-                    return commands.MoveJoint(self._pose(target), joint, frame, ramp)
+                    return commands.MoveJoint(self._pose(target), joint, frame, ramp, along, s.tcp)
         if speed is not None and speed <= 0:
             raise ScriptError(f"linear speed {speed:g} mm/s is not above zero")
         metres = None if speed is None else speed / 1000.0
         assert s.target is not None and not isinstance(s.target, t.Axes), "it was checked"
         if s.motion is t.Motion.LINEAR:
-            return commands.MoveLinear(self._pose(s.target), frame, metres, ramp)
+            return commands.MoveLinear(self._pose(s.target), frame, metres, ramp, along, s.tcp)
         assert s.via is not None, "it was checked"
         via = self._pose(s.via)
-        return commands.MoveCircular(via, self._pose(s.target), frame, metres, ramp)
+        end = self._pose(s.target)
+        return commands.MoveCircular(via, end, frame, metres, ramp, along, s.tcp)
+
+    def _external(self, a: t.Along) -> commands.Along:
+        number = self._number(a.position)
+        position = number / 1000.0 if a.is_track else math.radians(number)
+        return commands.Along(a.axis, position, a.is_track)
 
     def _move_speed(self, s: t.Move) -> float | None:
         if s.speed is not None:
             return self._number(s.speed)
-        joint = s.motion is t.Motion.JOINT
+        joint = s.motion in (t.Motion.JOINT, t.Motion.EXTERNAL)
         return self._speed[t.Motion.JOINT if joint else t.Motion.LINEAR]
 
     def _number(self, e: t.Expression) -> float:

@@ -77,6 +77,7 @@ _WORDS = {
     "GREATER_EQUAL": "`>=`", "PLUS": "`+`", "MINUS": "`-`", "AMPERSAND": "`&`", "TIMES": "`*`",
     "DIVIDE": "`/`",
 }  # fmt: skip
+_EXTERNAL = ("$track", "$turntable")
 _STATEMENTS = {
     "MOVE",
     "WAIT",
@@ -313,19 +314,72 @@ class _Builder(Transformer[Token, Any]):
         return known.get(str(token), t.Motion.JOINT)
 
     def move(self, meta: Meta, c: list[Any]) -> t.Move:
-        motion, target, *rest = c
+        motion, *rest = c
+        moved = self._motion(motion)
+        target: Any = None
+        if isinstance(rest[0], list):  # nothing but external axes
+            if moved is not t.Motion.EXTERNAL:
+                self._d.error(
+                    codes.EXTERNAL,
+                    f"`move {motion}` says nowhere to go",
+                    self._at(motion),
+                    hint="write `move $external with ...` where external axes alone move",
+                )
+        else:
+            target, *rest = rest
+            if moved is t.Motion.EXTERNAL:
+                self._d.error(
+                    codes.EXTERNAL,
+                    "on an external move the arm stands still, so it goes nowhere",
+                    self._at(motion),
+                    hint="write `move $joint ... with ...` or `move $linear ... with ...` for both",
+                )
+        told: list[t.Along | str] = next((x for x in rest if isinstance(x, list)), [])
+        along = tuple(x for x in told if isinstance(x, t.Along))
+        tcps = [x for x in told if isinstance(x, str)]
+        to_pose = target is not None and not isinstance(target, Token | t.Axes)
+        if len(tcps) > 1 or (tcps and not to_pose):
+            self._d.error(
+                codes.EXTERNAL,
+                "a move has one tool frame"
+                if to_pose
+                else "only a move to a pose has a tool frame",
+                self._at(motion),
+                hint="write `move $linear p with $tool NAME`",
+            )
         frame = next((x for x in rest if isinstance(x, t.Target)), None)
         said: dict[str, t.Expression] = dict(x for x in rest if isinstance(x, tuple))
         return t.Move(
-            self._motion(motion),
+            moved,
             None if isinstance(target, Token) else target,
             frame.name if frame else None,
             said.get("at"),
             said.get("via"),
             said.get("acceleration"),
+            along,
+            tcps[0] if tcps else "",
             frame.span if frame else None,
             self._span(meta),
         )
+
+    def along(self, meta: Meta, c: list[t.Along | str]) -> list[t.Along | str]:
+        return c
+
+    def external(self, meta: Meta, c: list[Any]) -> t.Along | str:
+        kind, name, *rest = c
+        if str(kind) == "$tool" and not rest:
+            return str(name)
+        position = rest[0] if rest else t.Quantity(0.0, "mm")
+        if str(kind) not in _EXTERNAL or not rest:
+            self._d.error(
+                codes.EXTERNAL,
+                f"there is no external axis of the kind `{kind}`"
+                if rest
+                else f"`{kind} {name}` says nowhere to go",
+                self._at(kind),
+                hint="write `$track NAME = 1200 mm`, `$turntable NAME = 30 deg`, or `$tool NAME`",
+            )
+        return t.Along(str(name), position, str(kind) != "$turntable", self._span(meta))
 
     def axes(self, meta: Meta, c: list[t.Expression]) -> t.Axes:
         return t.Axes(tuple(c), self._span(meta))

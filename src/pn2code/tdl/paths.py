@@ -138,9 +138,10 @@ def _uses(i: flow.Instruction) -> Iterator[t.Name]:
 def expressions_of(s: t.Simple) -> tuple[t.Expression, ...]:
     """The expressions that a statement evaluates."""
     match s:
-        case t.Move(_, target, _, speed, via, acceleration):
+        case t.Move(_, target, _, speed, via, acceleration, along, _):
             goal = target.angles if isinstance(target, t.Axes) else (target,)
-            return tuple(e for e in (*goal, via, speed, acceleration) if e is not None)
+            others = (via, *(a.position for a in along), speed, acceleration)
+            return tuple(e for e in (*goal, *others) if e is not None)
         case t.Speed(_, value):
             return () if value is None else (value,)
         case t.WaitTime(e) | t.WaitUntil(e) | t.Assign(_, e) | t.Tool(_, e) | t.Measure(e):

@@ -143,6 +143,10 @@ def _goal(target: t.Expression | t.Axes | None) -> str:
             return expression(target)
 
 
+def _external(a: t.Along) -> str:
+    return f"${'track' if a.is_track else 'turntable'} {a.axis} = {expression(a.position)}"
+
+
 def _frame(name: str) -> str:
     return name if name == "tool" or is_name(name) else quoted(name)
 
@@ -150,10 +154,13 @@ def _frame(name: str) -> str:
 def simple(s: t.Simple) -> str:
     """The line of a statement that has no body."""
     match s:
-        case t.Move(motion, target, frame, speed, via, acceleration):
-            text = f"move {motion.value} {_goal(target)}"
+        case t.Move(motion, target, frame, speed, via, acceleration, along, tcp):
+            text = f"move {motion.value}"
+            text += f" {_goal(target)}" if motion is not t.Motion.EXTERNAL else ""
             text += f" via {expression(via)}" if via else ""
             text += f" in {_frame(frame)}" if frame else ""
+            more = [*([f"$tool {tcp}"] if tcp else []), *map(_external, along)]
+            text += f" with {', '.join(more)}" if more else ""
             text += f" at {expression(speed)}" if speed else ""
             return text + (f" acceleration {expression(acceleration)}" if acceleration else "")
         case t.Speed(motion, value):

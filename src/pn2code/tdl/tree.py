@@ -167,6 +167,7 @@ class Motion(Enum):
     JOINT = "$joint"
     LINEAR = "$linear"
     CIRCULAR = "$circular"
+    EXTERNAL = "$external"
 
 
 @frozen
@@ -178,10 +179,22 @@ class Axes:
 
 
 @frozen
+class Along:
+    """`$track rail = 1200 mm`, `$turntable plate = 30 deg`: where an external axis goes on a move."""
+
+    axis: str
+    position: Expression
+    is_track: bool
+    span: Span = field(default=GENERATED, compare=False, repr=False)
+
+
+@frozen
 class Move:
     """`move $joint p`, `move $joint home`, `move $linear p in tool at 50 mm/s`, `move $circular q via p`.
 
-    `target` None is home; `frame` None: none was written, which means `world`; `acceleration` None: all of it.
+    `target` None is home, or of `$external` nothing; `along`: external axes that move as well (`with ...`);
+    `tcp`: the tool frame that comes to the pose (`with $tool gripper`), "": that of the tool;
+    `frame` None: none was written, which means `world`; `acceleration` None: all of it.
     """
 
     motion: Motion
@@ -190,6 +203,8 @@ class Move:
     speed: Expression | None = None
     via: Expression | None = None
     acceleration: Expression | None = None
+    along: tuple[Along, ...] = ()
+    tcp: str = ""
     frame_span: Span | None = field(default=None, compare=False, repr=False)
     span: Span = field(default=GENERATED, compare=False, repr=False)
 

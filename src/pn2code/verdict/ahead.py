@@ -20,7 +20,15 @@ from pn2code.input_files import begin
 from pn2code.robot import codes, scene
 from pn2code.robot.backend import BackendUnavailableError
 from pn2code.robot.choose_backend import open_backend
-from pn2code.robot.commands import Move, MoveAxes, MoveCircular, MoveJoint, MoveLinear
+from pn2code.robot.commands import (
+    Along,
+    Move,
+    MoveAxes,
+    MoveCircular,
+    MoveExternal,
+    MoveJoint,
+    MoveLinear,
+)
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.parts import PartFault
@@ -71,7 +79,7 @@ def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> No
     if not cell.robots:
         return
     for robot in cell.robots:
-        angles = [round(math.degrees(q), 4) for q in robot.home]
+        angles = [round(math.degrees(q), 4) for q in robot.home[robot.kinematics.joints]]
         if scene.in_radians(angles):
             d.warning(
                 codes.ROBOT_HOME,
@@ -117,14 +125,25 @@ def _reach(arms: Arms, ir: RobotIR, d: Diagnostics) -> None:
     for origin, command in _constant_poses(ir):
         problem = arms.why_unreachable(ir.name, command)
         if problem:
-            what = "joint position" if isinstance(command, MoveAxes) else "pose"
+            what, hint = (
+                "pose",
+                f"change the pose (mm and degrees), or `base` of robot `{ir.name}` in cell.toml (m and degrees)",
+            )
+            if isinstance(command, MoveAxes):
+                what, hint = (
+                    "joint position",
+                    "change its angles (degrees), or where they come from",
+                )
+            elif isinstance(command, MoveExternal):
+                what, hint = (
+                    "position of an external axis",
+                    "change the position (mm or degrees), or `from` and `to` of the axis in cell.toml",
+                )
             d.error(
                 codes.ROBOT_REACH,
                 f"a constant {what} cannot be reached: {problem}",
                 origin,
-                hint="change its angles (degrees), or where they come from"
-                if isinstance(command, MoveAxes)
-                else f"change the pose (mm and degrees), or `base` of robot `{ir.name}` in cell.toml (m and degrees)",
+                hint=hint,
             )
 
 
@@ -134,7 +153,7 @@ def _constant_poses(ir: RobotIR) -> Iterator[tuple[Origin, Move]]:
     constants = _Constants({c.name: c.value for c in declared if isinstance(c, t.Const)})
     bodies = (ir.body, *(body for _, body in ir.procedures))
     for origin, move in (x for body in bodies for x in _moves(body, ir.origin)):
-        if move.target is None or move.frame == "tool":
+        if (move.target is None and not move.along) or move.frame == "tool":
             continue
         try:
             yield origin, _constant(move, constants)
@@ -144,21 +163,30 @@ def _constant_poses(ir: RobotIR) -> Iterator[tuple[Origin, Move]]:
 
 def _constant(move: t.Move, constants: _Constants) -> Move:
     """Where a move leads; ScriptError where that is not known."""
+    along = tuple(_external(a, constants) for a in move.along)
+    if move.target is None:
+        return MoveExternal(along)
     if isinstance(move.target, t.Axes):
         angles = [float(cast(float, evaluate(a, constants))) for a in move.target.angles]
-        return MoveAxes(tuple(map(math.radians, angles)))
-    assert move.target is not None, "it was asked"
+        return MoveAxes(tuple(map(math.radians, angles)), along=along)
     value = evaluate(move.target, constants)
     if not isinstance(value, ScriptPose) or not all(map(math.isfinite, astuple(value))):
         raise ScriptError("this is no pose")
     pose, frame = to_si(value), move.frame or "world"
     match move.motion:
         case t.Motion.JOINT:
-            return MoveJoint(pose, frame=frame)
+            return MoveJoint(pose, frame=frame, along=along)
         case t.Motion.LINEAR:
-            return MoveLinear(pose, frame)
-        case t.Motion.CIRCULAR:
-            return MoveCircular(pose, pose, frame)  # of an arc only its end is looked at
+            return MoveLinear(pose, frame, along=along)
+        case _:
+            return MoveCircular(
+                pose, pose, frame, along=along, tcp=move.tcp
+            )  # of an arc only its end is looked at
+
+
+def _external(a: t.Along, constants: _Constants) -> Along:
+    number = float(cast(float, evaluate(a.position, constants)))
+    return Along(a.axis, number / 1000.0 if a.is_track else math.radians(number), a.is_track)
 
 
 def _moves(nodes: Iterable[Node], origin: Origin) -> Iterator[tuple[Origin, t.Move]]:

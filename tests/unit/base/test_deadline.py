@@ -14,7 +14,7 @@ import pytest
 
 from helpers.netbuilder import flat
 from pn2code.base import deadline as deadline_module
-from pn2code.base.deadline import NEVER, Deadline, TimeIsOverError
+from pn2code.base.deadline import NEVER, CommandIsOverError, Deadline, TimeIsOverError
 from pn2code.diagnostics import Diagnostics
 from pn2code.toolchain.programs import Compiler, _Builder
 from pn2code.verify.codes import TIME_OVER
@@ -125,6 +125,37 @@ def test_what_is_tidied_up_is_not_broken_off() -> None:
             Deadline.after(0.0)._ring(14, sys._getframe())
             tidied.append(True)
     assert tidied == [True]
+
+
+def _wait(seconds: float = 60.0) -> None:
+    """Until an alarm rings; the seconds only end what hangs."""
+    ends = time.monotonic() + seconds
+    while time.monotonic() < ends:
+        pass
+    pytest.fail("no alarm")
+
+
+def test_the_end_of_a_command_passes_those_who_wait_for_other_ends() -> None:
+    """Whoever goes on when its own time is over, or has no limit, does not take the end of the command for that."""
+    with (
+        pytest.raises(CommandIsOverError),
+        Deadline.after(0.05).enforced(CommandIsOverError),
+        suppress(TimeIsOverError),
+        NEVER.enforced(),
+    ):
+        _wait()
+
+
+def test_an_outer_deadline_counts_after_an_inner_one() -> None:
+    with (
+        pytest.raises(CommandIsOverError),
+        Deadline.after(0.05).enforced(CommandIsOverError),
+    ):
+        with Deadline.after(1000.0).enforced():
+            pass
+        with suppress(TimeIsOverError), Deadline.after(0.001).enforced():
+            _wait()
+        _wait()
 
 
 def test_nothing_rings_after_the_block() -> None:

@@ -19,10 +19,28 @@ net Endless
 """
 
 
-@pytest.mark.parametrize("verb", ["marking", "enabled"])
-def test_what_takes_longer_is_left(verb: str, tmp_path: Path) -> None:
+VERBS = (
+    ("marking",),
+    ("enabled",),
+    ("structure",),
+    ("check",),
+    ("check", "--geometry"),
+    ("generate", "-o", "programs"),
+    ("conform",),
+    ("reach",),
+    ("time",),
+)
+
+
+@pytest.mark.parametrize("verb", VERBS, ids=" ".join)
+def test_what_takes_longer_is_left(
+    verb: tuple[str, ...], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
     path = write(NET, tmp_path / "endless.cpn")
-    done = CliRunner().invoke(app, [verb, str(path), "--max-seconds", "0", "--format", "concise"])
+    command = [*verb, str(path), "--max-seconds", "0", "--format", "concise"]
+    done = CliRunner().invoke(app, command)
     assert done.exit_code == Exit.INCONCLUSIVE
     assert done.stdout == ""
     assert "the time was up before" in done.stderr
+    assert [x.name for x in tmp_path.iterdir()] == ["endless.cpn"]

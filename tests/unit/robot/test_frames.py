@@ -16,7 +16,8 @@ from pn2code.robot.table import Table
 
 def read(data: dict[str, Any]) -> tuple[dict[str, Pose], Diagnostics]:
     d = Diagnostics()
-    return read_frames(Table(data, ("frames",), nowhere, d, {"frames": data}, None)), d
+    table = Table(data, ("frames",), nowhere, d, {"frames": data}, None)
+    return dict(read_frames(table).standing), d
 
 
 def test_a_frame_is_in_its_parent() -> None:

@@ -166,6 +166,10 @@ ERRORS = [
         "17:1 error[tdl-frame] `axes(...)` is a joint position",
     ),
     ("move $circular p", "17:1 error[tdl-via] a circular move needs a pose on the way"),
+    (
+        "move $joint home with $track rail = 1 mm",
+        "17:23 error[tdl-external] on the way home external axes stand still",
+    ),
     ("move $linear p via p", "17:20 error[tdl-via] only a circular move goes by way of a pose"),
     (
         "move $circular p via x",

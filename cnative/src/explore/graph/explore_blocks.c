@@ -181,7 +181,9 @@ static bool look_up(ex_expander_t *x, ex_block_t *block)
     for (uint64_t i = 0U; i < x->used; i++) {
         const found_t *const found = &x->found[i];
         const uint64_t slot = found->hash;
-        if (slot != EX_NO_SLOT) {
+        if (slot == EX_NO_SLOT) {
+            block->is_cut[found->node] = 1U;
+        } else {
             const uint64_t target = (number[slot] != 0U) ? (((uint64_t)number[slot] << EX_LABEL_BITS) | EX_NUMBERED)
                                                          : (slot << EX_LABEL_BITS);
             for (uint32_t k = 0U; k < found->times; k++) {
@@ -213,13 +215,17 @@ bool ex_expand(ex_expander_t *x, ex_block_t *block, uint32_t first, uint32_t cou
         }
         x->node = (uint16_t)i;
         block->arcs[i] = 0U;
+        block->is_cut[i] = 0U;
         const bool is_there = ex_store_fetch(store, slot[first + i], &key);
         const ex_found_t found =
             !is_there ? EX_FAILED : (is_word ? make_words(x, &key) : ex_arcs(x->worker, &key, gather, x));
         block->is_dead[i] = (found == EX_DEAD) ? 1U : 0U;
         block->is_late[i] = x->worker->has_waited ? 1U : 0U;
-        if ((found != EX_SOME) && (found != EX_DEAD) && !x->is_partial) {
-            return false;
+        if ((found != EX_SOME) && (found != EX_DEAD)) {
+            if (!x->is_partial) {
+                return false;
+            }
+            block->is_cut[i] = 1U;
         }
         if (((x->used >= (uint64_t)GATHERED) || ((i + 1U) == count)) && !look_up(x, block)) {
             return false;

@@ -23,6 +23,7 @@ typedef struct ex_block {
     uint32_t arcs[EX_BLOCK_NODES]; /* of each node */
     uint8_t is_dead[EX_BLOCK_NODES];
     uint8_t is_late[EX_BLOCK_NODES];
+    uint8_t is_cut[EX_BLOCK_NODES]; /* it has arcs that are not there */
 } ex_block_t;
 
 /* What a thread makes blocks with. */

@@ -85,12 +85,16 @@ static void number_block(ex_graph_t *graph, const ex_block_t *block, uint32_t fi
         if ((graph->late != NULL) && (block->is_late[i] != 0U)) {
             EX_SET_BIT(graph->late, node);
         }
+        if ((graph->cut != NULL) && (block->is_cut[i] != 0U)) {
+            EX_SET_BIT(graph->cut, node);
+        }
         for (uint32_t k = 0U; k < block->arcs[i]; k++) {
             const uint64_t target = (*found & ~EX_NUMBERED) >> EX_LABEL_BITS;
             uint32_t number = (uint32_t)target;
             if ((*found & EX_NUMBERED) == 0U) {
                 if ((graph->number[target] == 0U) && (graph->nodes == graph->node_room)) {
                     found++;
+                    EX_SET_BIT(graph->cut, node);
                     continue; /* of a part: there are enough */
                 }
                 if (graph->number[target] == 0U) {
@@ -198,9 +202,11 @@ bool ex_graph(ex_run_t *run)
     graph->parent = ex_alloc(&run->memory, nodes * sizeof *graph->parent);
     graph->row = ex_alloc(&run->memory, (nodes + 1U) * sizeof *graph->row);
     graph->dead = ex_alloc(&run->memory, ((nodes / 64U) + 1U) * sizeof *graph->dead);
+    graph->cut = is_whole ? NULL : ex_alloc(&run->memory, ((nodes / 64U) + 1U) * sizeof *graph->cut);
     graph->late = pn_net.timed ? ex_alloc(&run->memory, ((nodes / 64U) + 1U) * sizeof *graph->late) : NULL;
     bool is_fine = (graph->slot != NULL) && (graph->number != NULL) && (graph->parent != NULL) && (graph->row != NULL)
-                   && (graph->dead != NULL) && ((graph->late != NULL) || !pn_net.timed)
+                   && (graph->dead != NULL) && (is_whole || (graph->cut != NULL))
+                   && ((graph->late != NULL) || !pn_net.timed)
                    && reserve_arcs(run, graph, is_whole ? run->arcs : nodes);
     ex_phase(run, "graph");
     run->seeks_choice = is_whole && (run->queries != NULL) && run->queries->asks_orders && (run->owner_of != NULL)

@@ -24,10 +24,12 @@ typedef struct ex_control {
     ex_queries_t *queries;
     const ex_graph_t *graph;
     uint32_t *length; /* by node: the longest run of steps from there; EX_NO_NODE: one without end */
-    uint32_t *rest;   /* by node: where all runs of steps end; EX_NO_NODE: not in one node */
+    uint32_t *rest;   /* by node: where all runs of steps end; EX_NO_NODE: not in one node; UNKNOWN: arcs are missing */
     uint64_t *left;   /* a bit for each node whose runs are known */
     uint8_t set;      /* steps are those of this set of `instant` ones (a bit); 0: the supervisor's */
 } control_t;
+
+#define UNKNOWN (EX_NO_NODE - 1U)
 
 static bool is_supervisor(const control_t *c, uint64_t arc)
 {
@@ -79,11 +81,12 @@ static void leave(control_t *c, uint32_t node)
     uint32_t rest = node;
     bool is_endless = false;
     bool is_first = true;
+    bool is_known = (g->cut == NULL) || (EX_BIT(g->cut, node) == 0U);
     for (uint64_t arc = first_step(c, node); arc != EX_NO_SLOT; arc = next_step(c, node, arc + 1U)) {
         const uint32_t target = g->target[arc];
-        const bool is_known = EX_BIT(c->left, target) != 0U;
-        is_endless = is_endless || !is_known || (c->length[target] == EX_NO_NODE);
+        is_endless = is_endless || (EX_BIT(c->left, target) == 0U) || (c->length[target] == EX_NO_NODE);
         if (!is_endless) {
+            is_known = is_known && (c->rest[target] != UNKNOWN);
             const uint32_t own = c->length[target] + weight(c, arc);
             length = (length > own) ? length : own;
             rest = (is_first || (rest == c->rest[target])) ? c->rest[target] : EX_NO_NODE;
@@ -91,7 +94,7 @@ static void leave(control_t *c, uint32_t node)
         is_first = false;
     }
     c->length[node] = is_endless ? EX_NO_NODE : length;
-    c->rest[node] = is_endless ? EX_NO_NODE : rest;
+    c->rest[node] = is_endless ? EX_NO_NODE : (is_known ? rest : UNKNOWN);
     EX_SET_BIT(c->left, node);
 }
 

@@ -161,8 +161,8 @@ static bool is_known_in_part(const ex_queries_t *queries, uint32_t number)
     }
 }
 
-/* Whether a run in a part of the graph may decide a question: one that violates a formula or a response. Whether a run
- * is fair is not known there. */
+/* Whether a run in a part of the graph may decide a question: one that violates a formula or a response, or two runs
+ * that show that an order matters. Whether a run is fair is not known there. */
 static bool is_of_part(const ex_queries_t *queries, const ex_question_t *question)
 {
     const ex_automaton_t *const automaton = question->automaton;
@@ -171,6 +171,9 @@ static bool is_of_part(const ex_queries_t *queries, const ex_question_t *questio
     if ((question->kind == EX_ASK_FIRINGS) || (question->kind == EX_ASK_TIME)) {
         return (first->is_transition || is_known_in_part(queries, first->number))
                && (second->is_transition || is_known_in_part(queries, second->number));
+    }
+    if (question->kind == EX_ASK_CONFLUENT) {
+        return !question->is_of_orders;
     }
     bool is_fine = (question->kind == EX_ASK_LASSO) && (automaton->fair_count == 0U);
     for (uint32_t i = 0U; is_fine && (i < automaton->edges); i++) {

@@ -3,6 +3,7 @@
  * writes it).
  */
 #include "explore_reduce.h"
+#include "explore_counts.h"
 #include "explore_turns.h"
 
 #include <inttypes.h>
@@ -325,8 +326,9 @@ static bool make_dependency(ex_run_t *run, ex_reduction_t *reduction)
 
 bool ex_reduction_make(ex_run_t *run)
 {
-    if (run->options.turns != NULL) {
-        return ex_turns_make(run);
+    if ((run->options.turns != NULL) || (run->options.counts != NULL)) {
+        const bool is_fine = (run->options.turns == NULL) || ex_turns_make(run);
+        return is_fine && ((run->options.counts == NULL) || ex_counts_make(run));
     }
     if (!run->options.is_stubborn && !run->options.is_symmetric) {
         return true;

@@ -10,6 +10,7 @@
 #define _POSIX_C_SOURCE 200809L
 
 #include "../state/explore_local.h"
+#include "explore_counts.h"
 #include "explore_successors.h"
 #include "../explore_bounds.h"
 #include "../query/explore_early.h"
@@ -442,6 +443,9 @@ static bool begin(ex_run_t *run, ex_level_t *search)
         return false;
     }
     ex_reduce_time(first);
+    if (run->counts != NULL) {
+        ex_counts_begin(run, first->marking);
+    }
     if (!ex_encode(first, first->marking, &run->initial)) {
         return false;
     }

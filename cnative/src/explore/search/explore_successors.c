@@ -4,6 +4,7 @@
 #include "../state/explore_local.h"
 #include "explore_successors.h"
 #include "../state/explore_roots.h"
+#include "explore_counts.h"
 #include "explore_reduce.h"
 #include "explore_turns.h"
 
@@ -112,6 +113,38 @@ static bool wants_more(hunt_t *hunt)
 {
     hunt->is_second = !hunt->is_stopped && hunt->is_single && hunt->seeks_choice;
     return !hunt->is_stopped && (!hunt->is_single || hunt->is_second);
+}
+
+/* One of those for which a successor stands that is counted up to a limit. */
+typedef struct counted {
+    hunt_t *hunt;
+    uint32_t transition;
+    const void *binding;
+} counted_t;
+
+static bool on_counted(void *user, const void *next)
+{
+    const counted_t *const counted = user;
+    hunt_t *const hunt = counted->hunt;
+    ex_key_t key;
+    if (!ex_encode_next(hunt->worker, counted->transition, next, &key)) {
+        return false;
+    }
+    hunt->is_stopped = !pass_on(hunt, counted->transition, counted->binding, &key);
+    return !hunt->is_stopped;
+}
+
+/* The same where tokens are counted up to a limit. */
+static bool on_counting(void *user, uint32_t transition, const void *binding, const void *next)
+{
+    hunt_t *const hunt = user;
+    counted_t counted = { .hunt = hunt, .transition = transition, .binding = binding };
+    if (is_seen_only(hunt)) {
+        return false;
+    }
+    (void)next; /* that is *scratch->next */
+    return ex_counts_each(hunt->worker, transition, hunt->worker->scratch->next, on_counted, &counted)
+           && wants_more(hunt);
 }
 
 static bool on_successor(void *user, uint32_t transition, const void *binding, const void *next)
@@ -523,6 +556,9 @@ static ex_found_t hunt_state(hunt_t *hunt)
 /* Where the packed part of the marking is the key there is no time either. */
 static pn_successor_sink_t successor_sink(const ex_run_t *run)
 {
+    if (run->counts != NULL) {
+        return on_counting;
+    }
     if (pn_net.root_count > 0U) {
         return on_assigning;
     }

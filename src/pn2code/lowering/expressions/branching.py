@@ -36,8 +36,12 @@ class Branching(Block):
     """Lowers what chooses between expressions, and what is evaluated last."""
 
     def ir(self, e: core.Exp, env: Env) -> Ir:
-        """The expression as C code."""
-        return self.code(self.exp(e, env), e.span)
+        """The expression as C code. Of a unit only what happens on the way to it is left: in C it has no value."""
+        code = self.code(self.exp(e, env), e.span)
+        if code.type != ir.UNIT or isinstance(code, ir.Const | ir.Bound | ir.Use):
+            return code
+        self.discard(code)
+        return ir.Const(None, ir.UNIT)
 
     def exp(self, e: core.Exp, env: Env) -> Val:
         """The value of an expression."""

@@ -53,6 +53,16 @@ fun TextIO_input1 stream =
 fun TextIO_lookahead (name : string, text, at, closed) =
     if rest (name, text, at, closed) = 0 then NONE else SOME (String.sub (text, !at))
 
+(* What was scanned is read; nothing, where there was no value. *)
+fun TextIO_scanStream scan (name : string, text, at, closed) =
+    let val start = !at
+        val stop = if !closed then start else String.size text
+    in
+        case scan (fn i => if i < stop then SOME (String.sub (text, i), i + 1) else NONE) start of
+            SOME (x, i) => (at := i; SOME x)
+          | NONE => NONE
+    end
+
 fun TextIO_endOfStream stream = rest stream = 0
 
 fun TextIO_canInput (stream, n) =

@@ -85,3 +85,12 @@ def mentioned(text: str) -> tuple[str, ...]:
 def declaration(name: str) -> str:
     """The declaration of a name."""
     return MADE[name] if name in MADE else (FOLDER / f"{name}.sml").read_text(encoding="ascii")
+
+
+@cache
+def declared(name: str) -> tuple[str, ...]:
+    """What its declaration declares: itself, and what stands beside it."""
+    found = re.findall(
+        r"^(?:fun|val|exception|structure|functor|signature) (\w+)", declaration(name), re.MULTILINE
+    )
+    return tuple(dict.fromkeys(found))

@@ -45,8 +45,6 @@ OS.FileSys : compare fileId hash readLink setTime tmpName
 Timer : checkCPUTimes checkGCTime
 == pn2code does not have this part of the library
 IEEEReal : fromString getRoundingMode scan setRoundingMode toString
-CharVector : all app appi collate concat exists find findi foldl foldli foldr foldri fromList length map mapi
-CharVector : sub tabulate update
 CharArray : all app appi array collate copy copyVec exists find findi foldl foldli foldr foldri fromList
 CharArray : length modify modifyi sub tabulate update vector
 ArraySlice : all app appi base collate copy copyVec exists find findi foldl foldli foldr foldri full getItem

@@ -222,6 +222,7 @@ TextIO.inputLine : TextIO.instream -> string option ; a line with its line end
 TextIO.inputAll : TextIO.instream -> string ; all that is left
 TextIO.canInput : TextIO.instream * int -> int option ; how many characters are there
 TextIO.lookahead : TextIO.instream -> char option ; the next character, which stays
+TextIO.scanStream : ((int -> (char * int) option) -> int -> ('a * int) option) -> TextIO.instream -> 'a option ; scans
 TextIO.endOfStream : TextIO.instream -> bool ; whether all is read
 TextIO.output : TextIO.outstream * string -> unit ; writes; raises Io when closed
 TextIO.output1 : TextIO.outstream * char -> unit ; writes a character

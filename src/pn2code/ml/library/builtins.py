@@ -258,16 +258,16 @@ HIDDEN: frozenset[str] = frozenset(
 """Full names that no net can write; it has the short ones."""
 
 _OTHER_STRUCTURES = """
-Array2 BinIO CharVector CharArray ArraySlice VectorSlice CharVectorSlice CharArraySlice IEEEReal IO Int32 Int64
+Array2 BinIO CharArray ArraySlice VectorSlice CharVectorSlice CharArraySlice IEEEReal IO Int32 Int64
 LargeWord SMLofNJ StringCvt Unix Posix Socket Word32 Word64 Word8Array Word8VectorSlice CPN'Replications
 Replications Comms CPN'Sim CPN'NetCapture CPN'Monitors CPN'Env CPN'Settings CPN'StreamIO Cpn
 """
 
 UTILITIES = frozenset(
     {
-        "ArrayQSort", "AtomTable", "Base64", "BitArray", "CharMap", "DynamicArray", "Format", "GetOpt",
+        "ArrayQSort", "AtomTable", "Base64", "BitArray", "CharMap", "DynamicArray", "GetOpt",
         "IOUtil", "IntHashTable", "ParserComb", "PathUtil", "PrimeSizes", "PropList", "Rand",
-        "RealOrderStats", "Scan", "SplayTree", "TimeLimit", "URef", "UnivariateStats", "WordHashTable",
+        "RealOrderStats", "SplayTree", "TimeLimit", "URef", "UnivariateStats", "WordHashTable",
     }
 )  # fmt: skip
 """Structures of the utility library of SML/NJ that are not there; the others are in `library`."""
@@ -305,7 +305,7 @@ ABSENT_VALUES: frozenset[str] = frozenset(
         "NonblockingNotSupported",
     )}
     | {f"StringCvt.{name}" for name in ("BIN", "OCT", "DEC", "HEX", "SCI", "FIX", "GEN", "EXACT")}
-    | {f"{name}.maxLen" for name in ("CharVector", "CharArray", "Word8Vector", "Word8Array")}
+    | {f"{name}.maxLen" for name in ("CharArray", "Word8Vector", "Word8Array")}
     | {f"{name}.wordSize" for name in ("Word8", "Word32", "LargeWord")}
     | {f"Int32.{name}" for name in ("minInt", "maxInt", "precision")}
     | {"Array2.RowMajor", "Array2.ColMajor", "INetSock.inetAF", "Unix.W_EXITED", "Posix.Process.W_EXITED"}

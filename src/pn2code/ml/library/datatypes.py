@@ -96,3 +96,5 @@ NO_EQUALITY: frozenset[str] = frozenset(
 
 LITERAL_TYPES: tuple[TCon, ...] = (INT, INTINF)
 """What an integer literal may be; int when nothing decides."""
+WORD_TYPES: tuple[TCon, ...] = (TCon("word"), TCon("Word8.word"))
+"""What a literal like `0wx1F` may be; word when nothing decides."""

@@ -12,8 +12,8 @@ from pn2code.diagnostics.suggestions import nearest
 from pn2code.ml import codes
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset
-from pn2code.ml.core.types import INT, Type
-from pn2code.ml.library.datatypes import DATATYPES, LITERAL_TYPES
+from pn2code.ml.core.types import INT, TCon, Type
+from pn2code.ml.library.datatypes import DATATYPES, LITERAL_TYPES, WORD_TYPES
 from pn2code.ml.library.exceptions import FIRST_EXCEPTION_TAG
 from pn2code.ml.library.schemes import scheme
 from pn2code.ml.parsing.advice import BY_CODE, CLOSE
@@ -281,7 +281,14 @@ class Context:
         return BY_CODE[codes.UNKNOWN_COLOUR_SET]
 
     def check_literal(self, value: object, t: Type, span: Span) -> None:
-        """Refuses an `int` literal beyond the width of `int`, as CPN Tools does."""
+        """Refuses a literal beyond the width of its type, as CPN Tools does."""
+        words = {"word": 1 << self.int_bits, "Word8.word": 256}
+        if isinstance(t, TCon) and isinstance(value, int) and value >= words.get(t.name, value + 1):
+            self.error(
+                codes.LITERAL_TOO_LARGE,
+                f"`{span.text}` is too large for `{t.name}`, which ends at {words[t.name] - 1}",
+                span,
+            )
         limit = 1 << (self.int_bits - 1)
         if t == INT and isinstance(value, int) and not -limit <= value < limit:
             self.error(
@@ -337,8 +344,10 @@ class Context:
                 )
             case "among":
                 names = problem.right.among if isinstance(problem.right, Meta) else ()
-                names = tuple(n for n in names if n != "word")  # hardly what anyone meant
-                literal = names == tuple(t.name for t in LITERAL_TYPES)
+                words = names == tuple(t.name for t in WORD_TYPES)
+                if not words:
+                    names = tuple(n for n in names if n != "word")  # hardly what anyone meant
+                literal = words or names == tuple(t.name for t in LITERAL_TYPES)
                 if literal:
                     names = names[:1]
                 self.error(

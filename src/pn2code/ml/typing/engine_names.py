@@ -50,7 +50,6 @@ BinIO.StreamIO : canInput closeIn closeOut endOfStream filePosIn filePosOut flus
 BinIO.StreamIO : getReader getWriter input input1 inputAll inputN mkInstream mkOutstream output output1
 BinIO.StreamIO : setBufferMode setPosOut
 Byte : packString unpackString unpackStringVec
-CharVector : append prepend toList
 ConnManagementLayer : DupConnNameExn ElementMissingExn canreceive
 IO : TerminatedStream
 LargeReal : class compareReal fromDecimal toDecimal
@@ -122,7 +121,7 @@ String : scan
 TMS : delay input_tms mkstr_tms output_tms sort_tms tcf tlegal tleq tlt tsub
 TMS.ModelTime : add cmp col fromInt fromIntInf fromString leq lt maketime mkstr model_time mult name null
 TMS.ModelTime : null_str ready start_time sub time toReal toString
-TextIO : getInstream getOutstream getPosOut mkInstream mkOutstream scanStream setInstream setOutstream
+TextIO : getInstream getOutstream getPosOut mkInstream mkOutstream setInstream setOutstream
 TextIO : setPosOut
 TextIO.StreamIO : canInput closeIn closeOut endOfStream filePosIn filePosOut flushOut getBufferMode getPosOut
 TextIO.StreamIO : getReader getWriter input input1 inputAll inputLine inputN mkInstream mkOutstream output

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import field
 from functools import cache
 
@@ -269,6 +269,18 @@ class Scope:
         self.structures.update(other.structures)
         self.signatures.update(other.signatures)
         self.functors.update(other.functors)
+
+    def take(self, names: Iterable[str], other: Scope) -> None:
+        """Takes over what names mean in another block, whatever that is."""
+        for name in names:
+            if name in other.values:
+                self.values[name] = other.values[name]
+            if name in other.structures:
+                self.structures[name] = other.structures[name]
+            if name in other.signatures:
+                self.signatures[name] = other.signatures[name]
+            if name in other.functors:
+                self.functors[name] = other.functors[name]
 
     def kept(self) -> Scope:
         """A copy that later declarations do not change."""

@@ -14,7 +14,7 @@ from pn2code.diagnostics import Span
 from pn2code.ml import codes
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import BOOL, EXN, UNIT, TFun, Type
-from pn2code.ml.library.datatypes import FALSE, LITERAL_TYPES, TRUE
+from pn2code.ml.library.datatypes import FALSE, LITERAL_TYPES, TRUE, WORD_TYPES
 from pn2code.ml.parsing import syntax as s
 from pn2code.ml.typing import matches, type_advice
 from pn2code.ml.typing.annotations import Annotations
@@ -28,7 +28,6 @@ from pn2code.ml.typing.inference import (
     I_REAL,
     I_STRING,
     I_UNIT,
-    I_WORD,
     ICon,
     IError,
     IFun,
@@ -167,7 +166,7 @@ class Expressions:
             case s.LitKind.CHAR:
                 t = I_CHAR
             case s.LitKind.WORD:
-                t = I_WORD
+                t = self._ctx.unifier.fresh(among=[c.name for c in WORD_TYPES])
 
         return Draft(t, partial(self._literal_of, e, t))
 

@@ -100,7 +100,6 @@ I_BOOL = ICon("bool")
 I_STRING = ICon("string")
 I_CHAR = ICon("char")
 I_EXN = ICon("exn")
-I_WORD = ICon("word")
 
 
 def i_list(t: Ty) -> ICon:

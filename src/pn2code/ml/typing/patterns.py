@@ -11,7 +11,7 @@ from pn2code.ml import codes
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import UNIT, TRecord
 from pn2code.ml.library.builtins import BUILTINS
-from pn2code.ml.library.datatypes import CONS, LITERAL_TYPES, NIL
+from pn2code.ml.library.datatypes import CONS, LITERAL_TYPES, NIL, WORD_TYPES
 from pn2code.ml.parsing import syntax as s
 from pn2code.ml.typing.annotations import Annotations
 from pn2code.ml.typing.context import Context, PatternBuild, suggestion
@@ -21,7 +21,6 @@ from pn2code.ml.typing.inference import (
     I_REAL,
     I_STRING,
     I_UNIT,
-    I_WORD,
     ICon,
     IFun,
     IRec,
@@ -138,7 +137,6 @@ class Patterns:
             s.LitKind.REAL: I_REAL,
             s.LitKind.STRING: I_STRING,
             s.LitKind.CHAR: I_CHAR,
-            s.LitKind.WORD: I_WORD,
         }
         if p.kind is s.LitKind.REAL and not self._on_arc:
             self._ctx.error(
@@ -149,7 +147,8 @@ class Patterns:
             )
         own = kinds.get(p.kind)
         if own is None:
-            own = self._ctx.unifier.fresh(among=[c.name for c in LITERAL_TYPES])
+            types = WORD_TYPES if p.kind is s.LitKind.WORD else LITERAL_TYPES
+            own = self._ctx.unifier.fresh(among=[c.name for c in types])
         self._unify(own, t, p.span)
 
         def build() -> core.Pat:

@@ -10,10 +10,12 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from pn2code.semantics.evaluation.files import CHUNK, FileProblem, InStream, NameStream, OutStream
+from pn2code.semantics.library.builtins_scan import scan_text
 from pn2code.semantics.values.data import NONE, UNIT, Data, MlException, Value, exception, some
 
 if TYPE_CHECKING:
     from pn2code.semantics.evaluation.evaluate import Evaluator
+    from pn2code.semantics.evaluation.tasks import Task
 
 Function = Callable[..., Any]
 Parts = tuple[tuple[str, ...], bool, str]
@@ -92,6 +94,16 @@ def _can_input(e: Evaluator, p: tuple[InStream, int]) -> Data:
     return some(min(p[1], len(p[0].rest)))
 
 
+def _scan_stream(e: Evaluator, scan: Value, stream: InStream) -> Task:
+    """`TextIO.scanStream`: what was scanned is read; nothing, where there was no value."""
+    rest = stream.rest
+    found = yield scan_text(e, scan, rest)
+    if found is None:
+        return NONE
+    stream.take(found[1])
+    return some(found[0])
+
+
 def _some_text(text: str | None) -> Data:
     return some(text) if text else NONE
 
@@ -113,6 +125,7 @@ TEXT_IO: dict[str, tuple[int, Function]] = {
     "inputAll": (1, lambda e, stream: stream.take(len(stream.rest))),
     "canInput": (1, _can_input),
     "lookahead": (1, lambda e, stream: _some_text(stream.rest[:1])),
+    "scanStream": (2, _scan_stream),
     "endOfStream": (1, lambda e, stream: not stream.rest),
     "output": (1, lambda e, p: _write("output", p[0], p[1])),
     "output1": (1, lambda e, p: _write("output1", p[0], p[1])),

@@ -90,8 +90,8 @@ def _take(e: Evaluator, predicate: Value, reader: Value, stream: Value) -> Task:
     return (yield _split(e, predicate, reader, stream))[0]
 
 
-def _scan_string(e: Evaluator, scan: Value, text: str) -> Task:
-    """`StringCvt.scanString`: the stream is a position in the text."""
+def scan_text(e: Evaluator, scan: Value, text: str) -> Task:
+    """The value at the start of a text and where it ends, or None; the stream is a position in the text."""
     from pn2code.semantics.values.data import Native
 
     def character(e: Evaluator, at: int) -> Data:
@@ -99,7 +99,12 @@ def _scan_string(e: Evaluator, scan: Value, text: str) -> Task:
 
     scanning = yield e.call(scan, Native("getc", 1, character))
     found = yield e.call(scanning, 0)
-    return NONE if found.argument is None else some(found.argument[0])
+    return found.argument
+
+
+def _scan_string(e: Evaluator, scan: Value, text: str) -> Task:
+    found = yield scan_text(e, scan, text)
+    return NONE if found is None else some(found[0])
 
 
 def missing(e: Evaluator, c: str, width: int, text: str) -> str:

@@ -14,10 +14,9 @@ and explore_running.c. That no owner touches what is not its own is seen in the 
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from functools import reduce
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -28,7 +27,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import ArcKind
 from pn2code.properties import meaning as m
 from pn2code.properties.questions import Questions
-from pn2code.verify.controller import by_turns
+from pn2code.verify.controller import by_counts, by_turns
 from pn2code.verify.controller.by_turns import Looked, OutOfReachError, validity
 from pn2code.verify.controller.control_answers import (
     ORDERS,
@@ -62,9 +61,10 @@ from pn2code.verify.controller.control_types import (
     Plan,
 )
 from pn2code.verify.controller.equals import NoPatternError
+from pn2code.verify.controller.kept_silence import kept_silence
 from pn2code.verify.controller.poses import Bad, Poses
 from pn2code.verify.controller.reach_check import reach, suspects, told_poses
-from pn2code.verify.controller.running import NotModelledError, Running, Silence
+from pn2code.verify.controller.running import NotModelledError, Running
 from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits, Reduction
@@ -102,7 +102,7 @@ def of_cell(running: Running, plan: Plan, *, in_turns: bool = False) -> str:
         f"? ends {end}",
         f"? bound {running.stopped} 0 0",
         *(f"? restless {i} {steps.most}" for i, steps in enumerate(running.moments.sets())),
-        *(f"? invariant {_kept_silence(asked, s, resting)}" for s in running.silences),
+        *(f"? invariant {kept_silence(asked, s, resting)}" for s in running.silences),
         *(f"? bound {c.place} 0 1" for c in running.partition.channels),
         *(f"? bound {place} 0 {most}" for place, most in plan.capacities.items()),
         *([] if running.unsure is None else [f"? bound {running.unsure} 0 0"]),
@@ -123,34 +123,6 @@ def _with_programs(asked: m.Asked, running: Running) -> m.Asked:
     return replace(
         asked, fair=(*asked.fair, *(m.Fairness(False, i) for i in running.steps_that_come()))
     )
-
-
-def _kept_silence(asked: Questions, silence: Silence, idle: int | None) -> int:
-    """The item of the states in which it does *not* wait for others while it owes an answer.
-
-    `idle`: the place of a supervisor that rests; None: it counts whether or not that does.
-    """
-
-    def marked(place: int) -> int:
-        return asked.line(f"within {place} 1 -")
-
-    def no(item: int) -> int:
-        return asked.line(f"not {item}")
-
-    def joined(operator: str, items: Sequence[int]) -> int:
-        return reduce(lambda a, b: asked.line(f"{operator} {a} {b}"), items)
-
-    waits = [
-        joined("and", [marked(place), *(no(joined("and", _flat(marked, x))) for x in needed)])
-        for place, needed in silence.states
-    ]
-    unseen = [joined("and", [marked(p), no(marked(seen))]) for p, seen in silence.answers]
-    others = [marked(p) for p in (silence.owes, idle) if p is not None] + [*map(no, unseen)]
-    return no(joined("and", [*others, joined("or", waits)]))
-
-
-def _flat(marked: Callable[[int], int], messages: Sequence[Sequence[int]]) -> list[int]:
-    return [marked(place) for places in messages for place in places]
 
 
 def of_orders(running: Running, firings: int = MAX_FIRINGS, *, in_turns: bool = False) -> str:
@@ -219,10 +191,31 @@ def examine(
         # Where the whole is too large, there is time left to see how it comes to what is wrong.
         part = replace(limits, deadline=limits.deadline.share(CELL_PART))
         in_turns: Looked | None = None
+        in_counts: by_counts.Seen | None = None
         may_turn = _may_turn(partition, plan, part)
         first_part = replace(part, max_states=part.turns_from) if may_turn else part
-        found = explore(running.net, plan.storage, first_part, d, options)
-        if may_turn and found is not None and found.why == "states":
+        may_count = _may_count(partition, plan, part)
+        counts_part = replace(part, max_states=part.counts_from) if may_count else first_part
+        found = explore(running.net, plan.storage, counts_part, d, options)
+        if may_count and found is not None and found.why == "states":
+            own = replace(options, questions=of_orders(running, plan.firings), stem="orders")
+            orders_part = explore(running.net, plan.storage, counts_part, d, own)
+            if orders_part is None:
+                return None
+            in_counts = by_counts.look(
+                partition,
+                plan,
+                part,
+                options,
+                part=found,
+                order=orders_part.answers,
+                in_order=at_once,
+            )
+            if in_counts is not None and _has_suspects(poses, in_counts.looked.found, limits):
+                in_counts = None
+            if in_counts is None:
+                found = explore(running.net, plan.storage, first_part, d, options)
+        if in_counts is None and may_turn and found is not None and found.why == "states":
             try:
                 in_turns = _looked_in_turns(partition, plan, part, options, at_once, poses)
                 if in_turns is None:
@@ -231,8 +224,12 @@ def examine(
                 plan = replace(plan, cut=str(problem))
         if found is None:
             return None
+        of_orders_run = running
         if in_turns is not None:
             found, running = in_turns.found, in_turns.running
+            of_orders_run = running
+        if in_counts is not None:
+            found, running = in_counts.looked.found, in_counts.looked.running
         if plan.cut and found.why == "states":
             found = replace(
                 found, why=plan.cut, answers=tuple(_cut(a, plan.cut) for a in found.answers)
@@ -262,7 +259,10 @@ def examine(
         # Of a whole graph in which the supervisor never chooses the first question has an answer, and only of that.
         is_choiceless = found.complete and bool(asked) and asked[0]["answer"] != "unknown"
         ruled_out = False
-        if in_turns is not None:
+        if in_counts is not None:
+            said, asked = in_counts.said, in_counts.asked
+            is_choiceless = False
+        elif in_turns is not None:
             orders = in_turns.orders or found
             asked = orders.answers[:ORDERS] if orders is not found else asked
         elif found.complete or found.why == "decided":
@@ -280,14 +280,14 @@ def examine(
         if orders is None:
             return None
         keep = Keeper(plan, running)
-        if not is_choiceless and in_turns is None:
+        if not is_choiceless and in_turns is None and in_counts is None:
             asked = orders.answers if orders is not found else ()
         doubt = ""
         if running.unsure is not None and said:
             said, last = said[:-1], said[-1]
             doubt = DOUBT if last["answer"] == "no" else ""
         checks = (
-            *order_answers(partition, orders, asked, plan, keep),
+            *order_answers(partition, orders, asked, plan, Keeper(plan, of_orders_run)),
             *cell_answers(partition, found, said, plan, keep, closed),
             *formats(partition, found, plan, d),
             memory(found),
@@ -295,7 +295,7 @@ def examine(
             ownership(partition),
         )
         checks = tuple(hesitating(c, said, keep) for c in checks)
-        if in_turns is not None:
+        if in_turns is not None or in_counts is not None:
             checks = tuple(map(seen_in_turns, checks))
         refused = refusal(partition, found, keep)
         if refused is not None:
@@ -312,7 +312,7 @@ def examine(
             running,
             answers=found.answers[:count],
             closed=closed,
-            reduced=in_turns is not None,
+            reduced=in_turns is not None or in_counts is not None,
         )
         return settled(replace(control, late=late, doubt=doubt, premises=premises))
 
@@ -323,6 +323,19 @@ def _may_turn(partition: Partition, plan: Plan, limits: Limits) -> bool:
     if least is None or (most is not None and most <= least):
         return False
     return not (plan.properties.properties or plan.cut or partition.net.timed)
+
+
+def _may_count(partition: Partition, plan: Plan, limits: Limits) -> bool:
+    """Whether tokens are counted up to a limit only before more is looked at."""
+    first, most = limits.counts_from, limits.max_states
+    if first is None or limits.turns_from is None or first > limits.turns_from:
+        return False
+    is_enough = most is None or most >= first
+    return is_enough and not plan.properties.properties and not partition.net.timed
+
+
+def _has_suspects(poses: Poses | None, found: Exploration, limits: Limits) -> bool:
+    return bool(suspects(told_poses(poses, found, limits.deadline), found))
 
 
 def _looked_in_turns(
@@ -353,7 +366,7 @@ def _looked_in_turns(
         orders=of_orders(running, plan.firings, in_turns=True),
         is_choiceless=is_choiceless,
     )
-    if looked is None or suspects(told_poses(poses, looked.found, limits.deadline), looked.found):
+    if looked is None or _has_suspects(poses, looked.found, limits):
         return None
     return looked
 

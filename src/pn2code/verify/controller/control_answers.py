@@ -26,7 +26,7 @@ from pn2code.verify.controller.control_types import (
     Evidence,
     Plan,
 )
-from pn2code.verify.controller.premises import IN_TURNS
+from pn2code.verify.controller.premises import COUNTED, IN_TURNS
 from pn2code.verify.controller.running import OWING, Running
 from pn2code.verify.exploring.result import Exploration
 
@@ -152,7 +152,7 @@ def settled(control: Control) -> Control:
             check = replace(check, answer="unknown", why=why, says=f"not known: {control.stops}")
         assumes = control.premises.of_check(check.name, check.answer)
         if control.reduced and check.answer == "yes" and check.name != OWNERSHIP:
-            assumes = (*assumes, IN_TURNS)
+            assumes = (*assumes, IN_TURNS, *([COUNTED] if control.is_counted else []))
         checks.append(replace(check, assumes=assumes))
     return replace(control, checks=tuple(checks))
 

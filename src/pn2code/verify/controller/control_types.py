@@ -219,7 +219,7 @@ class Control:
         late: why somebody may owe an answer for too long; "": that is not known of anybody.
         doubt: why a script may stop with an exception; "": none does, as far as is known.
         premises: what answers rest on besides.
-        reduced: whether `found` is the reduced space of `by_turns`.
+        reduced: whether `found` is the reduced space of `by_turns`, or of `by_counts`.
     """
 
     checks: tuple[Check, ...]
@@ -232,6 +232,11 @@ class Control:
     doubt: str = ""
     premises: Premises = Premises()
     reduced: bool = False
+
+    @property
+    def is_counted(self) -> bool:
+        """Whether tokens are counted up to a limit only (`by_counts`)."""
+        return self.found is not None and self.found.is_counted
 
     @property
     def stops(self) -> str:
@@ -253,7 +258,7 @@ class Control:
     def other_bounds(self) -> list[tuple[int, int, int]]:
         """Places that hold at most another number of tokens in the cell: place, that number, the one of the net."""
         cell, net = (x.bounds if x and x.complete else None for x in (self.found, self.closed))
-        if cell is None or net is None or self.running is None:
+        if cell is None or net is None or self.running is None or self.is_counted:
             return []
         places = self.running.partition.net.places
         pairs = ((p.index, cell[p.index].upper, net[p.index].upper) for p in places)
@@ -277,7 +282,8 @@ class Control:
         """What was looked at, for programs."""
         found, running = self.found, self.running
         bounds = None
-        if found is not None and found.complete and found.bounds and running is not None:
+        is_exact = found is not None and found.complete and not found.is_counted
+        if is_exact and found is not None and found.bounds and running is not None:
             places = running.partition.net.places
             bounds = [
                 {"place": p.name, "lower": b.lower, "upper": b.upper}

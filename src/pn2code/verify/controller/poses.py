@@ -26,12 +26,21 @@ from pn2code.ml.core import terms as core
 from pn2code.net.flat import ArcKind, FlatTransition
 from pn2code.net.uses import NetVariables
 from pn2code.primitive_calls import Calls, Listener
-from pn2code.robot.commands import Move, MoveAxes, MoveCircular, MoveJoint, MoveLinear, without_pace
+from pn2code.robot.commands import (
+    Move,
+    MoveAxes,
+    MoveCircular,
+    MoveExternal,
+    MoveJoint,
+    MoveLinear,
+    without_pace,
+)
 from pn2code.semantics.evaluation.effects import Effect, Effects, effects_of
 from pn2code.semantics.game.marking import Binding, Marking, place_of
 from pn2code.semantics.game.token_game import Game, GameError
 from pn2code.semantics.values.colour_json import from_json
 from pn2code.semantics.values.data import Timed, Value
+from pn2code.verify.controller.standing import Axes, Standing
 from pn2code.verify.exploring.result import Exploration
 
 MOST_WAYS = 20_000
@@ -41,7 +50,7 @@ MOST_COPIES = 100
 _OUTSIDE = frozenset({Effect.DRAW, Effect.LOOK, Effect.READ, Effect.COUNT})
 
 
-class Arms(Protocol):
+class Arms(Axes, Protocol):
     """What arms can do."""
 
     @property
@@ -108,6 +117,8 @@ class Poses:
         self._primitives = primitives
         self._arms = arms
         self._storage = storage
+        self._standing = Standing(arms)
+        self._waiting: dict[tuple[str, str, Move], None] = {}
         net = partition.net
         self._uses = NetVariables(net.program.variables)
         self._reach = Reach(net.program)
@@ -115,7 +126,7 @@ class Poses:
         moves = {
             symbols[name].uid
             for name, p in primitives.items()
-            if name in symbols and p.command in GOING and p.frame != "tool"
+            if name in symbols and p.command in GOING and (p.frame != "tool" or p.along)
         }
         self.moving = tuple(t for t in net.transitions if self._is_moving(t, moves))
         self.places = tuple(
@@ -138,6 +149,7 @@ class Poses:
             GameError: a declaration or an initial marking raises an exception.
         """
         told = Told()
+        self._standing, self._waiting = Standing(self._arms), {}
         if not self.moving:
             return told
         if found is None or not found.bounds:
@@ -178,6 +190,7 @@ class Poses:
             self._of_bindings(
                 game, own, self._bindings(game, own, marking, told), listener, told, poses
             )
+        self._of_waiting(told, poses)
         told.poses, told.far = map(len, poses)
         return told
 
@@ -230,12 +243,30 @@ class Poses:
             if values in seen:
                 continue
             seen.add(values)
-            for command in self._commands(game, t, binding, listener):
+            commands = self._commands(game, t, binding, listener)
+            for command in self._standing.complete(robot, commands):
+                if self._arms.undecided(robot, command):
+                    self._waiting[t.name, robot, command] = None
+                    continue
                 why = self._arms.why_unreachable(robot, command)
+                if isinstance(command, _GOING) and command.frame == "tool" and not why:
+                    continue  # only its external axes were looked at
                 poses[bool(why)].add((robot, _goal(command)))
                 if why:
                     told.bad.append(Bad(t.index, values, why))
                     break
+
+    def _of_waiting(self, told: Told, poses: tuple[set[object], set[object]]) -> None:
+        """Moves that depend on where external axes stand: possible from wherever these can be, or it is not known."""
+        for name, robot, command in self._waiting:
+            ways = self._standing.ways(robot, command)
+            if ways is None or any(self._arms.why_unreachable(robot, way) for way in ways):
+                told.open = (
+                    f"where `{name}` leads its arm depends on where external axes stand then (`check --geometry` "
+                    "follows them)"
+                )
+            else:
+                poses[0].add((robot, _goal(command)))
 
     @staticmethod
     def _bindings(game: Game, t: FlatTransition, marking: Marking, told: Told) -> Iterator[Binding]:
@@ -249,7 +280,7 @@ class Poses:
     def _commands(
         game: Game, t: FlatTransition, binding: Binding, listener: Listener
     ) -> Sequence[Move]:
-        """The moves to joint positions and to poses, but no increments, up to an exception (exploring finds it)."""
+        """The moves, up to an exception (exploring finds it)."""
         calls = Calls()
         game.evaluator.now = game.start
         with suppress(GameError), listener.noting(calls):
@@ -257,20 +288,24 @@ class Poses:
         return [
             c
             for c in calls
-            if isinstance(c, MoveJoint | MoveAxes)
-            or (isinstance(c, MoveLinear | MoveCircular) and c.frame != "tool")
+            if isinstance(c, MoveAxes | MoveExternal | _GOING)
+            and (not isinstance(c, _GOING) or c.frame != "tool" or c.along)
         ]
 
 
 def _goal(command: Move) -> object:
     """Where a move leads, whatever kind of move it is."""
     match command:
-        case MoveJoint(target=pose, frame="world") | MoveLinear(target=pose, frame="world"):
+        case (
+            MoveJoint(target=pose, frame="world", tcp="")
+            | MoveLinear(target=pose, frame="world", tcp="")
+        ):
             return pose
         case _:
             return without_pace(command)
 
 
+_GOING = MoveJoint | MoveLinear | MoveCircular
 _TAKING = (ArcKind.INPUT, ArcKind.BOTH)
 
 

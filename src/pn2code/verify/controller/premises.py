@@ -31,16 +31,21 @@ _MOVING = (
 )
 
 _REACHED = (
-    "arms get to where they are told to go, and nothing is in their way (limits and singularities on the way, "
-    "{arcs}increments and collisions show in a run)"
+    "arms get to where they are told to go, and nothing is in their way (`pn2code check --geometry` looks at limits "
+    "and singularities on the way, {arcs}increments and collisions, a run at those on its own ways)"
 )
 _PARTS = (
     "tools find the parts that they take, hold them until they release them, and put them down where they can stand, "
-    "and nothing is where a part comes into the cell (a run shows it)"
+    "and nothing is where a part comes into the cell (`pn2code check --geometry` looks at it, but not at where parts "
+    "stand; a run shows that, too)"
 )
 IN_TURNS = (
     "the programs are looked at in turns, so that each run is seen in one of its orders: the states are those of the "
     "reduced space (docs/reductions.md)"
+)
+COUNTED = (
+    "tokens are counted up to a limit only, where no more has to be known, so that a state stands for many markings "
+    "(docs/reductions.md)"
 )
 
 _SENSORS = "each possible value of a sensor occurs from time to time"

@@ -301,7 +301,7 @@ def _verdicts(looked: Control) -> Iterator[str]:
         yield "Not checked completely (docs/execution.md):"
     else:
         assert looked.found is not None
-        yield _where(looked.found.nodes, reduced=looked.reduced)
+        yield _where(looked.found.nodes, reduced=looked.reduced, counted=looked.is_counted)
     for check in looked.checks:
         yield from textwrap.wrap(_verdict(check), _WIDTH, subsequent_indent="    ")
     assumed = dict.fromkeys(x for check in looked.checks for x in check.assumes)
@@ -311,8 +311,13 @@ def _verdicts(looked: Control) -> Iterator[str]:
         yield from textwrap.wrap(f"  {premise}", _WIDTH, subsequent_indent="    ")
 
 
-def _where(states: int, *, reduced: bool) -> str:
+def _where(states: int, *, reduced: bool, counted: bool) -> str:
     """What was looked at."""
+    if counted:
+        return (
+            f"Checked in {states:,} states that stand for all of the cell, its programs looked at in turns "
+            "(docs/reductions.md):"
+        )
     if reduced:
         return f"Checked in {states:,} states of the cell, its programs looked at in turns (docs/reductions.md):"
     return f"Checked in all {states:,} states of the cell as it runs (docs/execution.md):"

@@ -122,9 +122,12 @@ class _Refusal:
             case TRecord(fields) if fields and fields[0][0] == "1":
                 at = value.span
                 parts = [core.Select(label, value, t, at) for label, t in fields]
-                takes = 2 if primitive.command == "move_circular" else 1
-                out = [x for part in parts[:takes] for x in self._of_argument(part, primitive)]
+                places, takes = primitive.places, primitive.takes
+                out = [x for part in parts[:places] for x in self._of_argument(part, primitive)]
+                out += [_is_finite(x) for x in parts[places:takes] if x.type == REAL]
                 return out + [x for own in parts[takes:] for x in _of_speed(own, primitive)]
+            case t if primitive.command == "move_external":
+                return [_is_finite(value)] if t == REAL else []
             case TVar() if primitive.command in ("move_joint", "move_linear", "measure"):
                 assert isinstance(value, core.Var | core.Select)
                 parts = [

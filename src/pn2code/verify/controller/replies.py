@@ -114,7 +114,11 @@ class Replies:
         if not asked:
             return Replies()
         known = f"tools, waits and delays take at most {most.seconds:g} s"
-        more = "; how long moves and measurements take is not known" if most.is_open else ""
+        more = (
+            "; how long moves and measurements take is not known here, `pn2code time` measures it"
+            if most.is_open
+            else ""
+        )
         return Replies(
             "",
             f"nobody owes an answer for longer than `reply_timeout_s`, {limit:g} s ({known}{more})",

@@ -34,6 +34,7 @@ from pn2code.verify.codes import (
     TIME_OVER,
 )
 from pn2code.verify.exploring import covering, nondeterminism, programs
+from pn2code.verify.exploring.counts import Counts
 from pn2code.verify.exploring.grace import Grace
 from pn2code.verify.exploring.limits import REACHED, Limits, default_memory
 from pn2code.verify.exploring.meanwhile import Meanwhile
@@ -53,6 +54,7 @@ _TABLES = {
     "--dependency": "dependencies",
     "--queries": "questions",
     "--turns": "turns",
+    "--counts": "limits",
 }
 HEAPED = "messages"
 """Why an exploration has ended: a place of `ExploreOptions.heaps` holds more than `MOST_HEAPED` tokens."""
@@ -97,6 +99,7 @@ class ExploreOptions:
         generated: what an exploration of the same net with the same predicates has generated; gets what this one has.
         quick: the space is likely to be small: it is compiled quickly, and better if it turns out to be large.
         turns: the table by which the programs of a cell are looked at in turns; None: they are not.
+        counts: with `turns`, the places whose tokens are counted up to a limit only; None: there are none.
         bindings: transitions of which it is told with which bindings they occur, if the graph is not large.
         heaps: places that need not be explored with more than `MOST_HEAPED` tokens: what is wrong has been seen then.
         covering: look for a run that shows that a place grows without bound, and end when there is one.
@@ -119,6 +122,7 @@ class ExploreOptions:
     generated: Generated | None = None
     quick: bool = False
     turns: Turns | None = None
+    counts: Counts | None = None
     bindings: tuple[int, ...] = ()
     heaps: frozenset[int] = frozenset()
     covering: bool = False
@@ -376,6 +380,7 @@ def _run_with_tables(
         "--dependency": chosen.dependency.text() if chosen.dependency else "",
         "--queries": options.questions,
         "--turns": options.turns.text() if options.turns else "",
+        "--counts": options.counts.text() if options.counts else "",
     }
     made: list[Path] = []
     arguments = list(arguments)

@@ -14,6 +14,8 @@ REACHED = ("states", "seconds", "memory")
 """Why an exploration has ended, where it was for a limit."""
 TURNS_FROM = 1_000_000
 """States of a cell that are looked at before its programs are looked at in turns; fewer are all seen in seconds."""
+COUNTS_FROM = 200_000
+"""The same before it is tried to count tokens up to a limit only (`counts`)."""
 _LEAST = 64
 _UNKNOWN = 2048
 """MiB, when the system does not say what is free."""
@@ -61,6 +63,8 @@ class Limits:
         turns_from: states of a cell from which on its programs are looked at in turns, if that keeps what is asked;
             None: never.
         most_in_turns: states that are looked at then; None: as many as `max_states` says.
+        counts_from: states from which on tokens are counted up to a limit only, if that is enough; None: never, nor
+            where it is more than `turns_from`.
     """
 
     max_states: int | None = None
@@ -76,6 +80,7 @@ class Limits:
     reductions: tuple[Reduction, ...] = ()
     turns_from: int | None = TURNS_FROM
     most_in_turns: int | None = None
+    counts_from: int | None = COUNTS_FROM
 
 
 def default_memory() -> int:

@@ -156,6 +156,11 @@ class Exploration:
         return bool({"partial-order", "symmetry"}.intersection(self.reductions))
 
     @property
+    def is_counted(self) -> bool:
+        """Whether a state stands for many markings: then bounds are no less than those of the markings."""
+        return "counts" in self.reductions
+
+    @property
     def knows_dead_transitions(self) -> bool:
         """Whether a transition without arcs never occurs."""
         return "partial-order" not in self.reductions

@@ -4,8 +4,8 @@ structure ListPair = struct
 
     fun fold_left (ended, f) start (left, right) =
         let fun each (i, x :: xs, y :: ys, out) = each (i + 1, xs, ys, f (i, x, y, out))
-              | each (_, xs, ys, out) = (ended (null_of xs, null_of ys); out)
-            and null_of nil = true | null_of _ = false
+              | each (_, nil, nil, out) = (ended (true, true); out)
+              | each (_, _, _, out) = (ended (true, false); out)
         in each (0, left, right, start) end
     fun fold_right (ended, f) start (left, right) =
         let fun each (i, x :: xs, y :: ys) = f (i, x, y, each (i + 1, xs, ys))

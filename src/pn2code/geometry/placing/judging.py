@@ -1,0 +1,170 @@
+"""How good placings are: what arms reach from there, and how near to limits, singularities and things their ways lead.
+
+    judge = Judge(cell, {"robot2": task}, {"robot2": plan}, free)
+    found = judge.look(values)             # (n, numbers) -> Values: reach, condition; all at once, and quickly
+    judge.walk(values[0], 0.0)             # Walked: a whole plan, from there
+
+`look` takes of each pose the branch that is best conditioned, so no way is better conditioned than it says.
+`walk` plans as runs do, with samples of the ways, one arm at a time with the others at HOME. It is a guide for the
+search: what is found is looked at as a whole afterwards (`proving`).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pn2code.base.frozen import frozen
+from pn2code.geometry.placing.free import Free, base_of, moved
+from pn2code.geometry.placing.plan import Plan, Walk
+from pn2code.geometry.reach_map import Judged, Task, judge
+from pn2code.robot.backend import Clearance
+from pn2code.robot.bullet import BulletBackend
+from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.transforms import Array, matrix_of
+
+FAR = 0.5
+"""m: larger clearances are not measured."""
+_TOUCHING = 1e-3
+"""m: nearer to itself an arm need not be measured."""
+
+
+@frozen(eq=False)
+class Values:
+    """Of n placings, over all arms that move.
+
+    Args:
+        reach: the part of the task that is reached, 0 to 1.
+        condition: the worst condition number, each pose in the branch that is best.
+        robots: what is known of each arm.
+    """
+
+    reach: Array
+    condition: Array
+    robots: Mapping[str, Judged]
+
+
+@frozen
+class Walked:
+    """What arms do from a placing.
+
+    Args:
+        done: the part of the commands that could be planned, 0 to 1.
+        condition: the worst condition number; limit: rad, the least margin of a limit; see `Walk.counts`.
+        clearance: m, the least distance from what stands and from arms at HOME, at most `FAR`; not above zero if an arm
+            touches itself. What may touch does not count, unless it is deeper than permitted.
+        seconds: how long all commands together take.
+    """
+
+    done: float
+    condition: float
+    limit: float
+    clearance: float
+    seconds: float
+
+
+class Judge:
+    """Looks at placings of a cell.
+
+    Args:
+        cell: as it stands.
+        tasks: of each arm that may be moved what it has to reach; plans: what it is told.
+        free: the numbers that placings choose.
+    """
+
+    def __init__(
+        self,
+        cell: RobotCell,
+        tasks: Mapping[str, Task],
+        plans: Mapping[str, Plan],
+        free: Sequence[Free],
+    ) -> None:
+        self.cell, self.tasks, self.plans, self.free = cell, dict(tasks), dict(plans), tuple(free)
+        self._backend = BulletBackend(cell, looks=False)
+        self.reached: dict[str, NDArray[np.bool_]] = {}
+        """of each arm, what it has reached from any placing that was looked at"""
+        self.forget()
+
+    def close(self) -> None:
+        """Ends the collision library."""
+        self._backend.close()
+
+    def forget(self) -> None:
+        """What was reached up to now does not count."""
+        self.reached = {n: np.zeros(len(task.groups), bool) for n, task in self.tasks.items()}
+
+    def look(self, values: Array) -> Values:
+        """What is reached, and how well."""
+        robots: dict[str, Judged] = {}
+        count = len(values)
+        groups, reached = 0, np.zeros(count)
+        condition = np.zeros(count)
+        for name, task in self.tasks.items():
+            bases = [matrix_of(base_of(self.cell, name, self.free, row)) for row in values]
+            found = judge(self.cell.robot(name), task, np.stack(bases))
+            robots[name] = found
+            self.reached[name] |= found.reached.any(axis=0)
+            reached += found.reached.sum(axis=1)
+            groups += len(task.groups)
+            condition = np.maximum(condition, found.condition)
+        return Values(reached / max(1, groups), condition, robots)
+
+    def walk(self, values: Sequence[float], enough: float) -> Walked:
+        """All that is done from a placing.
+
+        Args:
+            values: of the numbers that are free.
+            enough: m; where the clearance is less it need not be the least one.
+        """
+        placed = moved(self.cell, self.free, values)
+        condition, limit, seconds = 1.0, math.inf, 0.0
+        walks = {name: plan.walk(placed.robot(name), placed) for name, plan in self.plans.items()}
+        for name, walk in walks.items():
+            kinematics = placed.robot(name).kinematics
+            arm = kinematics.arm
+            seconds += walk.seconds
+            q = walk.q[walk.counts]
+            if len(q):
+                off = np.minimum(q - arm.lower, arm.upper - q)[:, kinematics.joints]
+                limit = min(limit, float(off.min()))
+                found = kinematics.conditioning_many(q)
+                condition = max(condition, *(c.condition for c in found))
+        count = sum(len(plan.steps) for plan in self.plans.values())
+        done = sum(walk.done for walk in walks.values()) / max(1, count)
+        clearance = self._clearance(placed, walks, enough) if done >= 1.0 else -math.inf
+        return Walked(done, condition, limit, clearance, seconds)
+
+    def _clearance(self, placed: RobotCell, walks: Mapping[str, Walk], enough: float) -> float:
+        for robot in placed.robots:
+            self._backend.set_base(robot.name, robot.base)
+            self._backend.set_joints(robot.name, robot.home)
+        least = FAR
+        for name, walk in walks.items():
+            for row, is_loose in zip(walk.q, walk.loose, strict=True):
+                self._backend.set_joints(name, row)
+                least = min(least, self._standing(name, least, is_loose=bool(is_loose)))
+                if least <= 0.0 or least < enough:
+                    return least
+            self._backend.set_joints(name, placed.robot(name).home)
+        return least
+
+    def _standing(self, name: str, limit: float, *, is_loose: bool) -> float:
+        # The pedestals in the collision library stay where the cell has them.
+        things = {t for t in self._backend.things if not t.endswith("_pedestal")}
+        if any(gap.distance <= 0.0 for gap in self._backend.pairs("self", name, _TOUCHING)):
+            return 0.0
+        found = self._backend.pairs("scene", name, limit, only=things)
+        for other in self.cell.robots:
+            if other.name != name:
+                found += self._backend.pairs("robots", name, limit, other.name)
+        return min((_counted(c, is_loose) for c in found), default=limit)
+
+
+def _counted(gap: Clearance, is_loose: bool) -> float:
+    """On a joint move nothing may touch; else what may touch does not count."""
+    if gap.allowed is None or is_loose:
+        return gap.distance
+    return FAR if gap.distance + gap.allowed >= 0.0 else gap.distance

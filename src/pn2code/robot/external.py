@@ -1,0 +1,175 @@
+"""External axes of a robot: tracks and lifts that carry the arm, turntables that carry the work piece.
+
+axes = read_axes(t, "left", base, folder)       # of [robots.left.axes]
+axes.tracks, axes.tables
+
+A robot's joint position has its tracks first (m), then the joints of its arm (rad), then its turntables (rad).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from pn2code.base.frozen import frozen
+from pn2code.robot import codes
+from pn2code.robot.commands import Pose
+from pn2code.robot.scene_objects import SceneObject, read_object
+from pn2code.robot.table_poses import read_pose
+from pn2code.robot.transforms import Array, inverse, matrix_of
+
+if TYPE_CHECKING:
+    from pn2code.robot.table import Table
+
+
+@frozen(eq=False)
+class ExternalAxis:
+    """A track or a turntable; m or rad.
+
+    Args:
+        is_track: else it is a turntable.
+        T_base_axis: of a turntable its frame at zero, in the frame of the robot's `base`; of a track nothing.
+        direction: unit vector, in `base` where the arm goes, or the z of a turntable in its frame.
+        radius, height: of the plate of a turntable; objects: what is on it, in its frame.
+    """
+
+    name: str
+    is_track: bool
+    T_base_axis: Array
+    direction: Array
+    lower: float
+    upper: float
+    velocity: float
+    acceleration: float
+    jerk: float
+    home: float
+    radius: float = 0.0
+    height: float = 0.0
+    objects: tuple[SceneObject, ...] = ()
+
+    @property
+    def unit(self) -> str:
+        """Of its positions in cell.toml."""
+        return "m" if self.is_track else "degrees"
+
+    def described(self) -> tuple[object, ...]:
+        """All of it, in what can be compared."""
+        numbers = (self.lower, self.upper, self.velocity, self.acceleration, self.jerk, self.home)
+        place = (*self.T_base_axis.ravel().tolist(), *self.direction.tolist())
+        return (
+            self.name,
+            self.is_track,
+            place,
+            numbers,
+            self.radius,
+            self.height,
+            self.objects,
+        )
+
+
+@frozen(eq=False)
+class Externals:
+    """The external axes of a robot, in the order of the file."""
+
+    tracks: tuple[ExternalAxis, ...] = ()
+    tables: tuple[ExternalAxis, ...] = ()
+
+    def __iter__(self) -> Iterator[ExternalAxis]:
+        yield from self.tracks
+        yield from self.tables
+
+    def __bool__(self) -> bool:
+        return bool(self.tracks or self.tables)
+
+    def index(self, name: str, arm: int) -> int:
+        """Where an axis is in the joint position of a robot whose arm has so many joints; KeyError: it has none."""
+        for i, axis in enumerate(self.tracks):
+            if axis.name == name:
+                return i
+        for i, axis in enumerate(self.tables):
+            if axis.name == name:
+                return len(self.tracks) + arm + i
+        raise KeyError(name)
+
+    def axis(self, name: str) -> ExternalAxis | None:
+        """The one of that name."""
+        return next((a for a in self if a.name == name), None)
+
+    @property
+    def directions(self) -> Array:
+        """Of the tracks, (tracks, 3)."""
+        return np.array([a.direction for a in self.tracks]).reshape(-1, 3)
+
+
+def read_axes(t: Table, robot: str, base: Pose, folder: Path) -> Externals:
+    """The table `axes` of a robot; what is wrong is reported."""
+    if not t.has("axes"):
+        return Externals()
+    named = t.table("axes")
+    T_base_world = inverse(matrix_of(base))
+    found = [
+        axis
+        for name, table in named.named(t.inner("axes"))
+        if (axis := _axis(table, name, robot, T_base_world, folder)) is not None
+    ]
+    return Externals(
+        tuple(a for a in found if a.is_track), tuple(a for a in found if not a.is_track)
+    )
+
+
+def _axis(
+    t: Table,
+    name: str,
+    robot: str,
+    T_base_world: Array,
+    folder: Path,
+) -> ExternalAxis | None:
+    before = len(t.d.errors)
+    kind = t.text("kind")
+    if kind != t.data.get("kind", kind):
+        return None  # what else there may be is not known
+    is_track = kind == "track"
+    factor = 1.0 if is_track else math.radians(1.0)
+    numbers = {k: t.number(k) for k in ("from", "to", "home", "speed", "acceleration", "jerk")}
+    for key in ("from", "to"):
+        t.has(key)
+    place, direction = np.eye(4), np.array([0.0, 0.0, 1.0])
+    radius = height = 0.0
+    objects: tuple[SceneObject, ...] = ()
+    if is_track:
+        direction = np.array(t.numbers("direction"))
+        if not np.linalg.norm(direction) > 1e-9:
+            t.wrong("direction", t.expected("direction"))
+            direction = np.array([1.0, 0.0, 0.0])
+        direction = direction / np.linalg.norm(direction)
+    else:
+        place = T_base_world @ matrix_of(read_pose(t, "pose"))
+        radius, height = t.number("radius"), t.number("height")
+        objects = tuple(o for e in t.tables("objects") if (o := read_object(e, folder)) is not None)
+    t.done()
+    unit = "m" if is_track else "degrees"
+    if len(t.d.errors) == before:
+        if not numbers["from"] < numbers["to"]:
+            t.wrong("to", "a number above `from`")
+        elif not numbers["from"] <= numbers["home"] <= numbers["to"]:
+            t.d.error(
+                codes.ROBOT_VALUE,
+                f"external axis `{name}` of robot `{robot}` begins at {numbers['home']:g} {unit}, outside "
+                f"{numbers['from']:g} .. {numbers['to']:g}",
+                t.at("home") if "home" in t.data else t.at(),
+                hint="`home` is where it is when a run begins; without the key that is 0",
+            )
+    if len(t.d.errors) != before:
+        return None
+    lower, upper, home, *pace = (
+        factor * numbers[k] for k in ("from", "to", "home", "speed", "acceleration", "jerk")
+    )
+    speed, acceleration, jerk = pace
+    return ExternalAxis(
+        name, is_track, place, direction, lower, upper, speed, acceleration, jerk, home,
+        radius, height, objects,
+    )  # fmt: skip

@@ -1,0 +1,302 @@
+"""The cell as it runs where it is very large: in turns, with tokens counted up to a limit (`verify.exploring.counts`).
+
+    seen = look(partition, plan, limits, options, part=part, order=rows)     # None: something else has to decide
+    seen.looked.found, seen.said, seen.asked
+
+A state stands for many markings, so what is asked is whether all states are as they should be, and the rest is shown by
+weights of places (`verify.exploring.ranking`):
+
+    the end            no run goes on for ever (weights, and no cycle among the steps for which there are none); each
+                       state in which nothing can happen has an end. So does each dead marking, and each marking leads
+                       to one
+    no stop            no state has a token in `stopped`, nor in `unsure`
+    moments            `Moments`: weights limit how many transitions of robots follow each other
+    channels, capacity no state has more tokens there; of a place with a limit the structure of the net has to say it
+    silence            as in turns: its places have no limits
+    messages, poses,   what single places hold in a state, and what single steps need, is no less than what they hold
+    memory             and need in a marking
+    finite, bounded    weights limit how many firings follow each other
+    confluence         a "no" is that of a part of the whole space, in which all firings of a cycle are there; a "yes"
+                       is said where the supervisor never has a choice in any state
+    dead transitions   what occurs in no state never occurs; of all others a run in the whole space, or in turns, is
+                       known
+
+All of it has to come out so; else nothing is said.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from pn2code.base.frozen import frozen
+from pn2code.cell.partition import Partition
+from pn2code.diagnostics import Diagnostics
+from pn2code.properties.questions import Questions
+from pn2code.structure import bounds_and_sums
+from pn2code.structure.relations import relations
+from pn2code.verify.controller.by_turns import Looked, group, loosened
+from pn2code.verify.controller.control_types import Plan
+from pn2code.verify.controller.kept_silence import kept_silence
+from pn2code.verify.controller.running import SUPERVISOR, Running, chunks
+from pn2code.verify.exploring.counts import LEAST_TOKENS, Counts, counts
+from pn2code.verify.exploring.explore import ExploreOptions, explore
+from pn2code.verify.exploring.limits import Limits, Order
+from pn2code.verify.exploring.programs import Generated, Sizes
+from pn2code.verify.exploring.ranking import Ranking
+from pn2code.verify.exploring.result import Bounds, Exploration
+from pn2code.verify.exploring.turns import Turns
+
+ENDLESS = 1_000_000_000
+"""A run is that long, or goes on for ever."""
+MOST_STATES = 2_000_000
+"""Where there are more the limits do not help enough."""
+WITNESSES = 60_000
+"""States among which transitions are looked for that occur."""
+YES: Mapping[str, Any] = {"answer": "yes", "value": None, "trace": None, "loop": None, "why": None}
+"""A row as the explorer gives it."""
+
+
+@frozen
+class Seen:
+    """What was seen.
+
+    Args:
+        looked: the net and its states.
+        said: what follows of the questions about the cell, in the order of `control.of_cell`.
+        asked: the same of those about its orders.
+    """
+
+    looked: Looked
+    said: tuple[Mapping[str, Any], ...]
+    asked: tuple[Mapping[str, Any], ...]
+
+
+@frozen
+class Abstract:
+    """A net, what is counted in it up to a limit, and how it is explored."""
+
+    running: Running
+    counts: Counts
+    turns: Turns
+    ranking: Ranking
+    sizes: Sizes
+
+
+def abstract(
+    partition: Partition, plan: Plan, kept: Sequence[int] = (), *, least: int = LEAST_TOKENS
+) -> Abstract | None:
+    """The net of turns with its limits; None: there is nothing to count so.
+
+    Args:
+        partition: the cell.
+        plan: what is asked.
+        kept: more places of which all tokens count.
+        least: as for `counts`.
+    """
+    loose = loosened(partition)
+    if loose is None or not partition.final_places:
+        return None
+    running, table = loose
+    own = {p.index for p in partition.net.places}
+    open_ = {p for p, most in plan.capacities.items() if plan.bounds.get(p, most + 1) > most}
+    asked = {p for s in running.silences for p in group(s)} | open_ | set(kept)
+    free = own - asked - {c.place for c in partition.channels}
+    known = bounds_and_sums(running.net, storage=plan.storage)
+    bounds = {p: b.bound for p, b in known[0].items() if b.bound is not None}
+    relations_ = relations(running.net, plan.storage)
+    found = counts(running.net, relations_, bounds, free=free, least=least)
+    if found is None or not found.limited:
+        return None
+    sizes = Sizes.start(running.net, plan.storage, known)
+    # A place that follows from others does so in markings only.
+    sizes = replace(sizes, packing=replace(sizes.packing, sums=()))
+    ranking = Ranking.of(running.net, plan.storage, bounds, running.probes)
+    return Abstract(running, found, found.within(table), ranking, sizes)
+
+
+def look(
+    partition: Partition,
+    plan: Plan,
+    limits: Limits,
+    options: ExploreOptions,
+    *,
+    part: Exploration,
+    order: Sequence[Mapping[str, Any]],
+    in_order: str,
+) -> Seen | None:
+    """Explores; None: not all comes out well, or cannot be known in this way.
+
+    Args:
+        partition: the cell.
+        plan, limits: as for `control.examine`.
+        options: of the exploration, without what is asked.
+        part: a part of the whole space of the cell.
+        order: what is known of all orders from a part of their space.
+        in_order: questions about orders, which are answered where the supervisor never has a choice.
+    """
+    made = abstract(partition, plan, options.whole)
+    if made is None:
+        return None
+    running = made.running
+    lengths = _lengths(partition, plan, made)
+    if lengths is None:
+        return None
+    rising = made.ranking.rising()
+    is_decided = len(order) > CONFLUENCE and order[CONFLUENCE]["answer"] == "no"
+    own = replace(
+        options,
+        turns=made.turns,
+        counts=made.counts,
+        sizes=made.sizes,
+        generated=Generated(),
+        traces=None,
+        evidence=None,
+        bindings=(),
+        questions=questions(made, plan, rising) + ("" if is_decided else in_order),
+        stem="counts",
+        quick=False,
+    )
+    most = min(limits.max_states or MOST_STATES, MOST_STATES)
+    limits = replace(limits, max_states=most, traces=0)
+    d = Diagnostics()  # what is wrong with this net the whole space tells
+    found = explore(running.net, plan.storage, limits, d, own)
+    if found is None or not found.complete or found.error is not None:
+        return None
+    count = sum(line.startswith("? ") for line in own.questions.split("\n"))
+    if len(found.answers) != count:
+        return None
+    rows = found.answers if is_decided else found.answers[: count - in_order.count("? ")]
+    if any(row["answer"] != "yes" for row in rows):
+        return None
+    if not is_decided:
+        is_choiceless = found.seen.arcs and found.answers[len(rows)]["answer"] != "unknown"
+        if not is_choiceless:
+            return None
+    if not _all_occur(partition, plan, limits, own, made, found, part):
+        return None
+    confluence = order[CONFLUENCE:] if is_decided else (YES, YES)
+    longest, firings = lengths
+    asked = (YES, {**YES, "value": firings}, *confluence)
+    said = _said(partition, plan, made, found, rows, longest)
+    return Seen(Looked(running, _bounded(found, made, plan), None), said, asked)
+
+
+CONFLUENCE = 2
+"""The first question about orders that weights do not answer."""
+
+
+def questions(made: Abstract, plan: Plan, rising: frozenset[int]) -> str:
+    """All of them have to be answered with "yes"; first those that `_said` leaves out."""
+    running, partition = made.running, made.running.partition
+    lines = [x for x in running.lines(first=True) if not x.startswith("instant ")]
+    asked = Questions()
+    if rising:
+        lines += chunks("instant 0", sorted(rising))
+        asked.asked.append(f"? restless 0 {ENDLESS}")
+    end = asked.line(f"within {running.over} 1 -")
+    going = asked.line(f"not {asked.line('dead')}")
+    asked.asked += [
+        f"? invariant {asked.line(f'or {going} {end}')}",
+        f"? bound {running.stopped} 0 0",
+        *(f"? invariant {kept_silence(asked, s, None)}" for s in running.silences),
+        *(f"? bound {c.place} 0 1" for c in partition.channels),
+        *(
+            f"? bound {place} 0 {most}"
+            for place, most in plan.capacities.items()
+            if place not in made.counts.limited
+        ),
+        *([] if running.unsure is None else [f"? bound {running.unsure} 0 0"]),
+    ]
+    return "".join(f"{line}\n" for line in lines) + asked.text()
+
+
+def _said(
+    partition: Partition,
+    plan: Plan,
+    made: Abstract,
+    found: Exploration,
+    rows: Sequence[Mapping[str, Any]],
+    longest: Sequence[int],
+) -> tuple[Mapping[str, Any], ...]:
+    """The answers as `control.of_cell` asks for them."""
+    _, stops, *others = rows[len(rows) - _asked(made, plan) :]
+    silences, channels = len(made.running.silences), len(partition.channels)
+    left = iter(others[silences + channels :])
+    declared: Iterator[Mapping[str, Any]] = (
+        {**YES, "value": plan.bounds[p], "why": "structure"}
+        if p in made.counts.limited
+        else next(left)
+        for p in plan.capacities
+    )
+    return (
+        {**YES, "value": found.nodes},
+        stops,
+        *({**YES, "value": n} for n in longest),
+        *others[: silences + channels],
+        *declared,
+        *left,
+    )
+
+
+def _asked(made: Abstract, plan: Plan) -> int:
+    """How many questions there are but for that about cycles."""
+    running = made.running
+    declared = sum(p not in made.counts.limited for p in plan.capacities)
+    count = 2 + len(running.silences) + len(running.partition.channels) + declared
+    return count + (running.unsure is not None)
+
+
+def _lengths(
+    partition: Partition, plan: Plan, made: Abstract
+) -> tuple[tuple[int, ...], int] | None:
+    """Most transitions of robots in each of `Moments.sets`, and most firings in a cycle; None: not few enough."""
+    owners = partition.transition_owner
+    robots = {i for i, o in enumerate(owners) if o != SUPERVISOR}
+    firings = {i for i, o in enumerate(owners) if o == SUPERVISOR}
+    found: list[int] = []
+    for steps in made.running.moments.sets():
+        longest = made.ranking.longest(set(steps.transitions), robots)
+        if longest is None or longest > steps.most:
+            return None
+        found.append(longest)
+    most = made.ranking.longest(firings, firings)
+    if most is None or most > plan.firings:
+        return None
+    return tuple(found), most
+
+
+def _all_occur(
+    partition: Partition,
+    plan: Plan,
+    limits: Limits,
+    options: ExploreOptions,
+    made: Abstract,
+    found: Exploration,
+    part: Exploration,
+) -> bool:
+    """Whether each transition that occurs in a state is known to occur in a marking."""
+    count = len(partition.transition_owner)
+    some = {i for i in range(count) if found.fired[i] > 0}
+    some -= {i for i in range(count) if part.fired[i] > 0}
+    if not some:
+        return True
+    lines = "".join(f"{x}\n" for x in made.running.lines(first=True))
+    own = replace(options, counts=None, questions=lines, stem="witnesses")
+    deep = replace(limits, max_states=WITNESSES, order=Order.DEPTH, graph=False, threads=1)
+    run = explore(made.running.net, plan.storage, deep, Diagnostics(), own)
+    return run is not None and run.error is None and all(run.fired[i] > 0 for i in some)
+
+
+def _bounded(found: Exploration, made: Abstract, plan: Plan) -> Exploration:
+    """With what the structure proves of places that have a limit."""
+    if found.bounds is None:
+        return found
+    limited = made.counts.limited | {x.place for x in made.counts.limits}
+
+    def own(place: int, b: Bounds) -> Bounds:
+        most = made.ranking.upper[place] if place in limited else b.upper
+        return Bounds(0, most, None, None) if place in limited else b
+
+    return replace(found, bounds=tuple(own(p, b) for p, b in enumerate(found.bounds)))

@@ -1,0 +1,37 @@
+"""An item: the states in which nobody waits for others while it owes an answer (I8 of docs/protocol.md)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from functools import reduce
+
+from pn2code.properties.questions import Questions
+from pn2code.verify.controller.running import Silence
+
+
+def kept_silence(asked: Questions, silence: Silence, idle: int | None) -> int:
+    """The item of the states in which it does *not* wait for others while it owes an answer.
+
+    `idle`: the place of a supervisor that rests; None: it counts whether or not that does.
+    """
+
+    def marked(place: int) -> int:
+        return asked.line(f"within {place} 1 -")
+
+    def no(item: int) -> int:
+        return asked.line(f"not {item}")
+
+    def joined(operator: str, items: Sequence[int]) -> int:
+        return reduce(lambda a, b: asked.line(f"{operator} {a} {b}"), items)
+
+    waits = [
+        joined("and", [marked(place), *(no(joined("and", _flat(marked, x))) for x in needed)])
+        for place, needed in silence.states
+    ]
+    unseen = [joined("and", [marked(p), no(marked(seen))]) for p, seen in silence.answers]
+    others = [marked(p) for p in (silence.owes, idle) if p is not None] + [*map(no, unseen)]
+    return no(joined("and", [*others, joined("or", waits)]))
+
+
+def _flat(marked: Callable[[int], int], messages: Sequence[Sequence[int]]) -> list[int]:
+    return [marked(place) for places in messages for place in places]

@@ -1,0 +1,201 @@
+"""Cells with many parts: tokens are counted up to a limit only, and only what is good in all states is said."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tools.reduction_cells.limited import WRONG_LIMITS, Limited
+from typer.testing import CliRunner
+
+from helpers.netbuilder import cpn
+from pn2code.cell.divide import divide
+from pn2code.cli import verify as command
+from pn2code.cli.main import app
+from pn2code.cli.nets import open_net
+from pn2code.diagnostics import Diagnostics
+from pn2code.verify.controller.control_types import Plan
+
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
+
+NET = """net cell
+  standard
+  fun act () = ();
+  colset SAID = int with 1..2;
+  var k: SAID;
+  var n: INT;
+  page Top
+    place ask : SAID
+    place say : SAID
+    subst Supervisor = Sup (ask -> ask, say -> say)
+    subst D = Device (ask -> ask, say -> say)
+  page Sup
+    place ask port out : SAID
+    place say port in : SAID
+    place Feeder = {parts}
+    place Left : INT = 1`{parts}
+    place Free = 1
+    place Busy
+    place Tray
+    place Good
+    place Scrap
+    place Finished
+    trans Send
+      in Feeder : ()
+      in Free : ()
+      out Busy : ()
+      out ask : 1
+    trans Heard
+      in Busy : ()
+      in say : k
+      out Free : ()
+      out Tray : ()
+    trans Pack
+      in Tray : ()
+      in Left : n
+      out Left : n - 1
+      out Good : ()
+    trans Drop
+      in Tray : ()
+      in Left : n
+      out Left : n - 1
+      out Scrap : ()
+    trans End
+      in Left : 0
+      out Finished : ()
+  page Device
+    place ask port in : SAID
+    place say port out : SAID
+    place Waiting = 1
+    place Told : SAID
+    place Done : SAID
+    trans Accept
+      in Waiting : ()
+      in ask : k
+      out Told : k
+    trans Work code action act ()
+      in Told : k
+      out Done : k
+    trans Say
+      in Done : k
+      out Waiting : ()
+      out say : k
+"""
+TOML = """[net]
+file = "cell.cpn"
+[supervisor]
+instance = "Supervisor"
+final = ["Finished"]
+order = "documented"
+[devices.d]
+instance = "D"
+[[channel]]
+place = "ask"
+file = "ask.txt"
+kind = "flag"
+[[channel]]
+place = "say"
+file = "say.txt"
+kind = "flag"
+[primitives]
+act = { command = "tool", action = "act", duration_s = 0.5 }
+"""
+
+
+def verified(folder: Path, net: str, *options: str, parts: int = 6) -> dict[str, Any]:
+    """What `verify --json` says of a cell."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "cell.cpn").write_bytes(cpn(net.replace("{parts}", str(parts))))
+    (folder / "cell.toml").write_text(TOML, encoding="utf-8")
+    more = ["--json", "--no-graph", "--no-medium", "--traces", str(folder / "t"), *options]
+    found: dict[str, Any] = json.loads(
+        CliRunner().invoke(app, ["verify", str(folder), *more]).stdout
+    )
+    return found
+
+
+def answers(found: dict[str, Any]) -> list[tuple[str, str, bool]]:
+    """Of the checks of the supervisor."""
+    return [(c["check"], c["answer"], c["accepted"]) for c in found["controller"]]
+
+
+@pytest.fixture(autouse=True)
+def soon(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Few states are looked at before tokens are counted up to a limit."""
+    monkeypatch.setattr(command, "COUNTS_FROM", 60)
+
+
+def test_each_step_of_a_cell_is_one_of_its_states(tmp_path: Path) -> None:
+    verified(tmp_path, NET, "--no-controller", parts=4)
+    d = Diagnostics()
+    opened = open_net(tmp_path, {}, warnings=d)
+    assert opened.config is not None
+    partition = divide(opened.flat, opened.config, d)
+    assert partition is not None
+    bed = Limited.of(partition, Plan(storage=opened.storage))
+    assert bed is not None
+    assert list(bed.missing()) == []
+    for wrong in WRONG_LIMITS.values():
+        assert list(bed.missing(wrong(bed.made.counts))) != []
+
+
+def test_any_number_of_parts_has_the_same_states(tmp_path: Path) -> None:
+    whole = verified(tmp_path / "whole", NET, "--no-reduction")
+    found = verified(tmp_path / "six", NET)
+    many = verified(tmp_path / "many", NET, parts=40)
+    assert whole["cell"]["reduced"] is False
+    assert whole["cell"]["states"] > 60
+    assert answers(found) == answers(many) == answers(whole)
+    assert found["cell"]["reduced"] is many["cell"]["reduced"] is True
+    assert found["cell"]["states"] == many["cell"]["states"]
+    assert found["cell"]["dead_transitions"] == whole["cell"]["dead_transitions"] != []
+    assert found["cell"]["bounds"] is None
+    by_name = {c["check"]: c for c in found["controller"]}
+    assert any("stands for many markings" in x for x in by_name["non-blocking"]["assumes"])
+    most = {c["check"]: c["value"] for c in whole["controller"]}["bounded-response"]
+    assert by_name["bounded-response"]["value"] >= most
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "answer"),
+    [
+        (
+            "in Left : 0",
+            "in Left : 1",
+            "no",
+        ),  # it ends with a part on its tray
+        (
+            "in Left : 0\n",
+            "in Left : 0\n      in Scrap : ()\n",
+            "no",
+        ),  # nothing is scrap: a deadlock
+        (
+            "    trans Work code action act ()",
+            "    trans Work guard [k = 2]",
+            "no",
+        ),  # a script stops
+    ],
+)
+def test_what_is_wrong_is_said_by_the_whole(
+    tmp_path: Path, old: str, new: str, answer: str
+) -> None:
+    net = NET.replace(old, new)
+    assert net != NET
+    whole = verified(tmp_path / "whole", net, "--no-reduction")
+    found = verified(tmp_path / "found", net)
+    assert answers(found) == answers(whole)
+    by_name = {c["check"]: c["answer"] for c in whole["controller"]}
+    if by_name["non-blocking"] == answer:
+        assert found["cell"]["reduced"] is False
+
+
+def test_what_goes_round_is_looked_at_as_a_whole(tmp_path: Path) -> None:
+    back = (
+        "    trans Back code action act ()\n      in Done : k\n      out Told : k\n    trans Say\n"
+    )
+    net = NET.replace("    trans Say\n", back)
+    found = verified(tmp_path, net)
+    assert found["cell"]["reduced"] is False
+    assert answers(found) == answers(verified(tmp_path, net, "--no-reduction"))
