@@ -18,6 +18,7 @@ import numpy as np
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot.commands import Pose
+from pn2code.robot.elsewhere import standing_at
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array
 
@@ -144,7 +145,7 @@ def base_of(cell: RobotCell, robot: str, free: Sequence[Free], values: Sequence[
 
 def moved(cell: RobotCell, free: Sequence[Free], values: Sequence[float]) -> RobotCell:
     """The cell with its arms there."""
-    robots = tuple(replace(r, base=base_of(cell, r.name, free, values)) for r in cell.robots)
+    robots = tuple(standing_at(r, base_of(cell, r.name, free, values)) for r in cell.robots)
     return replace(cell, robots=robots)
 
 
