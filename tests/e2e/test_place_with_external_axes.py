@@ -24,6 +24,7 @@ from pn2code.geometry.legs import Planner
 from pn2code.geometry.placing.free import Free, moved, parse
 from pn2code.geometry.placing.judging import Judge
 from pn2code.geometry.placing.plan import Plan
+from pn2code.geometry.placing.search import Search, Wish
 from pn2code.geometry.reach_map import Task
 from pn2code.robot.carried import WithAxes
 from pn2code.robot.commands import Along, MoveExternal, MoveHome, MoveJoint, MoveLinear
@@ -135,6 +136,20 @@ def test_what_is_reached_is_what_an_arm_on_its_track_reaches_there() -> None:
     finally:
         judge.close()
     assert counts == {True, False}
+
+
+def test_an_arm_that_is_told_no_pose_reaches_all_from_everywhere() -> None:
+    cell = loaded()
+    free = parse(["right.base.y"], cell, 0.1)
+    task = Task(np.zeros((0, 4, 4)), ())
+    plan = Plan(((-1, MoveHome()), (0, MoveExternal(along=(Along("bench", 0.2, is_track=True),)))))
+    judge = Judge(cell, {"right": task}, {"right": plan}, free)
+    try:
+        found = Search(judge, Wish(clearance=0.005), generations=1).run()
+    finally:
+        judge.close()
+    assert found.here.meets and found.here.reach == 1.0
+    assert all(c.meets for c in found.ranked) and found.ranked
 
 
 def test_a_welding_arm_is_placed_and_the_check_says_the_same(tmp_path: Path) -> None:

@@ -40,7 +40,7 @@ EPILOG = """Examples:
 
   pn2code place examples/riveting --layout paper --free robot2.base.x,y,z,yaw
 
-  pn2code place examples/tending --free loader.base.x=0.2:1.5,y --goal clearance -o placed
+  pn2code place examples/tending --free arm1.base.x=-0.2:0.2,y --goal clearance -o placed
 """
 MOST_MISSED = 8
 """Poses that are listed."""

@@ -104,6 +104,8 @@ class Judge:
         groups, reached = 0, np.zeros(count)
         condition = np.zeros(count)
         for name, task in self.tasks.items():
+            if not task.groups:
+                continue  # joint positions are reached from everywhere
             bases = [matrix_of(base_of(self.cell, name, self.free, row)) for row in values]
             found = judge(self.cell.robot(name), task, np.stack(bases))
             robots[name] = found
@@ -111,7 +113,8 @@ class Judge:
             reached += found.reached.sum(axis=1)
             groups += len(task.groups)
             condition = np.maximum(condition, found.condition)
-        return Values(reached / max(1, groups), condition, robots)
+        reach = reached / groups if groups else np.ones(count)
+        return Values(reach, np.maximum(condition, 1.0), robots)
 
     def walk(self, values: Sequence[float], enough: float) -> Walked:
         """All that is done from a placing.

@@ -226,6 +226,8 @@ class _Placing:
         values = judge.look(np.array([found.nearest.values]))
         out = []
         for robot, task in judge.tasks.items():
+            if not task.groups:
+                continue
             ok = values.robots[robot].reached[0]
             for i, group in enumerate(task.groups):
                 if not ok[i]:
