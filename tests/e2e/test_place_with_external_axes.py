@@ -154,6 +154,15 @@ def test_an_arm_that_is_told_no_pose_reaches_all_from_everywhere() -> None:
 
 def test_a_welding_arm_is_placed_and_the_check_says_the_same(tmp_path: Path) -> None:
     far = TOML.replace("base = { x = 0.0, y = -1.2,", "base = { x = 0.0, y = -3.4,")
+    # What the layout has from which it starts is in the one that is written, too, under a name that is free.
+    far += """
+[layouts.placed]
+description = "slow"
+robots.left.base.z = 0.35
+robots.right.base = { x = 0.05 }
+motion.joint_speed = 0.3
+scene.objects = [{ name = "far box", size = [0.1, 0.1, 0.1], pose = { x = 4.0, z = 0.05 } }]
+"""
     cell = welding_cell(tmp_path / "cell", toml=far)
     run = CliRunner()
     out = tmp_path / "out"
@@ -165,7 +174,13 @@ def test_a_welding_arm_is_placed_and_the_check_says_the_same(tmp_path: Path) -> 
     assert found["run"]["verdict"] == "finished"
     with (cell / "cell.toml").open("a") as file:
         file.write((out / "layout.toml").read_text())
-    check = ["check", "--geometry", str(cell), "--layout", "placed", "--traces", str(out), "--json"]
+    layouts = tomllib.loads((cell / "cell.toml").read_text())["layouts"]
+    old, new = layouts["placed"], layouts["placed2"]
+    assert {k: old[k] for k in ("motion", "scene")} == {k: new[k] for k in ("motion", "scene")}
+    assert new["robots"]["right"] == old["robots"]["right"]
+    assert new["robots"]["left"]["base"]["z"] == 0.35
+    check = ["check", "--geometry", str(cell), "--traces", str(out), "--json", "--layout"]
+    check.append("placed2")
     result = run.invoke(app, check)
     assert result.exit_code == 0, result.output
     (layout,) = json.loads(result.stdout)["layouts"]
