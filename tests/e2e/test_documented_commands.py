@@ -74,6 +74,7 @@ LONG = {
 }
 """Too long for each run of the tests; `make thorough` types them, too. With the reason."""
 
+WATCHED = "it goes on until somebody ends it; test_watch_page does the same"
 PLAYED = "a server that goes on until somebody ends it; test_play_server begins and ends it"
 NEVER = {
     "./dev test": "these are the tests",
@@ -91,6 +92,8 @@ NEVER = {
     "make misra": "test_misra does it",
     "make mutation": "twenty minutes; test_conform changes programs, too",
     "pn2code run mycell --realtime --live --port 8080 --speed 2": "test_live does the same",
+    "pn2code watch shared --cell examples/riveting": WATCHED,
+    "pn2code watch run": WATCHED,
     "pn2code play mynet.cpn": PLAYED,
     "pn2code play examples/philosophers/philosophers.cpn": PLAYED,
     "pn2code play mynet.cpn --trace mynet.dead-40.trace.jsonl": PLAYED,

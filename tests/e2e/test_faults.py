@@ -724,7 +724,9 @@ def halted_run(
             pid, shared = engine.supervisor.pid, engine.robots[0].files.shared.path  # type: ignore[attr-defined]
             told.with_name("telling").write_text(f"{pid} {shared}")
             told.with_name("telling").rename(told)
-            time.sleep(DEADLINE_S)
+            end = time.monotonic() + DEADLINE_S
+            while time.monotonic() < end and not engine.interrupted():  # type: ignore[attr-defined]
+                time.sleep(0.01)
 
     command = run_command(cell, tmp_path / "out", halt, *options)
     children.append(command)
@@ -761,24 +763,31 @@ def test_run_killed_the_supervisor_ends_by_itself(
         assert not [p for p in seen.shared.iterdir() if p.name.endswith(".tmp")]
     finally:
         shutil.rmtree(seen.shared)
-    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == [
-        "program",
-        "supervisor.trace.jsonl",
-    ]
-    for line in (tmp_path / "out" / "supervisor.trace.jsonl").read_text().splitlines():
-        json.loads(line)
+    growing, whole = ["supervisor.trace.jsonl"], list[str]()
+    if options:
+        growing, whole = [*growing, "robots.trace.jsonl"], ["running.json"]
+    found = sorted(p.name for p in (tmp_path / "out").iterdir())
+    assert found == sorted(["program", *growing, *whole])
+    for name in growing:
+        for line in (tmp_path / "out" / name).read_text().splitlines():
+            json.loads(line)
+    for name in whole:
+        json.loads((tmp_path / "out" / name).read_text())
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
 def test_run_interrupted(cell: Cell, children: list[Child], tmp_path: Path, number: int) -> None:
+    """In lock-step: the cell is stopped, and what it has done is there to be looked at."""
     command, seen = halted_run(cell, children, tmp_path)
     command.signal(number)
     done = command.done()
     assert done.returncode == 130
-    assert done.stderr.endswith("pn2code: interrupted\n")
+    assert "pn2code: interrupted; the run as far as it went is in" in done.stderr
     assert has_ended(seen.pid)
     assert not seen.shared.exists()
-    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == [
-        "program",
-        "supervisor.trace.jsonl",
-    ]
+    out = tmp_path / "out"
+    assert json.loads((out / "summary.json").read_text())["verdict"] == "stopped"
+    (trace,) = [p for p in out.glob("*.trace.jsonl") if not p.name.startswith("supervisor")]
+    assert str(trace) in done.stderr.replace("\n", "")
+    steps = [json.loads(line) for line in trace.read_text().splitlines()]
+    assert len(steps) > 1

@@ -22,7 +22,7 @@ def chromium() -> Iterator[Any]:
 
 def test_a_run_is_seen_and_stopped(root: Path, chromium: Any, tmp_path: Path) -> None:
     cell = hostile(root / "examples/minimal", tmp_path / "cell")
-    with running(cell, tmp_path / "run", "--speed", "0.4") as run, opened(chromium) as browser:
+    with running(cell, tmp_path / "run", "--speed", "0.15") as run, opened(chromium) as browser:
         page = browser.page
         page.goto(run.url)
         page.wait_for_selector("body[data-ready=true]")

@@ -261,3 +261,22 @@ def test_check_knows_constant_joint_positions_beyond_the_limits(tmp_path: Path) 
     done = CliRunner().invoke(app, ["check", str(where), "--format", "concise"])
     assert done.exit_code == 1
     assert "a constant joint position cannot be reached: robot `robot1`: axis 2" in done.output
+
+
+@pytest.mark.parametrize(("y", "is_wrong"), [(500.0, True), (505.0, False)])
+def test_check_knows_constant_arcs_that_are_none(y: float, is_wrong: bool, tmp_path: Path) -> None:
+    def pose(x: float, y: float) -> str:
+        return f"{{x = {x}, y = {y}, z = 1200.0, rx = 0.0, ry = 90.0, rz = 0.0}}"
+
+    first = f"({pose(900.0, 480.0)}, {pose(1000.0, 500.0)})"
+    second = f"({pose(1050.0, y)}, {pose(1100.0, 500.0)})"
+    where = cell(
+        tmp_path,
+        '{ command = "move_circular", frame = "world" }',
+        takes="q : POSE, p : POSE",
+        argument=f"{first}; moveJoint {second}",
+    )
+    done = CliRunner().invoke(app, ["check", str(where), "--format", "concise"])
+    assert done.exit_code == int(is_wrong), done.output
+    says = "a constant circular move cannot be made: the places of a circular move lie on a line"
+    assert (says in done.output) == is_wrong

@@ -232,7 +232,7 @@ def test_a_signal_ends_it_well(net: Path, number: int) -> None:
         talk.ask("edit", place=0, text="1`(~1000000000)")
         talk.start("run", steps=100_000_000, engine="reference")
         talk.hear("progress")
-        server.process.send_signal(number)
+        server.process.signal(number)
         _, errors = server.process.communicate(timeout=PATIENCE_S)
         assert server.process.returncode == 0 and "Traceback" not in errors
 

@@ -100,7 +100,7 @@ VERB: dict[str, tuple[list[str], Callable[[Done, Path], int]]] = {
     "run": (["run", "--backend", "fake", "--no-pictures", "-o", "out"], ran),
 }
 """The command of each verb, and how many pieces there were by what it says."""
-UNREAD = {"dump", "contest", "robot", "explain", "show", "init", "cell", "report"}
+UNREAD = {"dump", "contest", "robot", "explain", "show", "init", "cell", "report", "watch"}
 """Verbs that read no such file themselves."""
 
 
@@ -129,7 +129,7 @@ def do(where: Path, command: list[str], *more: str | Path) -> Done:
 def test_the_table_has_each_verb(root: Path) -> None:
     named = [v for verbs, _ in table(root) for v in verbs]
     assert set(VERBS) == {v.split()[0] for v in named if v != "./supervisor"}
-    tested = {*VERB, "check", "structure", "reach", "time", "replay", "simulate --replay"}
+    tested = {*VERB, "check", "structure", "reach", "place", "time", "replay", "simulate --replay"}
     tested |= {"play --trace", "draw --trace"}
     assert set(named) - {"./supervisor", *UNREAD} == tested
 

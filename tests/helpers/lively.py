@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import os
 import re
 import shutil
-import subprocess
-import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from helpers.played import PATIENCE_S, Served
+from helpers.processes import Talking
 
 HOSTILE = "<img src=x onerror=alert(1)>"
 
@@ -24,8 +22,7 @@ class Running(Served):
         stop_token: what the terminal has printed.
     """
 
-    def __init__(self, process: subprocess.Popen[str], out: Path) -> None:
-        assert process.stdout is not None
+    def __init__(self, process: Talking, out: Path) -> None:
         said = [process.stdout.readline() for _ in range(3)]
         assert all(said), process.communicate()
         super().__init__(process, said[0].split()[-1])
@@ -35,30 +32,22 @@ class Running(Served):
 
     def wait(self) -> tuple[int, str]:
         """Until it ends: exit code, and all that it has printed since."""
-        output, errors = self.process.communicate(timeout=PATIENCE_S)
-        return self.process.returncode, output + errors
+        output, errors = self.process.communicate(PATIENCE_S)
+        return self.process.wait(), output + errors
 
 
 @contextmanager
 def running(cell: Path, out: Path, *arguments: str) -> Iterator[Running]:
     """A cell that runs, with the fake backend."""
-    command = [
-        sys.executable, "-m", "pn2code", "run", str(cell), "--realtime", "--live", "--backend", "fake",
-        "--no-pictures", "--unchecked", "-o", str(out), *arguments,
-    ]  # fmt: skip
-    process = subprocess.Popen(
-        command,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env={**os.environ, "PYTHONUNBUFFERED": "1", "COLUMNS": "200"},
-    )
+    process = Talking(
+        "run", cell, "--realtime", "--live", "--backend", "fake", "--no-pictures", "--unchecked", "-o", out, *arguments,
+        environment={"COLUMNS": "200"},
+    )  # fmt: skip
     try:
         yield Running(process, out)
     finally:
-        if process.poll() is None:
-            process.kill()
-        process.communicate(timeout=PATIENCE_S)
+        process.kill()
+        process.communicate(PATIENCE_S)
 
 
 def hostile(example: Path, folder: Path) -> Path:

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 import http.client
 import json
-import os
 import re
 import signal
 import socket
 import subprocess
-import sys
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -28,6 +26,7 @@ from wsproto.events import (
 )
 
 from helpers import netbuilder
+from helpers.processes import Talking
 from pn2code.diagnostics import Diagnostics
 from pn2code.play.loading import Loaded, load
 from pn2code.play.session import MOST_BYTES, Session
@@ -96,7 +95,7 @@ class Served:
         said: what it has printed before.
     """
 
-    def __init__(self, process: subprocess.Popen[str], url: str) -> None:
+    def __init__(self, process: Talking, url: str) -> None:
         self.process = process
         self.url = url
         found = re.fullmatch(r"http://127\.0\.0\.1:(\d+)/([\w-]+)/", url)
@@ -123,40 +122,27 @@ class Served:
 
     def end(self) -> int:
         """Ctrl-C; the exit code."""
-        self.process.send_signal(signal.SIGINT)
-        self.process.communicate(timeout=PATIENCE_S)
-        return self.process.returncode
+        self.process.signal(signal.SIGINT)
+        self.process.communicate(PATIENCE_S)
+        return self.process.wait()
 
 
 @contextmanager
 def served(*arguments: str | Path) -> Iterator[Served]:
     """A server, as long as the block lasts."""
     process = start(*arguments)
-    assert process.stdout is not None and process.stderr is not None
     try:
         line = process.stdout.readline()
         assert "http://" in line, line + process.stderr.read()
         yield Served(process, line.split()[-1])
     finally:
-        if process.poll() is None:
-            process.send_signal(signal.SIGINT)
-        try:
-            process.communicate(timeout=PATIENCE_S)
-        except subprocess.TimeoutExpired:
-            process.kill()
-            raise
+        process.signal(signal.SIGINT)
+        process.communicate(PATIENCE_S)
 
 
-def start(*arguments: str | Path) -> subprocess.Popen[str]:
+def start(*arguments: str | Path) -> Talking:
     """The command, without a browser."""
-    command = [sys.executable, "-m", "pn2code", "play", "--no-browser", *map(str, arguments)]
-    return subprocess.Popen(
-        command,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-        env={**os.environ, "PYTHONUNBUFFERED": "1"},
-    )
+    return Talking("play", "--no-browser", *arguments)
 
 
 class Refused(Exception):  # noqa: N818
@@ -283,14 +269,11 @@ class Talk:
 def first_page(*arguments: str | Path) -> subprocess.CompletedProcess[str]:
     """The command, ended when its first page has been told the marking, which is the last line of the output."""
     process = start(*arguments)
-    assert process.stdout is not None
     line = process.stdout.readline()
     told = ""
     if "http://" in line:
         with Talk(Served(process, line.split()[-1])) as talk:
             told = json.dumps(talk.marking) + "\n"
-        process.send_signal(signal.SIGINT)
+        process.signal(signal.SIGINT)
     output, errors = process.communicate(timeout=PATIENCE_S)
-    return subprocess.CompletedProcess(
-        process.args, process.returncode, line + output + told, errors
-    )
+    return subprocess.CompletedProcess(arguments, process.wait(), line + output + told, errors)

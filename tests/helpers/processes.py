@@ -17,7 +17,8 @@ import sys
 import tempfile
 import time
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 
@@ -128,6 +129,53 @@ class Command(Child):
         assert "Traceback" not in texts[1], texts[1]
         assert "internal error" not in texts[1], texts[1]
         return subprocess.CompletedProcess(self.arguments, code, *texts)
+
+
+class Talking(Child):
+    """`pn2code ARGUMENTS` under way, whose output can be read meanwhile: what tests use of `subprocess.Popen`.
+
+    It has no files open but its own, so that what the tests have opened ends when they close it.
+    """
+
+    def __init__(
+        self, *arguments: str | Path, environment: Mapping[str, str] | None = None
+    ) -> None:
+        (out, out_end), (err, err_end) = os.pipe(), os.pipe()
+
+        def body() -> int:
+            os.closerange(3, 1 << 16)
+            for number, name in ((1, "stdout"), (2, "stderr")):
+                setattr(sys, name, open(number, "w", buffering=1, encoding="utf-8", closefd=False))  # noqa: SIM115
+            os.environ.update(environment or {})
+            sys.argv = ["pn2code", *map(str, arguments)]
+            play()
+
+        super().__init__(body, out_end, err_end)
+        os.close(out_end)
+        os.close(err_end)
+        self.stdout = open(out, encoding="utf-8")  # noqa: SIM115, PTH123 - closed by `communicate`
+        self.stderr = open(err, encoding="utf-8")  # noqa: SIM115, PTH123
+
+    @property
+    def returncode(self) -> int | None:
+        """The exit code, None as long as nobody has asked for it."""
+        return self._code
+
+    def communicate(self, timeout: float = DEADLINE_S) -> tuple[str, str]:
+        """What it prints until it ends.
+
+        Raises:
+            TimeoutError: it goes on; it has been killed.
+        """
+        if self.stdout.closed:
+            return "", ""
+        with ThreadPoolExecutor(2) as pool:  # it may fill either pipe
+            texts = [pool.submit(stream.read) for stream in (self.stdout, self.stderr)]
+            self.wait(timeout)
+            said, errors = (text.result() for text in texts)
+        self.stdout.close()
+        self.stderr.close()
+        return said, errors
 
 
 def pn2code(

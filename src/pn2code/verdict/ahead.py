@@ -28,17 +28,22 @@ from pn2code.robot.commands import (
     MoveExternal,
     MoveJoint,
     MoveLinear,
+    Pose,
 )
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor
+from pn2code.robot.motion import Arc, MotionFault
 from pn2code.robot.parts import PartFault
 from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.transforms import matrix_of
 from pn2code.robot_scripts.ir import Chain, Line, Node, Region, Repeat, RobotIR
 from pn2code.run.handling import PartKeeper
 from pn2code.run.sensors import load as load_sensors
 from pn2code.tdl import tree as t
 from pn2code.tdl.evaluate import ScriptError, ScriptPose, ScriptValue, evaluate
 from pn2code.tdl.messages import to_si
+
+_ToPose = MoveJoint | MoveLinear | MoveCircular
 
 
 def look_ahead(
@@ -72,6 +77,7 @@ def look_ahead(
     if arms is not None:
         for ir in programs:
             _reach(arms, ir, d)
+            _arcs(ir, d)
 
 
 def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> None:
@@ -147,10 +153,74 @@ def _reach(arms: Arms, ir: RobotIR, d: Diagnostics) -> None:
             )
 
 
+def _arcs(ir: RobotIR, d: Diagnostics) -> None:
+    """Arcs through three constant places that lie on a line."""
+    for origin, before, arc in _constant_arcs(ir):
+        try:
+            Arc(*(matrix_of(pose) for pose in (before.target, arc.via, arc.target)))
+        except MotionFault as fault:
+            d.error(
+                codes.ROBOT_REACH,
+                f"a constant circular move cannot be made: {fault.message}",
+                origin,
+                hint="change the place on the way or the end; they are in mm",
+            )
+
+
+def _constant_arcs(ir: RobotIR) -> Iterator[tuple[Origin, _ToPose, MoveCircular]]:
+    """Arcs between constants that begin where the move before has led, as far as that is a constant, too."""
+    constants = _constants_of(ir)
+    for body in (ir.body, *(body for _, body in ir.procedures)):
+        for origin, before, move in _one_after_the_other(body, ir.origin):
+            if move.motion is not t.Motion.CIRCULAR or _place_on_the_way(move, constants) is None:
+                continue
+            try:
+                first, arc = _constant(before, constants), _constant(move, constants)
+            except ScriptError:
+                continue
+            is_same = (before.frame, before.tcp) == (move.frame, move.tcp) and move.frame != "tool"
+            # External axes may carry the frame or the arm elsewhere meanwhile.
+            if not is_same or before.along or move.along or not isinstance(arc, MoveCircular):
+                continue
+            if isinstance(first, _ToPose):
+                yield origin, first, arc
+
+
+def _one_after_the_other(
+    nodes: Iterable[Node], origin: Origin
+) -> Iterator[tuple[Origin, t.Move, t.Move]]:
+    """Each two moves between which the arm does not move, for whatever reason."""
+    before: t.Move | None = None
+    for node in nodes:
+        match node:
+            case Line(t.Move() as move):
+                if before is not None:
+                    yield origin, before, move
+                before = move
+            case Line(t.Assign() | t.Clear() | t.Mark() | t.Tool() | t.WaitTime() | t.Write()):
+                continue
+            case Region(body=body):
+                before = None
+                yield from _one_after_the_other(body, node.origin)
+            case Repeat(body=body):
+                before = None
+                yield from _one_after_the_other(body, origin)
+            case Chain(branches, otherwise):
+                before = None
+                for body in (*(b for _, b in branches), otherwise or ()):
+                    yield from _one_after_the_other(body, origin)
+            case _:
+                before = None
+
+
+def _constants_of(ir: RobotIR) -> _Constants:
+    declared = (c.declaration for c in ir.constants)
+    return _Constants({c.name: c.value for c in declared if isinstance(c, t.Const)})
+
+
 def _constant_poses(ir: RobotIR) -> Iterator[tuple[Origin, Move]]:
     """The moves of a program to where is known before it runs: to constants, but not in the frame of the tool."""
-    declared = (c.declaration for c in ir.constants)
-    constants = _Constants({c.name: c.value for c in declared if isinstance(c, t.Const)})
+    constants = _constants_of(ir)
     bodies = (ir.body, *(body for _, body in ir.procedures))
     for origin, move in (x for body in bodies for x in _moves(body, ir.origin)):
         if (move.target is None and not move.along) or move.frame == "tool":
@@ -175,13 +245,23 @@ def _constant(move: t.Move, constants: _Constants) -> Move:
     pose, frame = to_si(value), move.frame or "world"
     match move.motion:
         case t.Motion.JOINT:
-            return MoveJoint(pose, frame=frame, along=along)
+            return MoveJoint(pose, frame=frame, along=along, tcp=move.tcp)
         case t.Motion.LINEAR:
-            return MoveLinear(pose, frame, along=along)
+            return MoveLinear(pose, frame, along=along, tcp=move.tcp)
         case _:
-            return MoveCircular(
-                pose, pose, frame, along=along, tcp=move.tcp
-            )  # of an arc only its end is looked at
+            via = _place_on_the_way(move, constants) or pose
+            return MoveCircular(via=via, target=pose, frame=frame, along=along, tcp=move.tcp)
+
+
+def _place_on_the_way(move: t.Move, constants: _Constants) -> Pose | None:
+    """Of an arc; None: it is not known before the program runs, so that only its end is looked at."""
+    try:
+        value = evaluate(move.via, constants) if move.via is not None else None
+    except ScriptError:
+        return None
+    if not isinstance(value, ScriptPose) or not all(map(math.isfinite, astuple(value))):
+        return None
+    return to_si(value)
 
 
 def _external(a: t.Along, constants: _Constants) -> Along:
