@@ -55,6 +55,8 @@ def test_what_may_be_chosen_is_read() -> None:
     assert (z.low, z.high) == (0.0, 0.5)  # not into the floor
     assert (x.low, x.high, x.here) == (5.0, 6.5, 5.75)
     assert (yaw.low, yaw.high) == pytest.approx((-270.0, 90.0))
+    (narrow,) = parse(["robot2.base.x=5.0104:5.0126"], cell, 1.0)
+    assert (narrow.low, narrow.high) == (5.011, 5.012)  # rounded inwards
     there = moved(cell, found, (0.25, 6.0, 0.0))
     assert there.robot("robot1").base == replace(cell.robot("robot1").base, z=0.25)
     assert there.robot("robot2").base == replace(cell.robot("robot2").base, x=6.0, rz=0.0)
@@ -73,6 +75,8 @@ def test_what_may_be_chosen_is_read() -> None:
         ("robot2.base.x=5:inf", "`inf` in"),
         ("robot2.base.x=6:5", "below the upper"),
         ("robot2.base.x,x", "named twice"),
+        ("robot2.base.x=5.0001:5.0004", "no two whole millimetres"),
+        ("robot2.base.yaw=5.01:5.14", "no two tenths"),
     ],
 )
 def test_mistakes_are_told(text: str, says: str) -> None:

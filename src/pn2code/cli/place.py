@@ -40,7 +40,7 @@ EPILOG = """Examples:
 
   pn2code place examples/riveting --layout paper --free robot2.base.x,y,z,yaw
 
-  pn2code place examples/tending --free loader.base.x=0.2:1.5,y --goal clearance -o placed
+  pn2code place examples/tending --free arm1.base.x=-0.2:0.2,y --goal clearance -o placed
 """
 MOST_MISSED = 8
 """Poses that are listed."""
@@ -213,6 +213,7 @@ def _ran(
 
 def _written(found: Placed, out: Path) -> list[Path]:
     """The layout, the front as a picture and as a table; those of an earlier search do not stay."""
+    from pn2code.geometry.placing.layout import layout_text
     from pn2code.geometry.placing.picture import draw
 
     out.mkdir(parents=True, exist_ok=True)
@@ -223,7 +224,7 @@ def _written(found: Placed, out: Path) -> list[Path]:
     files = []
     front = found.found.front
     if found.chosen is not None:
-        layout.write_text(layout_text(found.free, found.chosen, found.layout), encoding="utf-8")
+        layout.write_text(layout_text(found), encoding="utf-8")
         files.append(layout)
     if front:
         chosen = found.chosen.candidate if found.chosen is not None else None
@@ -236,28 +237,6 @@ def _written(found: Placed, out: Path) -> list[Path]:
         table.write_text("\n".join(lines) + "\n", encoding="utf-8")
         files += [picture, table]
     return files
-
-
-def layout_text(free: Sequence[Free], chosen: Tried, start: str) -> str:
-    """The placing as a layout of cell.toml; keys that were not free are written, too, so that it stands alone."""
-    from pn2code.geometry.placing.free import KEYS, LENGTHS
-
-    from_ = f", from the layout `{start}`" if start else ""
-    lines = [
-        f"# Found by `pn2code place`{from_}. Copy it into cell.toml; the name is free.",
-        "[layouts.placed]",
-    ]
-    for robot in dict.fromkeys(f.robot for f in free):
-        base = chosen.cell.robot(robot).base
-        parts = []
-        for key, field in KEYS.items():
-            value = float(getattr(base, field))
-            shown = value if key in LENGTHS else math.degrees(value)
-            if abs(shown) > 1e-9 or key in ("x", "y", "z", "yaw"):
-                parts.append(f"{key} = {round(shown, 6) + 0.0:.10g}")
-        inner = ", ".join(parts)
-        lines.append(f"robots.{robot}.base = {{ {inner} }}")
-    return "\n".join(lines) + "\n"
 
 
 # --- words -------------------------------------------------------------------------------------------

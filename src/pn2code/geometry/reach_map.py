@@ -21,6 +21,7 @@ from pn2code.base.frozen import frozen
 from pn2code.geometry.situations import Situations
 from pn2code.geometry.words import words
 from pn2code.robot.along import AlongTrajectory
+from pn2code.robot.carried import WithAxes
 from pn2code.robot.commands import (
     MoveAxes,
     MoveCircular,
@@ -51,33 +52,52 @@ class Task:
         poses: `T_world_tcp`, (n, 4, 4).
         groups: those that must be reached in one branch, as slices of them: a pose, or the samples of a line.
         names: of the groups, the commands in words; (): they have none.
+        shifts: of each pose how far tracks have carried the arm by then, in the frame of its base, (n, 3); None: it has
+            no tracks.
     """
 
     poses: Array
     groups: tuple[slice, ...]
     names: tuple[str, ...] = ()
+    shifts: Array | None = None
+
+    @property
+    def carried(self) -> Array:
+        """How far tracks have carried the arm, (n, 3)."""
+        return np.zeros((len(self.poses), 3)) if self.shifts is None else self.shifts
 
     @staticmethod
     def of(found: Situations, robot: CellRobot) -> Task:
         """All that a robot is told, from wherever it can be then; joint positions belong to the arm, not the task."""
         parts: list[Array] = []
+        shifts: list[Array] = []
         names: list[str] = []
         seen: set[tuple[float, ...]] = set()
         for leg in found.doing.planner.legs:
             if leg.robot != robot.name or isinstance(leg.command, _OF_ARM):
                 continue
             own: Array | None = None
+            shift = np.zeros((1, 3))
             planner = found.doing.planner
             if isinstance(leg.path, LinearTrajectory | AlongTrajectory):
                 line = leg.path.line
                 count = max(2, int(np.ceil(line.length / LINE_STEP)) + 1)
-                own = robot.T_world_base @ line.at(np.linspace(0.0, 1.0, count))
+                way = np.linspace(0.0, 1.0, count)
+                own = line.at(way)
+                shift = np.zeros((count, 3))
+                if isinstance(leg.path, AlongTrajectory):
+                    shift = leg.path.way.carried(way)
+                own[:, :3, 3] += shift
+                own = robot.T_world_base @ own
             elif (
                 isinstance(leg.command, MoveJoint | MoveLinear | MoveCircular)
                 and leg.command.frame != "tool"
             ):
                 if robot.axes:
-                    own = (robot.T_world_base @ planner.seen_from_arm(leg.start, leg.command))[None]
+                    own = planner.seen_from_arm(leg.start, leg.command)[None]
+                    shift = _shift(robot, leg.start.q, leg.command)[None]
+                    own[:, :3, 3] += shift
+                    own = robot.T_world_base @ own
                 else:
                     own = matrix_of(leg.command.target)[None]
                     if leg.command.frame != "world":
@@ -88,15 +108,28 @@ class Task:
             if tcp and (not robot.axes or isinstance(leg.path, LinearTrajectory | AlongTrajectory)):
                 back = inverse(robot.tcps[tcp].T_flange_tcp) @ robot.kinematics.T_flange_tcp
                 own = own @ back
-            key = tuple(np.round(own[[0, -1]], _DIGITS).ravel().tolist())
+            ends = (own[[0, -1]], shift[[0, -1]])
+            key = tuple(x for e in ends for x in np.round(e, _DIGITS).ravel().tolist())
             if key not in seen:
                 seen.add(key)
                 parts.append(own)
+                shifts.append(shift)
                 names.append(words(leg.command))
-        ends = np.cumsum([len(p) for p in parts], dtype=int).tolist()
-        groups = tuple(slice(e - len(p), e) for e, p in zip(ends, parts, strict=True))
+        last = np.cumsum([len(p) for p in parts], dtype=int).tolist()
+        groups = tuple(slice(e - len(p), e) for e, p in zip(last, parts, strict=True))
         poses = np.concatenate(parts) if parts else np.zeros((0, 4, 4))
-        return Task(poses, groups, tuple(names))
+        carried = np.concatenate(shifts) if parts and robot.axes.tracks else None
+        return Task(poses, groups, tuple(names), carried)
+
+
+def _shift(robot: CellRobot, q: Array, command: MoveJoint | MoveLinear | MoveCircular) -> Array:
+    """How far tracks have carried the arm where a move ends that begins at `q`, in the frame of its base."""
+    if not isinstance(robot.kinematics, WithAxes):
+        return np.zeros(3)
+    there = np.array(q)
+    for a in command.along:
+        there[robot.index(a.axis)] = a.position
+    return np.asarray(robot.kinematics.shifts(there[None])[0])
 
 
 @frozen(eq=False)
@@ -174,7 +207,9 @@ def _judged(robot: CellRobot, task: Task, frames: Array) -> Judged:
     T_base_world[:, :3, :3] = turn
     T_base_world[:, :3, 3] = -(turn @ frames[:, :3, 3, None])[..., 0]
     T_base_world[:, 3, 3] = 1.0
-    poses = (T_base_world[:, None] @ task.poses).reshape(-1, 4, 4)
+    poses = T_base_world[:, None] @ task.poses
+    poses[..., :3, 3] -= task.carried  # tracks go where the base has them
+    poses = poses.reshape(-1, 4, 4)
     rows = kinematics.all_branches(poses)
     rows, margin = _in_middle(kinematics, rows)
     inside = margin >= 0.0

@@ -42,7 +42,12 @@ def with_axes(arm: Arm, axes: Externals, robot: str, at: Origin, d: Diagnostics)
                 hint="choose another name",
             )
             return None
-    tree = urdf.tree_of(arm.urdf.path, _joined(arm, axes))
+    return joined(arm, axes)
+
+
+def joined(arm: Arm, axes: Externals) -> Arm:
+    """The same, with axes whose names are known to be free."""
+    tree = urdf.tree_of(arm.urdf.path, _tree(arm, axes))
     chain = tree.chain(arm.flange)
     return Arm(
         arm.name,
@@ -59,7 +64,7 @@ def with_axes(arm: Arm, axes: Externals, robot: str, at: Origin, d: Diagnostics)
     )
 
 
-def _joined(arm: Arm, axes: Externals) -> etree._Element:
+def _tree(arm: Arm, axes: Externals) -> etree._Element:
     out: etree._Element = copy.deepcopy(arm.urdf.xml)
     etree.SubElement(out, "link", name=STAND)
     last = STAND

@@ -18,6 +18,7 @@ import numpy as np
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot.commands import Pose
+from pn2code.robot.elsewhere import standing_at
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array
 
@@ -114,7 +115,13 @@ def _one(text: str, robot: str, part: str, cell: RobotCell, around: float) -> Fr
     low, high = (_number(match[side], part) for side in ("low", "high"))
     if not low < high:
         raise FreeError(f"`{part.strip()}`: the lower bound must be below the upper one")
-    return Free(robot, key, low, high, here)
+    # Values are rounded, and must not leave the bounds by that.
+    scale = 10.0 ** DIGITS["m" if key in LENGTHS else "degrees"]
+    least, most = math.ceil(low * scale - 1e-6) / scale, math.floor(high * scale + 1e-6) / scale
+    if not least < most:
+        step = "whole millimetres" if key in LENGTHS else "tenths of a degree"
+        raise FreeError(f"`{part.strip()}`: there are no two {step} between the bounds")
+    return Free(robot, key, least, most, here)
 
 
 def _number(text: str, part: str) -> float:
@@ -144,7 +151,7 @@ def base_of(cell: RobotCell, robot: str, free: Sequence[Free], values: Sequence[
 
 def moved(cell: RobotCell, free: Sequence[Free], values: Sequence[float]) -> RobotCell:
     """The cell with its arms there."""
-    robots = tuple(replace(r, base=base_of(cell, r.name, free, values)) for r in cell.robots)
+    robots = tuple(standing_at(r, base_of(cell, r.name, free, values)) for r in cell.robots)
     return replace(cell, robots=robots)
 
 

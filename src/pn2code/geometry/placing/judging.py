@@ -83,6 +83,7 @@ class Judge:
         free: Sequence[Free],
     ) -> None:
         self.cell, self.tasks, self.plans, self.free = cell, dict(tasks), dict(plans), tuple(free)
+        self._moved = frozenset(f.robot for f in self.free)
         self._backend = BulletBackend(cell, looks=False)
         self.reached: dict[str, NDArray[np.bool_]] = {}
         """of each arm, what it has reached from any placing that was looked at"""
@@ -103,6 +104,8 @@ class Judge:
         groups, reached = 0, np.zeros(count)
         condition = np.zeros(count)
         for name, task in self.tasks.items():
+            if not task.groups:
+                continue  # joint positions are reached from everywhere
             bases = [matrix_of(base_of(self.cell, name, self.free, row)) for row in values]
             found = judge(self.cell.robot(name), task, np.stack(bases))
             robots[name] = found
@@ -110,7 +113,8 @@ class Judge:
             reached += found.reached.sum(axis=1)
             groups += len(task.groups)
             condition = np.maximum(condition, found.condition)
-        return Values(reached / max(1, groups), condition, robots)
+        reach = reached / groups if groups else np.ones(count)
+        return Values(reach, np.maximum(condition, 1.0), robots)
 
     def walk(self, values: Sequence[float], enough: float) -> Walked:
         """All that is done from a placing.
@@ -138,28 +142,44 @@ class Judge:
         return Walked(done, condition, limit, clearance, seconds)
 
     def _clearance(self, placed: RobotCell, walks: Mapping[str, Walk], enough: float) -> float:
-        for robot in placed.robots:
-            self._backend.set_base(robot.name, robot.base)
-            self._backend.set_joints(robot.name, robot.home)
+        if not any(placed.robot(name).axes.tables for name in self._moved):
+            for robot in placed.robots:
+                self._backend.set_base(robot.name, robot.base)
+                self._backend.set_joints(robot.name, robot.home)
+            return self._least(self._backend, placed, walks, enough)
+        # Seen from a base that is elsewhere its turntables are, too: the collision library has to build them anew.
+        backend = BulletBackend(placed, looks=False)
+        try:
+            return self._least(backend, placed, walks, enough)
+        finally:
+            backend.close()
+
+    def _least(
+        self, backend: BulletBackend, placed: RobotCell, walks: Mapping[str, Walk], enough: float
+    ) -> float:
         least = FAR
         for name, walk in walks.items():
             for row, is_loose in zip(walk.q, walk.loose, strict=True):
-                self._backend.set_joints(name, row)
-                least = min(least, self._standing(name, least, is_loose=bool(is_loose)))
+                backend.set_joints(name, row)
+                least = min(least, self._standing(backend, name, least, is_loose=bool(is_loose)))
                 if least <= 0.0 or least < enough:
                     return least
-            self._backend.set_joints(name, placed.robot(name).home)
+            backend.set_joints(name, placed.robot(name).home)
         return least
 
-    def _standing(self, name: str, limit: float, *, is_loose: bool) -> float:
-        # The pedestals in the collision library stay where the cell has them.
-        things = {t for t in self._backend.things if not t.endswith("_pedestal")}
-        if any(gap.distance <= 0.0 for gap in self._backend.pairs("self", name, _TOUCHING)):
+    def _standing(
+        self, backend: BulletBackend, name: str, limit: float, *, is_loose: bool
+    ) -> float:
+        # What a moved arm stands on stays where the cell has it in the collision library.
+        stays = self._moved if backend is self._backend else ()
+        own = {f"{robot}_{what}" for robot in stays for what in ("pedestal", "rail")}
+        things = {t for t in backend.things if t not in own}
+        if any(gap.distance <= 0.0 for gap in backend.pairs("self", name, _TOUCHING)):
             return 0.0
-        found = self._backend.pairs("scene", name, limit, only=things)
+        found = backend.pairs("scene", name, limit, only=things)
         for other in self.cell.robots:
             if other.name != name:
-                found += self._backend.pairs("robots", name, limit, other.name)
+                found += backend.pairs("robots", name, limit, other.name)
         return min((_counted(c, is_loose) for c in found), default=limit)
 
 

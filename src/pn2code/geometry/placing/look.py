@@ -226,6 +226,8 @@ class _Placing:
         values = judge.look(np.array([found.nearest.values]))
         out = []
         for robot, task in judge.tasks.items():
+            if not task.groups:
+                continue
             ok = values.robots[robot].reached[0]
             for i, group in enumerate(task.groups):
                 if not ok[i]:
@@ -236,8 +238,9 @@ class _Placing:
 
 def _keys(task: Task) -> Mapping[tuple[float, ...], int]:
     """Its groups by their ends."""
+    rows = np.concatenate([task.poses.reshape(-1, 16), task.carried], axis=1)
     return {
-        tuple(np.round(task.poses[[g.start, g.stop - 1]], 6).ravel().tolist()): i
+        tuple(np.round(rows[[g.start, g.stop - 1]], 6).ravel().tolist()): i
         for i, g in enumerate(task.groups)
     }
 
@@ -251,12 +254,14 @@ def _both(task: Task, other: Task) -> Task:
     own = _keys(task)
     more = [i for key, i in _keys(other).items() if key not in own]
     poses, groups, names = task.poses, list(task.groups), list(task.names)
+    shifts = task.carried
     for i in more:
         part = other.poses[other.groups[i]]
         groups.append(slice(len(poses), len(poses) + len(part)))
         names.append(other.names[i])
         poses = np.concatenate([poses, part])
-    return Task(poses, tuple(groups), tuple(names))
+        shifts = np.concatenate([shifts, other.carried[other.groups[i]]])
+    return Task(poses, tuple(groups), tuple(names), shifts)
 
 
 __all__ = ["FreeError", "Missed", "Placed", "Request", "Tried", "look"]
