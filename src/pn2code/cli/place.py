@@ -266,7 +266,13 @@ def _text(
             figures = _figures(tried.proof.condition, tried.proof.limit, tried.proof.clearance)
             yield f"    on the whole way: {figures}"
     if found.chosen is None:
-        yield "NO: none of these holds on the whole way; wish for more (`--clearance`), or look at more (`--tries`)"
+        is_open = any(t.proof.answer == "unknown" for t in found.tried)
+        answer = (
+            "NOT KNOWN: none of these is proved"
+            if is_open
+            else "NO: none of these holds on the whole way"
+        )
+        yield f"{answer}; wish for more (`--clearance`), or look at more (`--tries`)"
     elif record is not None:
         why = f": {record.reason}" if record.reason else ""
         yield f"  ran in PyBullet: {record.verdict} after {record.time:.1f} s of the cell{why}"
