@@ -7,8 +7,8 @@
  * is that something is added or subtracted.
  *
  * Of these successors those are left out that no marking agrees with: because of relations that each marking fulfils
- * (`sum of weight * tokens + sum of weight * value = total`). Which places these are, and why nothing is missed, is said
- * in src/pn2code/verify/exploring/counts.py, which writes the table.
+ * (`sum of weight * tokens + sum of weight * value = total`). Which places these are, and why nothing is missed, is
+ * said in src/pn2code/verify/exploring/counts.py, which writes the table.
  */
 #include "explore_counts.h"
 
