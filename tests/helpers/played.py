@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import http.client
 import json
+import os
 import re
 import signal
 import socket
@@ -122,8 +123,9 @@ class Served:
 
     def end(self) -> int:
         """Ctrl-C; the exit code."""
-        self.process.signal(signal.SIGINT)
-        self.process.communicate(PATIENCE_S)
+        if self.process.poll() is None:
+            os.kill(self.process.pid, signal.SIGINT)
+        self.process.communicate(timeout=PATIENCE_S)
         return self.process.wait()
 
 
