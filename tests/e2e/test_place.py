@@ -129,6 +129,17 @@ def test_nothing_is_better_than_what_the_quick_look_says() -> None:
     assert done > 3
 
 
+def test_an_arm_that_is_told_nothing_has_done_everything() -> None:
+    cell = riveting_cell("paper")
+    free = parse(["robot2.base.x"], cell, 0.1)
+    judge = Judge(cell, {}, {"robot2": Plan(())}, free)
+    try:
+        assert judge.look(np.array([[5.75]])).reach[0] == 1.0
+        assert judge.walk((5.75,), 0.0).done == 1.0
+    finally:
+        judge.close()
+
+
 def test_no_other_one_is_better_in_everything() -> None:
     def candidate(condition: float, limit: float, at: float) -> Candidate:
         return Candidate((at,), 1.0, condition, limit, 0.1, 1.0, 5.0, True, True)

@@ -10,12 +10,13 @@ from collections.abc import Callable, Mapping
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
+from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.geometry import codes
 from pn2code.geometry.activities import Doing
 from pn2code.geometry.check import cell_of, cells_of
-from pn2code.geometry.graph import explore_cell
+from pn2code.geometry.graph import CellGraph, explore_cell
 from pn2code.geometry.legs import Planner
 from pn2code.geometry.reach_map import Map, Task, grid, reach_map
 from pn2code.geometry.situations import Situations
@@ -81,17 +82,8 @@ def look(
     if not robots:
         _no_robot(config, wanted.robot, {r.name: r for r in cell.robots}, d)
         return None
-    stage("exploring the cell as its programs run ...")
-    try:
-        graph = explore_cell(partition, opened.storage, limits, d, opened.initial)
-    except NotModelledError as problem:
-        d.error(codes.REACH_UNKNOWN, f"what arms are told is not known: {problem}", _at(config))
-        return None
+    graph = told(opened, config, partition, limits, d, stage)
     if graph is None:
-        return None
-    if not graph.arcs:
-        why = f"what arms are told is not known: {reason(graph.why)}"
-        d.error(codes.REACH_UNKNOWN, why, _at(config))
         return None
     stage("looking where arms can be ...")
     situations = Situations(graph, Doing(Planner(cell), cell), tuple(r.name for r in cell.robots))
@@ -107,6 +99,28 @@ def look(
         made = reach_map(robot, task, bases)
         found.append(Found(robot, cell, task, made, here, reason(situations.why)))
     return found
+
+
+def told(
+    opened: OpenNet,
+    config: CellConfig,
+    partition: Partition,
+    limits: Limits,
+    d: Diagnostics,
+    stage: Callable[[str], None],
+) -> CellGraph | None:
+    """The graph of the cell, in which all that arms are told is; None: it is not known, which was reported."""
+    stage("exploring the cell as its programs run ...")
+    try:
+        graph = explore_cell(partition, opened.storage, limits, d, opened.initial)
+    except NotModelledError as problem:
+        d.error(codes.REACH_UNKNOWN, f"what arms are told is not known: {problem}", _at(config))
+        return None
+    if graph is not None and not graph.arcs:
+        why = f"what arms are told is not known: {reason(graph.why)}"
+        d.error(codes.REACH_UNKNOWN, why, _at(config))
+        return None
+    return graph
 
 
 def _at(config: CellConfig) -> Origin:

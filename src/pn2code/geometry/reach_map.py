@@ -180,14 +180,12 @@ class Judged:
         reach: the part of the task that is reached inside the limits, 0 to 1; reached: which groups, (n, groups).
         condition: the worst condition number over what is reached; inf: nothing is.
         limit: rad, the least margin of a limit; -inf: nothing is.
-        q: joint positions for each pose, (n, poses, 6), with the turns that leave most; NaN: it is not reached.
     """
 
     reach: Array
     reached: NDArray[np.bool_]
     condition: Array
     limit: Array
-    q: Array
 
 
 def judge(robot: CellRobot, task: Task, T_world_base: Array) -> Judged:  # noqa: N803
@@ -195,7 +193,7 @@ def judge(robot: CellRobot, task: Task, T_world_base: Array) -> Judged:  # noqa:
     each = max(1, _AT_ONCE // max(1, len(task.poses) * len(BRANCHES)))
     starts = range(0, len(T_world_base), each)
     parts = [_judged(robot, task, T_world_base[i : i + each]) for i in starts]
-    columns = zip(*((p.reach, p.reached, p.condition, p.limit, p.q) for p in parts), strict=True)
+    columns = zip(*((p.reach, p.reached, p.condition, p.limit) for p in parts), strict=True)
     return Judged(*(np.concatenate(column) for column in columns))
 
 
@@ -211,16 +209,14 @@ def _judged(robot: CellRobot, task: Task, frames: Array) -> Judged:
     poses[..., :3, 3] -= task.carried  # tracks go where the base has them
     poses = poses.reshape(-1, 4, 4)
     rows = kinematics.all_branches(poses)
-    rows, margin = _in_middle(kinematics, rows)
+    margin = _margins(kinematics, rows)
     inside = margin >= 0.0
     condition = np.full(rows.shape[:2], np.inf)
     condition[inside] = _conditions(kinematics, rows[inside])
     shape = (count, len(task.poses), len(BRANCHES))
-    rows = rows.reshape(*shape, AXES)
     margin, condition = margin.reshape(shape), condition.reshape(shape)
     reached = np.zeros((count, len(task.groups)), bool)
     worst, least = np.zeros(count), np.full(count, np.inf)
-    q = np.full((count, len(task.poses), AXES), np.nan)
     there = np.arange(count)
     for number, group in enumerate(task.groups):
         own = condition[:, group].max(axis=1)
@@ -235,21 +231,19 @@ def _judged(robot: CellRobot, task: Task, frames: Array) -> Judged:
         worst = np.where(ok, np.maximum(worst, found), worst)
         near = margin[:, group].min(axis=1)[there, best]
         least = np.where(ok, np.minimum(least, near), least)
-        chosen = np.take_along_axis(rows[:, group], best[:, None, None, None], axis=2)[:, :, 0]
-        q[:, group] = np.where(ok[:, None, None], chosen, np.nan)
     nothing = ~reached.any(axis=1)
     worst[nothing], least[nothing] = np.inf, -np.inf
     reach = reached.sum(axis=1) / max(1, len(task.groups))
-    return Judged(reach, reached, worst, least, q)
+    return Judged(reach, reached, worst, least)
 
 
-def _in_middle(kinematics: Kinematics, rows: Array) -> tuple[Array, Array]:
-    """Each row with the turns that leave most to the limits, and how much that is; -inf: it is outside."""
+def _margins(kinematics: Kinematics, rows: Array) -> Array:
+    """Of each row the least distance from a limit with the turns that leave most; -inf: it is outside."""
     lower, upper = kinematics.arm.lower, kinematics.arm.upper
     middle = (lower + upper) / 2.0
     q = rows + TURN * np.round((middle - rows) / TURN)
     margin = np.nan_to_num(np.minimum(q - lower, upper - q).min(axis=-1), nan=-1.0)
-    return q, np.where(margin >= 0.0, margin, -np.inf)
+    return np.where(margin >= 0.0, margin, -np.inf)
 
 
 def _conditions(kinematics: Kinematics, q: Array) -> Array:

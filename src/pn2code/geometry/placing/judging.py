@@ -137,7 +137,7 @@ class Judge:
                 found = kinematics.conditioning_many(q)
                 condition = max(condition, *(c.condition for c in found))
         count = sum(len(plan.steps) for plan in self.plans.values())
-        done = sum(walk.done for walk in walks.values()) / max(1, count)
+        done = sum(walk.done for walk in walks.values()) / count if count else 1.0
         clearance = self._clearance(placed, walks, enough) if done >= 1.0 else -math.inf
         return Walked(done, condition, limit, clearance, seconds)
 

@@ -13,18 +13,18 @@ import numpy as np
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
-from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.geometry import codes
+from pn2code.diagnostics import Diagnostics
 from pn2code.geometry.activities import Doing
 from pn2code.geometry.check import cell_of, cells_of, is_there
-from pn2code.geometry.graph import CellGraph, explore_cell
+from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import Planner
 from pn2code.geometry.look import Options
-from pn2code.geometry.placing.free import Free, FreeError, moved, parse
+from pn2code.geometry.placing.free import Free, moved, parse
 from pn2code.geometry.placing.judging import Judge
 from pn2code.geometry.placing.plan import Plan
 from pn2code.geometry.placing.proving import Proof, prove
 from pn2code.geometry.placing.search import Candidate, Found, Search, Wish, unlike
+from pn2code.geometry.reach_look import told
 from pn2code.geometry.reach_map import Task
 from pn2code.geometry.situations import Situations
 from pn2code.geometry.words import numbers, reason
@@ -32,7 +32,6 @@ from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import pose_of
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.programs import partition_of
-from pn2code.verify.controller.running import NotModelledError
 from pn2code.verify.exploring.limits import Limits
 
 _UNLIKE = 100.0
@@ -102,7 +101,6 @@ class Placed:
     layout: str
     cell: RobotCell
     free: tuple[Free, ...]
-    wish: Wish
     found: Found
     tried: tuple[Tried, ...]
     missed: tuple[Missed, ...]
@@ -136,22 +134,13 @@ def look(
         return None
     ((name, cell),) = cells
     free = parse(request.free, cell, request.around)
-    stage("exploring the cell as its programs run ...")
-    at = Origin(str(config.path))
-    try:
-        graph = explore_cell(partition, opened.storage, limits, d, opened.initial)
-    except NotModelledError as problem:
-        d.error(codes.REACH_UNKNOWN, f"what arms are told is not known: {problem}", at)
-        return None
+    graph = told(opened, config, partition, limits, d, stage)
     if graph is None:
-        return None
-    if not graph.arcs:
-        d.error(codes.REACH_UNKNOWN, f"what arms are told is not known: {reason(graph.why)}", at)
         return None
     options = Options(folder, "place", opened.initial, None, stage)
     placing = _Placing(graph, cell, free, request, options)
     found, tried, missed = placing.run()
-    return Placed(config, name, cell, free, request.wish, found, tuple(tried), missed, placing.open)
+    return Placed(config, name, cell, free, found, tuple(tried), missed, placing.open)
 
 
 class _Placing:
@@ -262,6 +251,3 @@ def _both(task: Task, other: Task) -> Task:
         poses = np.concatenate([poses, part])
         shifts = np.concatenate([shifts, other.carried[other.groups[i]]])
     return Task(poses, tuple(groups), tuple(names), shifts)
-
-
-__all__ = ["FreeError", "Missed", "Placed", "Request", "Tried", "look"]
