@@ -57,6 +57,27 @@ def test_what_cannot_be_written_leaves_nothing(tmp_path: Path) -> None:
     assert done.returncode == 2 and "cannot write" in done.stderr
 
 
+def test_whole_numbers_without_bounds_are_no_sort_of_symmetric_nets(tmp_path: Path) -> None:
+    """Neither among tokens nor in what is added to a variable."""
+    net = write(
+        """
+        net N
+          standard
+          var n, k: INT;
+          page Top
+            place P : INT = 1`1 ++ 1`2 ++ 1`3
+            place Q : INT
+            trans T guard [k = n + 1]
+              in P : n
+              in Q : k
+        """,
+        tmp_path / "n.cpn",
+    )
+    done = convert(net, "-o", tmp_path / "x.pnml", "--format", "concise")
+    assert done.returncode == 1
+    assert "unsupported-in-pnml" in done.stderr and "internal error" not in done.stderr
+
+
 MANY = """
 net Many
   standard

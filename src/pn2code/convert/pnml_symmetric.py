@@ -158,7 +158,7 @@ class _Writer:
         """Tokens as a term; all values of a sort are written as `all`."""
         values = self.colours.sorted(c, tokens.counts)
         counts = {tokens.coefficient(v) for v in values}
-        if len(counts) == 1 and len(values) > 2 and len(values) == self.colours.size(c):
+        if len(counts) == 1 and len(values) > 2 and len(values) == self.size(c):
             return _numberof(counts.pop(), element("all", _usersort(self.sort(c))))
         return _sum([_numberof(tokens.coefficient(v), self.constant(c, v)) for v in values])
 
@@ -344,6 +344,13 @@ class _Writer:
             self.declared.append(declaration)
         return element("variable", refvariable=self.symbols[symbol])
 
+    def size(self, c: Colset) -> int | None:
+        """How many values a colour set has; None: it has no bounds."""
+        try:
+            return self.colours.size(c)
+        except MlException:
+            return None
+
     def turned(self, e: Exp, c: Colset) -> str:
         """`successor` or `predecessor` of a variable, several times if need be."""
         used = [s for s in variables(e) if s.colset is not None]
@@ -355,7 +362,8 @@ class _Writer:
             if (
                 same
                 and own.kind in (Kind.ENUM, Kind.INDEX, Kind.BOOL, Kind.INT)
-                and self.colours.size(own) <= _MOST
+                and (count := self.size(own)) is not None
+                and count <= _MOST
             ):
                 values = list(self.values(own))
                 images = [self.image(e, used[0], v) for v in values]
