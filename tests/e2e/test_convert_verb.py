@@ -67,7 +67,7 @@ def test_whole_numbers_without_bounds_are_no_sort_of_symmetric_nets(tmp_path: Pa
           page Top
             place P : INT = 1`1 ++ 1`2 ++ 1`3
             place Q : INT
-            trans T guard [k = n + 1]
+            trans T guard [n + 1 < k]
               in P : n
               in Q : k
         """,
