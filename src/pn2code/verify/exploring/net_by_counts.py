@@ -41,6 +41,8 @@ ENDLESS = 1_000_000_000
 """A run is that long, or goes on for ever."""
 MOST_STATES = 2_000_000
 """Where there are more the limits do not help enough."""
+SOON = 300_000
+"""States that are seen by what was compiled quickly."""
 MOST_OWNERS = 250
 """Transitions: each is an owner of its own."""
 
@@ -126,6 +128,7 @@ def look(
         interrupted=options.interrupted,
         initial=options.initial,
         quick=True,
+        first_states=SOON,
     )
     most = min(limits.max_states or MOST_STATES, MOST_STATES)
     own_limits = replace(limits, max_states=most, traces=0, graph=True, reductions=())
