@@ -23,8 +23,8 @@ from pn2code.cell.config import COMMANDS, CommandName
 from pn2code.cell_file import json_schema, listing
 from pn2code.cell_file.keys import Key
 from pn2code.cell_file.whole import FILE
-from pn2code.robot.commands import EFFECTS
 from pn2code.robot.branches import ALL_NAMES
+from pn2code.robot.commands import EFFECTS
 
 EDITOR = jsonschema.Draft202012Validator(json_schema.schema())
 EVERY = [*keys(FULL)]

@@ -94,7 +94,7 @@ def test_reaches_are_the_published_ones() -> None:
     assert scara[:2, 3] == pytest.approx([0.6, 0.0])
     k = kinematics("lrmate200id")
     low, high = k.arm.lower, k.arm.upper
-    x, y = np.meshgrid(np.linspace(low[1], high[1], 200), np.linspace(low[2], high[2], 200))
+    x, y = np.meshgrid(np.linspace(low[1], high[1], 90), np.linspace(low[2], high[2], 90))
     q = np.zeros((x.size, 6))
     q[:, 1], q[:, 2] = x.ravel(), y.ravel()
     assert np.abs(k.link_frames(q)[4][:, 0, 3]).max() == pytest.approx(0.717, rel=0.003)
@@ -103,7 +103,7 @@ def test_reaches_are_the_published_ones() -> None:
 @pytest.mark.parametrize("name", NEW)
 def test_each_position_is_found_again_and_so_are_the_other_branches(name: str) -> None:
     k = kinematics(name)
-    q = positions(k, 150)
+    q = positions(k, 60)
     poses = k.forward_many(q)
     angles = None if k.arm_angle is None else np.array([k.arm_angle_of(x) for x in q])
     rows = k.all_branches(poses, angles)
@@ -146,7 +146,7 @@ def numeric(k: Kinematics, target: Any, start: Any) -> Any:
 def test_a_second_inverse_finds_the_same(name: str) -> None:
     k = kinematics(name)
     compared = 0
-    for q in positions(k, 20, 0.9):
+    for q in positions(k, 12, 0.9):
         if k.conditioning(q).condition > 30.0:
             continue
         target = k.forward(q)
@@ -156,13 +156,13 @@ def test_a_second_inverse_finds_the_same(name: str) -> None:
         rows = k.all_branches(target[None], k.arm_angle_of(found))[0]
         assert np.nanmin(apart(k, rows, found)) < 1e-6
         compared += 1
-    assert compared >= 5
+    assert compared >= 3
 
 
 @pytest.mark.parametrize("name", NEW)
 def test_the_square_matrix_of_a_line_is_the_derivative_of_what_a_line_is_about(name: str) -> None:
     k = kinematics(name)
-    for q in positions(k, 10, 0.8):
+    for q in positions(k, 4, 0.8):
         square = k.led_jacobian(q[None])[0]
         assert square.shape == (len(q), len(q))
         for axis in range(len(q)):
@@ -186,7 +186,7 @@ def test_what_is_said_of_how_fast_the_matrix_changes_holds() -> None:
     k = kinematics("iiwa14_r820")
     random = np.random.default_rng(1)
     base = 7.0 * math.hypot(k.longest, 1.0)
-    for q in positions(k, 40, 0.9):
+    for q in positions(k, 15, 0.9):
         steep, far = (float(x[0]) for x in k.led_steepness(q[None]))
         for _ in range(5):
             away = random.normal(size=7)
@@ -231,7 +231,7 @@ def test_lines_and_arcs_are_exact_and_what_lies_between_samples_is_known(name: s
     begin(arm, MoveJoint(first))
     for command in (MoveLinear(second), MoveCircular(via, first)):
         motion = begin(arm, command)
-        times = np.linspace(0.0, motion.duration, 60)
+        times = np.linspace(0.0, motion.duration, 30)
         q = motion.sample(times)
         wanted = motion.trajectory.line.at(motion.trajectory.way(times))
         assert np.abs(k.forward_many(q) - wanted).max() < 1e-9
@@ -326,12 +326,12 @@ def test_coupled_axes_are_counted_as_their_maker_does() -> None:
 def test_no_branch_leaves_a_coupled_limit() -> None:
     k = kinematics("lrmate200id")
     left = 0
-    for q in positions(k, 200):
+    for q in positions(k, 80):
         inside = k.arm.margins(q).min() >= 0.0
         rows = [s.q for s in k.inverse(k.forward(q), q)]
         assert inside == any(apart(k, row, q) < 1e-6 for row in rows)
         left += not inside
-    assert left > 5
+    assert left > 2
 
 
 @pytest.mark.parametrize(
@@ -384,7 +384,7 @@ def test_what_is_said_of_a_robot_that_its_arm_has_not(
 def test_pybullet_puts_the_tool_where_we_do_and_links_keep_apart_at_home(name: str) -> None:
     c = cell(name)
     robot = c.robots[0]
-    backend = BulletBackend(c, looks=True)
+    backend = BulletBackend(c, looks=False)
     verdict = Monitor(c, backend).check(0.0, {"r": np.array(robot.home)})
     for q in positions(robot.kinematics, 10):
         backend.set_joints("r", q)
@@ -405,7 +405,7 @@ def test_most_of_the_reach_is_free_of_the_arm_itself(name: str) -> None:
     assert c is not None
     backend = BulletBackend(c, looks=False)
     monitor = Monitor(c, backend)
-    q = [x for x in positions(c.robots[0].kinematics, 100) if c.robots[0].arm.margins(x).min() >= 0]
+    q = [x for x in positions(c.robots[0].kinematics, 50) if c.robots[0].arm.margins(x).min() >= 0]
     free = [monitor.check(float(i), {"r": x}).fault is None for i, x in enumerate(q)]
     backend.close()
     assert sum(free) > 0.6 * len(free)
