@@ -1,4 +1,4 @@
-"""Seven axes, a SCARA, a gantry and coupled axes, from the net to the arm: scripts, checks, geometry, runs, the page."""
+"""Seven axes, a SCARA, a gantry and coupled axes, from the net to the arm: scripts, checks, geometry and runs."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def test_joint_positions_in_nets(model: str, values: str, says: str, tmp_path: P
     record = " * ".join(f"{x.split(' =')[0]}:REAL" for x in values.split(", "))
     net = changed(net, "  val MOVE", f"  colset AXES = record {record};\n  val MOVE")
     net = changed(net, "action moveJoint p", f"action moveJoint {{{values}}}")
-    write(where.parent, net, (where / "cell.toml").read_text())
+    write(where, net, (where / "cell.toml").read_text())
     done = ask("check", str(where))
     assert (done.exit_code == 0) == (not says), done.output
     assert says in " ".join(done.output.split())

@@ -73,6 +73,8 @@ def look_ahead(
             return
         where = f" in layout `{layout}`" if layout else ""
         _home(cell, chosen, where, d)
+        for ir in programs:
+            _payload(cell, ir, chosen, where, d)
     arms = Arms.of(config, d, partial=False)
     if arms is not None:
         for ir in programs:
@@ -85,7 +87,9 @@ def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> No
     if not cell.robots:
         return
     for robot in cell.robots:
-        angles = [round(math.degrees(q), 4) for q in robot.home[robot.kinematics.joints]]
+        own = robot.home[robot.kinematics.joints]
+        turning = ~robot.kinematics.alone.slides
+        angles = [round(math.degrees(q), 4) for q, turns in zip(own, turning, strict=True) if turns]
         if scene.in_radians(angles):
             d.warning(
                 codes.ROBOT_HOME,
@@ -124,6 +128,33 @@ def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> No
             f"at HOME{where}: {verdict.fault.message}",
             config.locator.origin("robots", verdict.fault.robot, "home"),
             hint="change `home` (degrees) or `base` (m and degrees) of the robot, or move what it touches",
+        )
+
+
+def _payload(cell: RobotCell, ir: RobotIR, config: CellConfig, where: str, d: Diagnostics) -> None:
+    """What a robot carries, with all that its script takes, is not too much."""
+    robot = next((r for r in cell.robots if r.name == ir.name), None)
+    if robot is None:
+        return
+    taken: dict[str, Origin] = {}
+    for body in (ir.body, *(body for _, body in ir.procedures)):
+        for origin, said in _statements(body, ir.origin):
+            if isinstance(said, t.Tool) and said.handling and said.handling.effect == "takes":
+                taken.setdefault(said.handling.part, origin)
+    for kind, origin in taken.items():
+        if kind not in robot.carries:
+            d.error(
+                codes.ROBOT_PAYLOAD,
+                f"robot `{robot.name}` takes a part `{kind}`, which `carries` of it does not name",
+                origin,
+                hint=f'add "{kind}" to `carries` of robot `{robot.name}` in cell.toml',
+            )
+    if problem := robot.overload(cell.parts, taken):
+        d.error(
+            codes.ROBOT_PAYLOAD,
+            problem + where,
+            config.locator.origin("robots", robot.name, "model"),
+            hint="choose another arm, or a lighter tool or part (`mass` of the kind of parts, kg)",
         )
 
 
@@ -276,18 +307,25 @@ def _external(a: t.Along, constants: _Constants) -> Along:
 
 def _moves(nodes: Iterable[Node], origin: Origin) -> Iterator[tuple[Origin, t.Move]]:
     """The moves, each with the net element that it comes from."""
+    for at, said in _statements(nodes, origin):
+        if isinstance(said, t.Move):
+            yield at, said
+
+
+def _statements(nodes: Iterable[Node], origin: Origin) -> Iterator[tuple[Origin, t.Simple]]:
+    """The lines of a program, each with the net element that it comes from."""
     for node in nodes:
         match node:
-            case Line(t.Move() as move):
-                yield origin, move
+            case Line(statement):
+                yield origin, statement
             case Region(body=body):
-                yield from _moves(body, node.origin)
+                yield from _statements(body, node.origin)
             case Repeat(body=body):
-                yield from _moves(body, origin)
+                yield from _statements(body, origin)
             case Chain(branches, otherwise):
                 for _, body in branches:
-                    yield from _moves(body, origin)
-                yield from _moves(otherwise or (), origin)
+                    yield from _statements(body, origin)
+                yield from _statements(otherwise or (), origin)
             case _:
                 pass
 
