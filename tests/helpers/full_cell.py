@@ -236,9 +236,9 @@ about = "net"
 _NEEDED = {
     "primitives": ("parts", "places", "frames", "robots"),
     "report": ("channel", "primitives", "parts", "places", "frames", "robots"),
-    "frames": ("robots",),
+    "frames": ("robots", "parts"),
     "robots": ("parts",),
-    "scene": ("robots",),
+    "scene": ("robots", "parts"),
     "layouts": tuple(FULL),
 }
 """The sections that are named in a section."""
