@@ -4,8 +4,9 @@
 
 Each examination of each input is asked by `pn2code contest` with that time, and compared with the verdicts on which the
 contest's tools agreed. What has been asked with the same time is in the log, and not asked again: the run may be
-interrupted and resumed. `--sample` takes one input of each family, the one in the middle by name, `--every N` one of N by name.
-The log names the formulas that were not answered. `--table` only prints the table of the log, as in docs/contest.md. Exit code 1 if an answer is wrong.
+interrupted and resumed. `--sample` takes one input of each family, the one in the middle by name; `--every N` takes one
+of N by name. The log names what was not answered. `--table` only prints the table of the log, as in docs/contest.md.
+Exit code 1 if an answer is wrong.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@
     suffices(f)                     # one that is true only where f is
     outline(f, is_upper=True)       # f with one operator of time at most, one within the other: f implies it
 
-What G p says now is p, and more; F p is true where p is; p U q is true where q is, and only where one of them is; of X p
+What G p says now is p, and more; F p is true where p is; p U q is true where q is, and only where p or q is; of X p
 nothing is known. All that holds for A and E alike, and in linear time for each path from a marking. So, if `follows(f)`
 holds in no reachable marking, f is false everywhere; if `suffices(f)` holds in all of them, it is true everywhere.
 """
