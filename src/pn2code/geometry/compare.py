@@ -1,6 +1,6 @@
 """Sweeps what situations show: each leg against the scene, legs of two arms against each other, legs and parts.
 
-    compared = Comparison(cell, planner, backend)
+    compared = Comparison(cell, planner, Shown(backend))
     compared.move(leg, held)                     # Swept: clearances, margins
     compared.two((leg, held), (other, held))     # Apart
 
@@ -18,10 +18,10 @@ import numpy as np
 from pn2code.base.frozen import frozen
 from pn2code.geometry.activities import Activity, spot
 from pn2code.geometry.legs import Leg, Planner
+from pn2code.geometry.shown import Shown
 from pn2code.geometry.sweeps import Apart, Sweeper
 from pn2code.geometry.tracks import ArmShape, Track
 from pn2code.robot.along import AlongTrajectory
-from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.kinematics import MOST_CONDITION
 from pn2code.robot.motion import LinearTrajectory
 from pn2code.robot.parts import Part
@@ -44,9 +44,10 @@ class Margins:
 class Comparison:
     """Keeps what has been swept."""
 
-    def __init__(self, cell: RobotCell, planner: Planner, backend: BulletBackend) -> None:
+    def __init__(self, cell: RobotCell, planner: Planner, shown: Shown) -> None:
+        backend = shown.backend
         self.cell, self._planner, self._backend = cell, planner, backend
-        self.sweeper = Sweeper(backend)
+        self.sweeper = Sweeper(shown)
         self._shapes = {r.name: ArmShape.of(r, backend) for r in cell.robots}
         self._boxes = {k.name: backend.part_box(k) for k in cell.parts.values()}
         self._tracks: dict[tuple[int, str], Track] = {}

@@ -18,8 +18,9 @@ from pn2code.geometry.compare import Comparison
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.runs import Run, write
+from pn2code.geometry.shown import Shown
 from pn2code.geometry.situations import Met, Side, Situations
-from pn2code.geometry.sweeps import Apart
+from pn2code.geometry.sweeps import ROUNDING, Apart
 from pn2code.geometry.words import numbers, reason, words
 from pn2code.geometry.zones import Explore, Zones
 from pn2code.robot.backend import Clearance
@@ -56,9 +57,10 @@ class Look:
     def __init__(self, graph: CellGraph, cell: RobotCell, options: Options, layout: str) -> None:
         self.graph, self.cell, self.options, self.layout = graph, cell, options, layout
         self.planner = Planner(cell)
-        self.doing = Doing(self.planner, cell)
         self.backend = BulletBackend(cell, looks=False)
-        self.comparison = Comparison(cell, self.planner, self.backend)
+        shown = Shown(self.backend)
+        self.doing = Doing(self.planner, cell, shown)
+        self.comparison = Comparison(cell, self.planner, shown)
         self.robots = tuple(r.name for r in cell.robots)
         self.runs: dict[tuple[int, tuple[int, ...]], Run] = {}
         self.nearest: Clearance | None = None
@@ -102,6 +104,7 @@ class Look:
 
     def _moves(self, found: Situations) -> list[Move]:
         rows: dict[tuple[int, str], Move] = {}
+        handled: dict[tuple[str, str, str], Move] = {}
         for (number, _element), met in found.activities.items():
             activity = self.doing.activities[number]
             for leg, contents in activity.legs:
@@ -113,12 +116,25 @@ class Look:
                 row = self._move(found, leg, held, met)
                 if leg.command is not None or row.answer != "yes":
                     rows[key] = row
-            if activity.is_part and (-1 - number, "") not in rows:
-                rows[-1 - number, ""] = self._handling(found, activity, met)
-        return list(rows.values())
+            if activity.is_part or activity.doubt:
+                row = self._handling(found, activity, met)
+                key_ = (row.transition, row.command, row.begins)
+                if key_ not in handled or (handled[key_].answer, row.answer) == ("unknown", "no"):
+                    handled[key_] = row
+        return [*self._at_start(), *rows.values(), *handled.values()]
+
+    def _at_start(self) -> list[Move]:
+        """Parts that cannot be where cell.toml puts them."""
+        out = []
+        for part, trouble in self.doing.overlaps_at_start():
+            answer: Verdict = "no" if trouble.margin < -ROUNDING else "unknown"
+            does = f"stands at {numbers(pose_of(part.frame))}"
+            why = f"`{part.name}`, as `[parts.{part.kind.name}]` places it, {trouble.text}"
+            out.append(Move(part.name, "", does, "", "part", answer, why))
+        return out
 
     def _handling(self, found: Situations, activity: Activity, met: Met) -> Move:
-        """What an action cannot do to a part."""
+        """What an action cannot do to a part, or perhaps cannot."""
         t, owner = _who(found, met.elements[0])
         begins = ""
         if activity.end is not None:
@@ -126,7 +142,9 @@ class Look:
             begins = numbers(pose_of(base @ activity.end.T_base_tcp))
         does = words(activity.command)
         run = self._run(found, met)
-        return Move(owner, t, does, begins, "tool", "no", activity.fault, run=run)
+        answer: Verdict = "no" if activity.is_part else "unknown"
+        why = activity.fault or activity.doubt
+        return Move(owner, t, does, begins, "tool", answer, why, run=run)
 
     def _move(self, found: Situations, leg: Leg, held: Part | None, met: Met) -> Move:
         t, _ = _who(found, met.elements[0])

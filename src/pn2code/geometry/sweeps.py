@@ -1,6 +1,6 @@
 """Whether two legs, whenever each is where, keep apart: pieces against pieces, smaller where they are near.
 
-    sweeper = Sweeper(cell, backend)
+    sweeper = Sweeper(Shown(backend))
     sweeper.apart(track, other)           # Apart("clear" | "touch" | "open", distance, ...)
     sweeper.around(track, "scene")        # how near a leg comes to what stands
 
@@ -14,17 +14,17 @@ from __future__ import annotations
 import heapq
 import itertools
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
 
 from pn2code.base.frozen import frozen
+from pn2code.geometry.shown import Shown
 from pn2code.geometry.tracks import Knots, Link, Track
 from pn2code.robot.backend import Clearance
-from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.parts import Part
-from pn2code.robot.transforms import Array, Numbers, translation
+from pn2code.robot.transforms import Array, Numbers
 
 RESOLUTION = 2e-4
 """m: two pieces in which no points are further apart than this are not divided."""
@@ -65,25 +65,10 @@ class Apart:
 class Sweeper:
     """Asks the collision library."""
 
-    def __init__(self, backend: BulletBackend) -> None:
-        self._backend = backend
+    def __init__(self, shown: Shown) -> None:
+        self._backend = shown.backend
+        self._show = shown.show
         self.queries = 0
-        self._shown: dict[str, Part] = {}
-
-    # --- what is shown ---------------------------------------------------------------------------
-
-    def _show(self, parts: Iterable[Part]) -> None:
-        """Exactly these parts are in the cell."""
-        shown = list(parts)
-        wanted = {p.name: p for p in shown}
-        assert len(wanted) == len(shown), "each part has a name of its own"
-        for name in [n for n in self._shown if n not in wanted]:
-            away = self._shown.pop(name)
-            self._backend.set_part(Part(name, away.kind, translation(0.0, 0.0, -1000.0)))
-        for name, part in wanted.items():
-            if self._shown.get(name) is not part:
-                self._backend.set_part(part)
-                self._shown[name] = part
 
     # --- two legs --------------------------------------------------------------------------------
 

@@ -38,7 +38,7 @@ from pn2code.robot.looks import Look
 from pn2code.robot.parts import Part
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.robot_cell import CellRobot, RobotCell
-from pn2code.robot.transforms import Array, pose_of
+from pn2code.robot.transforms import Array, pose_of, translation
 
 _SKY = (148.0, 166.0, 186.0)
 _HORIZON = (236.0, 239.0, 242.0)
@@ -94,10 +94,11 @@ class _Standing:
 
 @record
 class _Placed:
-    """A part in PyBullet."""
+    """A part in PyBullet; one that is hidden is there no more, but can be shown again quickly."""
 
     part: Part
     id: int
+    hidden: bool = False
 
 
 @frozen
@@ -295,7 +296,15 @@ class BulletBackend:
             with _silent():
                 placed = _Placed(part, self._load_body(body_of(shape), self._looks).id)
             self._parts[part.name] = placed
-        placed.part = part
+        placed.part, placed.hidden = part, False
+        self._known = {}
+        self._move(placed)
+
+    def hide_part(self, name: str) -> None:
+        """The part is not there until it is shown again."""
+        placed = self._parts[name]
+        away = Part(name, placed.part.kind, translation(0.0, 0.0, -1000.0))
+        placed.part, placed.hidden = away, True
         self._known = {}
         self._move(placed)
 
@@ -486,7 +495,7 @@ class BulletBackend:
         for thing in self._scene:
             yield _Side("", thing.id, {}, thing.body.name, ignored_by=thing.body.ignored_by)
         for part in self._parts.values():
-            if not part.part.holder:
+            if not part.part.holder and not part.hidden:
                 yield _Side("", part.id, {}, part.part.name)
 
     def _between(self, kind: ClearanceKind, a: _Side, b: _Side, limit: float) -> list[Clearance]:
