@@ -138,7 +138,7 @@ class Sweeper:
                 middle = ((own[0] + own[1]) / 2.0, (own[2] + own[3]) / 2.0)
                 is_clear = True
                 for gap in found:
-                    allowed = None if is_free else gap.allowed
+                    allowed = gap.permitted(is_free=is_free)
                     slack = gap.distance if allowed is None else gap.distance + allowed
                     if allowed is None and gap.distance < nearest:
                         nearest, where, at = gap.distance, gap, middle
@@ -203,7 +203,7 @@ class Sweeper:
             bound = best + ROUNDING
             is_open = False
             for gap in found:
-                allowed = None if a.leg.kind == "ptp" else gap.allowed
+                allowed = gap.permitted(is_free=a.leg.kind == "ptp")
                 slack = gap.distance if allowed is None else gap.distance + allowed
                 if (slack <= 0.0 and allowed is None) or (allowed is not None and slack < 0.0):
                     joints = (knots.q[0],)
