@@ -23,7 +23,6 @@ from pn2code.geometry.situations import Met, Side, Situations
 from pn2code.geometry.sweeps import ROUNDING, Apart
 from pn2code.geometry.words import numbers, reason, words
 from pn2code.geometry.zones import Explore, Zones
-from pn2code.robot.backend import Clearance
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.parts import Part
 from pn2code.robot.robot_cell import RobotCell
@@ -63,7 +62,6 @@ class Look:
         self.comparison = Comparison(cell, self.planner, shown)
         self.robots = tuple(r.name for r in cell.robots)
         self.runs: dict[tuple[int, tuple[int, ...]], Run] = {}
-        self.nearest: Clearance | None = None
 
     def close(self) -> None:
         """Ends the collision library."""
@@ -97,7 +95,7 @@ class Look:
             time.perf_counter() - began,
             reason(found.why),
             tuple(zones or ()),
-            self.nearest,
+            self.comparison.nearest() if not any(p.answer == "no" for p in pairs) else None,
         )
 
     # --- moves -----------------------------------------------------------------------------------
@@ -199,18 +197,11 @@ class Look:
             if sides in bad and bad[sides].answer == "no":
                 continue
             for leg, other, apart in self.comparison.activities(a, b):
-                self._note_nearest(apart)
                 if apart.outcome == "touch" or (apart.outcome == "open" and sides not in bad):
                     bad[sides] = self._pair(found, leg, other, apart, met)
                 if apart.outcome == "touch":
                     break
         return bad
-
-    def _note_nearest(self, apart: Apart) -> None:
-        gap = apart.where
-        if apart.outcome == "clear" and gap is not None:
-            least = self.nearest.distance if self.nearest is not None else math.inf
-            self.nearest = gap if gap.distance < least else self.nearest
 
     def _pair(self, found: Situations, leg: Leg, other: Leg, apart: Apart, met: Met) -> Pair:
         first, second = (_who(found, e)[0] for e in met.elements)
@@ -285,6 +276,7 @@ def _met(
         apart.where.distance if apart.where else 0.0,
         tuple((r, tuple(map(float, q))) for r, q in zip(robots, apart.joints, strict=False) if r),
         run,
+        least=_most_in(apart) if is_touch else None,
     )
 
 
@@ -292,9 +284,20 @@ def _least(apart: Apart) -> float | None:
     return None if apart.outcome == "open" else apart.least
 
 
+def _most_in(apart: Apart) -> float:
+    """The least distance (m) that the links which touch can have anywhere on the way."""
+    assert apart.where is not None
+    permitted = apart.nearest - apart.where.distance
+    return min(apart.least - permitted, apart.where.distance)
+
+
 def touch_in_words(apart: Apart) -> str:
-    """Which links overlap, by how much and where."""
+    """Which links overlap, where, by how much, and that it is nowhere much more."""
     gap = apart.where
     assert gap is not None
     at = ", ".join(f"{1000.0 * v:.0f}" for v in gap.point)
-    return f"`{gap.a}` and `{gap.b}` overlap by {-1000.0 * gap.distance:.1f} mm at ({at}) mm"
+    most = -1000.0 * _most_in(apart)
+    return (
+        f"`{gap.a}` and `{gap.b}` overlap by {-1000.0 * gap.distance:.1f} mm at ({at}) mm, "
+        f"and nowhere on the way by more than {math.ceil(10.0 * most) / 10.0:.1f} mm"
+    )

@@ -460,7 +460,7 @@ class BulletBackend:
                 a.body, a.body, limit, i, j, physicsClientId=self._client
             )
             one, two = (f"{a.robot.name}/{a.links[k]}" for k in (i, j))
-            allowed = self._allowed(one, two)
+            allowed = self.allowed(one, two)
             for c in found:
                 yield Clearance("self", a.robot.name, one, two, c[8], allowed, c[5], c[6])
 
@@ -594,9 +594,9 @@ class BulletBackend:
 
     def _permitted(self, a: _Side, b: _Side, one: str, two: str, *, stands: bool) -> float | None:
         """The same of two sides; of what stands on the other one, None: it is not tested."""
-        return self._sunk.get((a.base, b.whole)) if stands else self._allowed(one, two)
+        return self._sunk.get((a.base, b.whole)) if stands else self.allowed(one, two)
 
-    def _allowed(self, a: str, b: str) -> float | None:
+    def allowed(self, a: str, b: str) -> float | None:
         """How deep two parts may overlap; None: they must keep apart."""
         if (a, b) not in self._rules:
             depths = [
