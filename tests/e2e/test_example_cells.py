@@ -83,6 +83,10 @@ EXAMPLES = {
         {"brought": 4, "milled": 4, "stored": 4, "breaks": 0}, {"t": {"stored": 3, "scrapped": 1}},
         ("supervisor", "arm1", "arm2", "feeder", "mill", "gauge"),
     ),
+    "welding": Expected(
+        "cell", ("Supervisor", "supervisor.svg"), 890, 5,
+        {"seams": 6, "again": 1, "by_hand": 0}, {"c": 0}, ("supervisor", "left", "right"),
+    ),
     "timed": Expected(
         "timed", ("Supervisor", "supervisor.svg"), 31014, 1668,
         {"beads": 3, "repairs": 2, "interruptions": 2, "answers": 2, "timeouts": 1, "late": 1},
@@ -246,7 +250,7 @@ def test_the_riveting_cell_has_its_properties(root: Path, tmp_path: Path) -> Non
     "file",
     [
         "sorting/cell.toml", "handover/cell.toml", "tending/cell.toml", "palletiser/cell.toml", "shared-zone/cell.toml",
-        "timed/cell.toml", "riveting/cell.properties.toml",
+        "welding/cell.toml", "timed/cell.toml", "riveting/cell.properties.toml",
     ],
 )  # fmt: skip
 def test_properties_are_told_in_plain_words(root: Path, file: str) -> None:
