@@ -6,11 +6,21 @@ from pathlib import Path
 
 import pytest
 
+from helpers.solvers import solver_for
 from helpers.thorough import amount
 from pn2code.diagnostics import Diagnostics
 from pn2code.run.cell import RunOptions, run_cell
 
-CELLS = ("minimal", "welding", "handover", "tending", "palletiser", "sorting", "shared-zone")
+CELLS = (
+    "minimal",
+    "welding",
+    "handover",
+    "tending",
+    "palletiser",
+    "sorting",
+    "shared-zone",
+    "assembly",
+)
 
 
 @pytest.mark.cc
@@ -18,6 +28,7 @@ CELLS = ("minimal", "welding", "handover", "tending", "palletiser", "sorting", "
 @pytest.mark.usefixtures("quick_build")
 @pytest.mark.parametrize("name", CELLS[: amount(1, len(CELLS))])
 def test_it_finishes_and_nothing_touches(name: str, root: Path, tmp_path: Path) -> None:
+    solver_for(name)
     d = Diagnostics()
     options = RunOptions(tmp_path, backend="bullet", looks=False, checked=False)
     result = run_cell(root / "examples" / name, options, d)
