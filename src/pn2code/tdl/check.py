@@ -42,6 +42,17 @@ class CheckedProgram:
     constants: Mapping[str, ScriptValue]
     bodies: Mapping[str, flow.Body]
 
+    @property
+    def sensors(self) -> tuple[str, ...]:
+        """The sensors that the script asks, each once."""
+        found = {
+            i.statement.sensor: None
+            for body in self.bodies.values()
+            for i in body.instructions
+            if isinstance(i, flow.Do) and isinstance(i.statement, t.Sense)
+        }
+        return tuple(found)
+
 
 def check(
     program: t.Program, d: Diagnostics, frames: Collection[str] | None = ()

@@ -184,6 +184,7 @@ class Judge:
 
 def _counted(gap: Clearance, is_loose: bool) -> float:
     """On a joint move nothing may touch; else what may touch does not count."""
-    if gap.allowed is None or is_loose:
+    allowed = gap.permitted(is_free=is_loose)
+    if allowed is None:
         return gap.distance
-    return FAR if gap.distance + gap.allowed >= 0.0 else gap.distance
+    return FAR if gap.distance + allowed >= 0.0 else gap.distance
