@@ -118,6 +118,29 @@ def test_joint_positions_in_nets(model: str, values: str, says: str, tmp_path: P
         assert any(x.label == "axes" and x.end > x.start for x in found.record.actions)
 
 
+@pytest.mark.parametrize(
+    ("has_axes", "command", "says"),
+    [
+        (False, 'move_joint", arm_angle = 3.0', "has an `arm_angle`, but its arm `cobra_s600` has 4 axes"),
+        (True, 'move_axes"', "has 4 numbers, one for each axis of its arm `cobra_s600`, but 6"),
+    ],
+)  # fmt: skip
+def test_what_an_arm_cannot_be_told_whatever_the_values(
+    has_axes: bool, command: str, says: str, tmp_path: Path
+) -> None:
+    where = cell(tmp_path / "cell", "cobra_s600", f'{{ command = "{command} }}')
+    if has_axes:
+        record = " * ".join(f"a{i}:REAL" for i in range(1, 7))
+        fields = ", ".join(f"a{i} = #x p" for i in range(1, 7))
+        net = NET.replace("moveJoint (p : POSE)", "moveJoint (q : AXES)")
+        net = changed(net, "  val MOVE", f"  colset AXES = record {record};\n  val MOVE")
+        net = changed(net, "action moveJoint p", f"action moveJoint {{{fields}}}")
+        write(where, net, (where / "cell.toml").read_text())
+    done = ask("check", str(where))
+    assert done.exit_code == 1
+    assert says in " ".join(done.output.replace("|", " ").split()), done.output
+
+
 def test_a_map_of_bases_knows_the_arm_angle(tmp_path: Path) -> None:
     where = cell(tmp_path / "cell", "iiwa14_r820")
     done = ask(

@@ -75,6 +75,7 @@ def look_ahead(
         _home(cell, chosen, where, d)
         for ir in programs:
             _payload(cell, ir, chosen, where, d)
+            _kind_of_arm(cell, ir, where, d)
     arms = Arms.of(config, d, partial=False)
     if arms is not None:
         for ir in programs:
@@ -129,6 +130,43 @@ def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> No
             config.locator.origin("robots", verdict.fault.robot, "home"),
             hint="change `home` (degrees) or `base` (m and degrees) of the robot, or move what it touches",
         )
+
+
+def _kind_of_arm(cell: RobotCell, ir: RobotIR, where: str, d: Diagnostics) -> None:
+    """Moves that an arm with so many axes cannot be told, whatever their values."""
+    robot = next((r for r in cell.robots if r.name == ir.name), None)
+    if robot is None:
+        return
+    alone = robot.kinematics.alone
+    count, constants = len(alone.arm.lower), _constants_of(ir)
+    for body in (ir.body, *(body for _, body in ir.procedures)):
+        for origin, move in _moves(body, ir.origin):
+            if _is_constant(move, constants):
+                continue  # it is looked at with its values
+            if isinstance(move.target, t.Axes) and len(move.target.angles) != count:
+                d.error(
+                    codes.ROBOT_REACH,
+                    f"a joint position of robot `{ir.name}`{where} has {count} numbers, one for each axis of its arm "
+                    f"`{robot.arm.name}`, but {len(move.target.angles)} are given",
+                    origin,
+                    hint=f"use a record of the reals a1 .. a{count}",
+                )
+            if move.arm_angle is not None and alone.arm_angle is None:
+                d.error(
+                    codes.ROBOT_REACH,
+                    f"a move of robot `{ir.name}`{where} has an `arm_angle`, but its arm `{robot.arm.name}` has "
+                    f"{count} axes",
+                    origin,
+                    hint="only arms with seven axes have one; leave `arm_angle` of the primitive out",
+                )
+
+
+def _is_constant(move: t.Move, constants: _Constants) -> bool:
+    try:
+        _constant(move, constants)
+    except ScriptError:
+        return False
+    return True
 
 
 def _payload(cell: RobotCell, ir: RobotIR, config: CellConfig, where: str, d: Diagnostics) -> None:
