@@ -115,6 +115,16 @@ class Table:
             return default
         return tuple(map(float, value))
 
+    def texts(self, name: str) -> tuple[str, ...]:
+        """A list of texts; none if it is not there."""
+        value = self.data.get(name, [])
+        if not self.has(name):
+            return ()
+        if not isinstance(value, list) or not all(isinstance(v, str) and v for v in value):
+            self.wrong(name, "a list of names")
+            return ()
+        return tuple(value)
+
     def text(self, name: str) -> str:
         """A text that is not empty, one of the words of its key; the default or "" where there is none."""
         key = self._key(name)
@@ -187,13 +197,14 @@ def _expected(key: Key) -> str:
     if key.words:
         return f"one of {', '.join(key.words)}"
     if key.kind == "numbers":
-        count = " or ".join(_COUNTS[n] for n in key.counts)
+        *some, last = (_COUNTS[n] for n in key.counts) if key.counts else ("",)
+        count = f"{', '.join(some)} or {last}" if some else last
         bounds = _bounds(key)
         return f"a list of {count} numbers{bounds}" if count else f"a list of numbers{bounds}"
     return f"a number{_bounds(key)}" if key.kind == "number" else "a name"
 
 
-_COUNTS = {3: "three", 4: "four", 6: "6"}
+_COUNTS = {3: "three", 4: "four", 6: "six", 7: "seven"}
 
 
 def _bounds(key: Key) -> str:

@@ -17,6 +17,7 @@ from lxml import etree
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.robot import codes
+from pn2code.robot.payload import Rating
 from pn2code.robot.transforms import Array, rotation_xyz
 
 JointType = Literal["revolute", "continuous", "prismatic", "fixed"]
@@ -38,6 +39,22 @@ class Joint:
     velocity: float
 
 
+@frozen
+class Coupling:
+    """An axis that its maker counts together with another one: its position is q + factor * (q of the other).
+
+    Args:
+        joint: the axis; other: the one with which it is coupled.
+        lower, upper: limits of the position as the maker counts it, rad.
+    """
+
+    joint: str
+    other: str
+    factor: float
+    lower: float
+    upper: float
+
+
 @frozen(eq=False)
 class Urdf:
     """The tree of a URDF file.
@@ -49,6 +66,9 @@ class Urdf:
         joints: in order of the file.
         contact_links: links that may touch what the tool works on (`<pn2code contact="nose"/>`).
         self_ignore: pairs of links never checked against each other.
+        couplings: axes whose limits and positions depend on another one (`<pn2code coupled="joint_3" .../>`).
+        rating: what an arm may carry; None: nothing is said.
+        mass: kg, of all links that have one; centre: of it, in the frame of the root, m.
         root: the link that is no joint's child.
         xml: the parsed file.
     """
@@ -59,6 +79,10 @@ class Urdf:
     joints: tuple[Joint, ...]
     contact_links: tuple[str, ...]
     self_ignore: frozenset[frozenset[str]]
+    couplings: tuple[Coupling, ...]
+    rating: Rating | None
+    mass: float
+    centre: Array
     root: str
     xml: Any
 
@@ -133,6 +157,7 @@ def _tree(path: Path, root: Any) -> Urdf:
     roots = [name for name in links if name not in children]
     if len(roots) != 1:
         raise _BadError(f"the links are not one tree: {len(roots)} of them have no parent")
+    mass, centre = _mass(root, joints)
     return Urdf(
         path=path,
         name=root.get("name", path.stem),
@@ -146,6 +171,12 @@ def _tree(path: Path, root: Any) -> Urdf:
             for e in root.findall("pn2code")
             for pair in e.get("ignore", "").split()
         ),
+        couplings=tuple(
+            _coupling(e, joints) for e in root.findall("pn2code") if e.get("coupled") is not None
+        ),
+        rating=_rating(root),
+        mass=mass,
+        centre=centre,
         root=roots[0],
         xml=root,
     )
@@ -168,6 +199,75 @@ def _numbers(element: Any, name: str, count: int, default: str) -> tuple[float, 
         line = 0 if element is None else element.sourceline
         raise _BadError(f"`{name}` is `{text}`, but {count} numbers are expected", line)
     return values
+
+
+def _mass(root: Any, joints: tuple[Joint, ...]) -> tuple[float, Array]:
+    """Of all links together, with joints at zero."""
+    by_child = {j.child: j for j in joints}
+    whole, moment = 0.0, np.zeros(3)
+    for link in root.findall("link"):
+        inertial = link.find("inertial")
+        if inertial is None or inertial.find("mass") is None:
+            continue
+        (mass,) = _numbers(inertial.find("mass"), "value", 1, "")
+        if mass < 0.0:
+            raise _BadError(f"the mass of link `{link.get('name')}` is below zero", link.sourceline)
+        point = np.array([*_numbers(inertial.find("origin"), "xyz", 3, "0 0 0"), 1.0])
+        name = link.get("name")
+        while name in by_child:
+            point, name = by_child[name].T_parent_joint @ point, by_child[name].parent
+        whole, moment = whole + mass, moment + mass * point[:3]
+    return whole, moment / whole if whole > 0.0 else moment
+
+
+def _rating(root: Any) -> Rating | None:
+    """What an arm may carry."""
+    said = [e for e in root.findall("pn2code") if e.get("payload") is not None]
+    rows = [e for e in root.findall("pn2code") if e.get("load") is not None]
+    if not said:
+        if rows:
+            raise _BadError("`load` says how fast an arm is, but no `payload`", rows[0].sourceline)
+        return None
+    (payload,) = _numbers(said[0], "payload", 1, "")
+    moments = _numbers(said[0], "moments", 3, "") if said[0].get("moments") is not None else ()
+    if not (payload > 0.0 and all(m > 0.0 for m in moments)):
+        raise _BadError("`payload` and `moments` must be above zero", said[0].sourceline)
+    keys = ("load", "speed", "acceleration")
+    derating: list[tuple[float, float, float]] = []
+    for e in rows:
+        load, speed, acceleration = (_numbers(e, key, 1, "1")[0] for key in keys)
+        if not (load >= 0.0 and 0.0 < speed <= 1.0 and 0.0 < acceleration <= 1.0):
+            raise _BadError(
+                "`load` needs kg from 0, and `speed` and `acceleration` above 0, at most 1",
+                e.sourceline,
+            )
+        if derating and load <= derating[-1][0]:
+            raise _BadError("the rows of `load` are not in rising order", e.sourceline)
+        derating.append((load, speed, acceleration))
+    return Rating(payload, moments, tuple(derating))
+
+
+def _coupling(element: Any, joints: tuple[Joint, ...]) -> Coupling:
+    names = (_attribute(element, "coupled"), _attribute(element, "with"))
+    turning = [j.name for j in joints if j.type == "revolute"]
+    for name in names:
+        if name not in turning:
+            raise _BadError(
+                f"`coupled` names `{name}`, which is no revolute joint", element.sourceline
+            )
+    if turning.index(names[0]) <= turning.index(names[1]):
+        raise _BadError(
+            f"`{names[0]}` is coupled with `{names[1]}`, which is not before it", element.sourceline
+        )
+    factor, lower, upper = (
+        _numbers(element, key, 1, default)[0]
+        for key, default in (("factor", "1"), ("lower", ""), ("upper", ""))
+    )
+    if not lower < upper:
+        raise _BadError(
+            f"`coupled` of `{names[0]}` needs `lower` below `upper`", element.sourceline
+        )
+    return Coupling(names[0], names[1], factor, lower, upper)
 
 
 def _joint(element: Any, links: tuple[str, ...]) -> Joint:
