@@ -15,6 +15,9 @@ import { Timeline } from "./timeline.js";
 import { Transport, help } from "./transport.js";
 import { Watch } from "./watch.js";
 
+/** Where drawing is slow, so long the rest of the page stays as it is while the arms move on (ms). */
+const PANES_MS = 200;
+
 export class ReplayPage {
   /** @param {{runs: any[], difference: any, generator: string, missing: string}} data */
   constructor(data) {
@@ -264,12 +267,17 @@ export class ReplayPage {
 
   update() {
     const { clock } = this;
+    const now = performance.now();
+    const isGoing = clock.pace().isPlaying;
+    const isWhole = !isGoing || !this.cell?.isSparing || now > (this.drawnAt ?? 0) + PANES_MS;
+    this.cell?.update(clock.t, { isGoing, isWhole });
+    if (!isWhole) return;
+    this.drawnAt = now;
     this.net.update(clock.k, clock.t, clock.pace());
     if (this.second) {
       const k = this.run.clock === "seconds" ? this.second.stepAt(clock.t) : Math.min(clock.k, this.second.steps);
       this.otherNet?.update(k, clock.t, clock);
     }
-    this.cell?.update(clock.t);
     this.timeline.update();
     this.transport.update();
     this.messages?.update();
