@@ -262,7 +262,7 @@ export class CellView {
     this.pathsAt = now;
     for (const trail of this.trails ?? []) {
       if (!trail) continue;
-      for (const line of [trail.behind, trail.ahead]) {
+      for (const line of [trail.behind, trail.thin, trail.ahead]) {
         this.cell?.scene.remove(line);
         line.geometry.dispose();
         line.material.dispose();
@@ -287,8 +287,13 @@ export class CellView {
     plain.setAttribute("position", new THREE.BufferAttribute(points, 3));
     const ahead = new THREE.Line(plain, new THREE.LineBasicMaterial({ color: 0x5b6b7c, transparent: true, opacity: 0.45 }));
     ahead.frustumCulled = false;
-    this.cell?.scene.add(behind, ahead);
-    return { behind, ahead, material, t, count: t.length };
+    const past = new THREE.BufferGeometry();
+    past.setAttribute("position", new THREE.BufferAttribute(points, 3));
+    past.setAttribute("color", new THREE.BufferAttribute(colours, 3));
+    const thin = new THREE.Line(past, new THREE.LineBasicMaterial({ vertexColors: true }));
+    thin.frustumCulled = false;
+    this.cell?.scene.add(behind, thin, ahead);
+    return { behind, thin, ahead, material, t, count: t.length };
   }
 
   /** @param {boolean} on */
@@ -392,21 +397,28 @@ export class CellView {
     if (!this.host.clientWidth) return;
     if (this.isGoing && this.thrift?.picture(performance.now())) this.spare();
     if (!this.isGoing) this.thrift?.rest();
-    this.draw(this.ratio);
+    this.draw(this.ratio, this.isSparing);
     clearTimeout(this.fine);
     if (this.isSparing && !this.isGoing) this.fine = setTimeout(() => this.draw(FINE), FINE_MS);
     if (this.hasShadows === undefined) setTimeout(() => this.shadows(true), 0);
   }
 
-  /** @param {number} ratio pixels of the picture in one of the page */
-  draw(ratio) {
+  /**
+   * @param {number} ratio pixels of the picture in one of the page
+   * @param {boolean} [isPlain] with simpler light, and thin paths
+   */
+  draw(ratio, isPlain = false) {
     const { clientWidth: w, clientHeight: h } = this.host;
     if (!w || !h) return;
+    this.cell?.plain(isPlain);
     for (const trail of this.trails ?? []) {
       if (!trail) continue;
       const n = upperBound(trail.t, this.t);
-      trail.behind.visible = trail.ahead.visible = Boolean(this.hasPaths);
+      trail.ahead.visible = Boolean(this.hasPaths);
+      trail.thin.visible = isPlain && trail.ahead.visible;
+      trail.behind.visible = !isPlain && trail.ahead.visible;
       trail.behind.geometry.instanceCount = Math.max(n - 1, 0);
+      trail.thin.geometry.setDrawRange(0, n);
       trail.ahead.geometry.setDrawRange(Math.max(n - 1, 0), trail.count);
       trail.material.resolution.set(w, h);
     }
