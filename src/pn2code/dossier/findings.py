@@ -120,9 +120,7 @@ def _geometry(said: Json) -> tuple[str, list[Finding]]:
         part = f" ({row['open']})" if row["open"] else ""
         near = row["nearest"]
         nearest = (
-            f"; the nearest that was measured: {' and '.join(near['links'])}, {1000 * near['distance_m']:.0f} mm"
-            if near
-            else ""
+            f"; they keep apart by at least {1000 * near['at_least_m']:.0f} mm" if near else ""
         )
         found += [
             Finding(

@@ -670,7 +670,9 @@ def _words(command: Command) -> str:
             moved = () if isinstance(command, Measure) else command.along
             tcp = "" if isinstance(command, Measure) else command.tcp
             by = f" by {tcp}" if tcp else ""
-            return f"{kind_and_label(command)[1]} {mm} mm, {deg} deg{within}{by}{_with(moved)}"
+            elbow = None if isinstance(command, Measure) else command.arm_angle
+            arm = "" if elbow is None else f", arm angle {np.degrees(elbow):.4f} deg"
+            return f"{kind_and_label(command)[1]} {mm} mm, {deg} deg{within}{by}{_with(moved)}{arm}"
         case MoveAxes(axes=axes):
             shown = " ".join(f"{np.degrees(v):.4f}" for v in axes)
             return f"axes {shown} deg{_with(command.along)}"
