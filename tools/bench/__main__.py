@@ -146,12 +146,14 @@ def main() -> int:
         "--live", type=Path, metavar="CELL", help="only what watchers cost the supervisor of a cell"
     )
     parser.add_argument("--pages", type=int, default=10, help="with --live (default 10)")
+    parser.add_argument("--watchers", type=int, default=0, help="with --live, instead of pages")
     parser.add_argument("--speed", type=float, default=10.0, help="with --live (default 10)")
     options = parser.parse_args()
     if options.live:
         from tools.bench import live  # loads all that a run needs
 
-        return live.measure(options.live, options.pages, min(options.repeat, 6), options.speed)
+        runs = min(options.repeat, 6)
+        return live.measure(options.live, options.pages, runs, options.speed, options.watchers)
     if options.replay or options.replay_of:
         from tools.bench import replay  # needs Playwright
 
