@@ -31,6 +31,7 @@ LONG = {
     "pn2code run examples/riveting": "the same",
     "pn2code run examples/riveting --input examples/riveting/faults": "the same",
     "pn2code run examples/riveting --realtime --live": "two minutes of real time; test_live runs a smaller cell",
+    "pn2code run examples/sorting --realtime --live --intervene": "two minutes of real time; test_intervening does it",
     "pn2code replay run/cell.trace.jsonl examples/riveting": "needs the line before",
     "pn2code verify examples/riveting --report report.html": CELLS,
     "pn2code verify examples/riveting": CELLS,

@@ -26,8 +26,15 @@ def contradictions(
     search, anyhow = measured.search, measured.anyhow
     names = [t.name for t in search.graph.partition.net.transitions]
     is_whole = not (search.why or search.faults or search.stuck or search.halts)
-    for _ in range(PAIRS):
-        first, second = random.randrange(len(names)), random.randrange(len(names))
+    occurred = [
+        [names.index(e["transition"]) for e in run.record.events if e.get("transition") in names]
+        for _, run in runs
+        if run.end == "finished"
+    ]
+    for _ in range(PAIRS if any(len(x) > 1 for x in occurred) else 0):
+        way = random.choice([x for x in occurred if len(x) > 1])
+        i, j = sorted(random.sample(range(len(way)), 2))
+        first, second = way[i], way[j]
         event, other = _is(measured, first), _is(measured, second)
         of_search = longest_wait(search.successors, event, other, search.ends)
         of_anyhow = longest_wait(anyhow.successors, event, other, anyhow.ends())
