@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from random import Random
 from typing import Any
 
 import pytest
+from tools.adversary import times, waits, wander
 from typer.testing import CliRunner
 
 from helpers.netbuilder import cpn
@@ -14,6 +16,9 @@ from helpers.timed_runs_cell import NET, write
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.front import load
+from pn2code.timing.doings import NS
+from pn2code.timing.look import Measured
+from pn2code.timing.waits import Wait
 from pn2code.trace.replay import replay
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
@@ -106,3 +111,15 @@ def test_time_stamps_are_not_followed(tmp_path: Path) -> None:
     (cell / "cell.cpn").write_bytes(cpn(text))
     (said,) = verified(cell, END.format(9))["properties"]
     assert said["answer"] == "inconclusive" and "time stamps" in said["why"]
+
+
+def test_a_false_wait_would_be_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs of the programs beside what is said of them."""
+    cell = write(tmp_path, said="bad")
+    measured: list[Measured] = []
+    built = wander.prepare(cell, Diagnostics())
+    assert times.cycle_of(cell, measured) is not None and built is not None
+    runs = list(times.runs_of(built, 1))
+    assert not list(waits.contradictions(measured[0], Random(1), runs))
+    monkeypatch.setattr(waits, "longest_wait", lambda *_: Wait(NS))
+    assert any("at most 1.0" in x for x in waits.contradictions(measured[0], Random(1), runs))
