@@ -20,6 +20,7 @@ from tools.forgery.forgeries import forgeries
 from tools.forgery.judge import WRONG, Judge
 from typer.testing import CliRunner
 
+from helpers.solvers import solver_for
 from helpers.thorough import THOROUGH, amount
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
@@ -83,6 +84,15 @@ EXAMPLES = {
         {"brought": 4, "milled": 4, "stored": 4, "breaks": 0}, {"t": {"stored": 3, "scrapped": 1}},
         ("supervisor", "arm1", "arm2", "feeder", "mill", "gauge"),
     ),
+    "welding": Expected(
+        "cell", ("Supervisor", "supervisor.svg"), 890, 5,
+        {"seams": 6, "again": 1, "by_hand": 0}, {"c": 0}, ("supervisor", "left", "right"),
+    ),
+    "assembly": Expected(
+        "cell", ("Supervisor", "supervisor.svg"), 285, 3,
+        {"screws": 2, "cables": 2, "handed_over": 1, "rejected": 1}, {"c": 1, "n": 3},
+        ("supervisor", "left", "right", "worker"),
+    ),
     "timed": Expected(
         "timed", ("Supervisor", "supervisor.svg"), 31014, 1668,
         {"beads": 3, "repairs": 2, "interruptions": 2, "answers": 2, "timeouts": 1, "late": 1},
@@ -97,6 +107,7 @@ FEWER = ("--set", "parts=1", "--set", "orders=1")
 
 @pytest.mark.parametrize("name", [*EXAMPLES, "riveting", "philosophers"])
 def test_check_has_nothing_to_say(name: str, root: Path) -> None:
+    solver_for(name)
     done = CliRunner().invoke(app, ["check", str(root / "examples" / name)])
     assert done.exit_code == 0, done.output
     assert done.stderr == ""  # a cell has a table of its channels besides
@@ -105,6 +116,7 @@ def test_check_has_nothing_to_say(name: str, root: Path) -> None:
 
 @pytest.fixture(scope="module", params=EXAMPLES)
 def example(request: pytest.FixtureRequest, root: Path) -> tuple[Path, Expected]:
+    solver_for(request.param)
     return root / "examples" / request.param, EXAMPLES[request.param]
 
 
@@ -248,7 +260,7 @@ def test_the_riveting_cell_has_its_properties(root: Path, tmp_path: Path) -> Non
     "file",
     [
         "sorting/cell.toml", "handover/cell.toml", "tending/cell.toml", "palletiser/cell.toml", "shared-zone/cell.toml",
-        "timed/cell.toml", "riveting/cell.properties.toml",
+        "welding/cell.toml", "assembly/cell.toml", "timed/cell.toml", "riveting/cell.properties.toml",
     ],
 )  # fmt: skip
 def test_properties_are_told_in_plain_words(root: Path, file: str) -> None:

@@ -51,6 +51,7 @@ _NAMES = {
     "Int.int": "int", "Real.real": "real", "String.string": "string", "Word.word": "word", "CPN'timed": "timed",
     "Word31.word": "word", "Position.int": "int", "Substring.substring": "substring", "IEEEReal.real_order": "order",
     "Order.order": "order", "Word8Vector.elem": "Word8.word", "FmtFields.fmt_item": "fmt_item",
+    **{f"word{n}": f"Word{n}.word" for n in (8, 32, 64)}, **{f"int{n}": f"Int{n}.int" for n in (32, 64)},
     "CharVector.vector": "string", "CharVector.elem": "char",
 }  # fmt: skip
 _BASIC = {
@@ -228,7 +229,7 @@ class Printer:
     def constructed(self, name: str, args: tuple[Type, ...], value: Any, tight: bool) -> str:
         made = ""
         match name:
-            case "int" | "IntInf.int":
+            case "int" | "IntInf.int" | "Int32.int" | "Int64.int":
                 return str(value).replace("-", "~")
             case "time" | "real":
                 return (
@@ -240,7 +241,7 @@ class Printer:
                 return string_text(value)
             case "char":
                 return "#" + string_text(value)
-            case "word" | "Word8.word":
+            case "word" | "Word8.word" | "Word32.word" | "Word64.word":
                 return f"0wx{value:X}"
             case "list":
                 return f"[{','.join(self.text(args[0], v) for v in value)}]"
