@@ -93,10 +93,10 @@ def use(changed: pytest.MonkeyPatch) -> tuple[str, ...]:
     usual = programs._Builder._compiler
 
     def compiled(builder: programs._Builder, room: Path, *arguments: str, d: Diagnostics) -> bool:
-        is_net = (
-            arguments[-2:] == ("-c", "net.c") or builder.host.name in WHOLE and "-c" in arguments
-        )
-        if is_net and {"-O0", MARK} <= set(builder.flags) and not builder.interrupted():
+        is_net = arguments[-2:] == ("-c", "net.c") and builder.host.name == "explore"
+        is_whole = builder.host.name in WHOLE and "-c" in arguments and not os.environ.get("CC")
+        is_quick = {"-O0", MARK} <= set(builder.flags) and not builder.interrupted()
+        if is_quick and (is_net or is_whole):
             command = [tiny, "-w", *builder.flags, *arguments]
             done = subprocess.run(command, cwd=room, capture_output=True, check=False)
             if done.returncode == 0:
