@@ -24,6 +24,7 @@ from pn2code.geometry.check import examine
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.graph import explore_cell
 from pn2code.geometry.legs import Planner
+from pn2code.geometry.shown import Shown
 from pn2code.robot import scene
 from pn2code.robot.bullet import BulletBackend
 from pn2code.run.cell import RunOptions, run_cell
@@ -155,6 +156,43 @@ def test_air_that_is_gripped(tmp_path: Path) -> None:
     assert any("grips air" in m.problem for m in found.moves)
 
 
+def test_a_part_that_is_released_in_the_air(tmp_path: Path) -> None:
+    """A run stops there; so the check says so as well, and how the net comes there."""
+    cell = carrying_cell.write(tmp_path / "cell")
+    text = changed(carrying_cell.NET, "(n div 2), 150.0)", "(n div 2), 200.0)")
+    (cell / "cell.cpn").write_bytes(cpn(text))
+    found = looked(cell, tmp_path / "runs")
+    assert found.of_moves == "no"
+    bad = next(m for m in found.moves if "in the air" in m.problem)
+    assert bad.command == "tool blow" and bad.transition == "Top.Robot.Place"
+    assert "`robot` releases `box.1` in the air: `floor`, the nearest thing below it" in bad.problem
+    assert "50.0 mm away" in bad.problem
+    assert bad.run is not None and bad.run.file is not None
+    result = CliRunner().invoke(app, ["replay", str(bad.run.file), str(cell)])
+    assert result.exit_code == 0, result.output
+    assert bad.problem.split(", part at")[0] in ran(cell, tmp_path / "run")
+
+
+@pytest.mark.parametrize(("z", "answer"), [("0.565", "no"), ("0.574", "unknown")])
+def test_a_part_that_is_put_into_something(z: str, answer: str, tmp_path: Path) -> None:
+    """A millimetre is permitted; so near to it, a rounding decides what a run does."""
+    toml = changed(carrying_cell.TOML, "z = 0.575", f"z = {z}")
+    found = looked(carrying_cell.write(tmp_path / "cell", toml=toml), tmp_path / "runs")
+    (bad,) = (m for m in found.moves if m.kind == "tool" and m.command == "tool feed")
+    assert (bad.answer, bad.robot) == (answer, "feeder")
+    assert "mm deep in `table`" in bad.problem
+
+
+def test_a_part_that_is_in_something_at_the_start(tmp_path: Path) -> None:
+    toml = changed(
+        carrying_cell.TOML, "[places.infeed]", "at = [{ x = -1.2, z = 0.06 }]\n[places.infeed]"
+    )
+    found = looked(carrying_cell.write(tmp_path / "cell", toml=toml), tmp_path / "runs")
+    bad = next(m for m in found.moves if m.kind == "part")
+    assert (found.of_moves, bad.answer, bad.robot) == ("no", "no", "box.1")
+    assert "`[parts.box]` places it, is 15.0 mm deep in `floor`" in bad.problem
+
+
 def test_the_command(tmp_path: Path) -> None:
     cell = meeting_cell(tmp_path / "cell", guarded=False)
     arguments = ["check", "--geometry", str(cell), "-o", str(tmp_path / "runs")]
@@ -263,7 +301,7 @@ def test_arms_that_nearly_touch(tmp_path: Path) -> None:
     assert arms is not None
     planner = Planner(arms)
     backend = BulletBackend(arms, looks=False)
-    compared = Comparison(arms, planner, backend)
+    compared = Comparison(arms, planner, Shown(backend))
     one, other = (planner.standing(planner.home(r.name)) for r in arms.robots)
     apart = compared.two((one, None), (other, None))
     assert apart.outcome == "clear"
@@ -275,6 +313,6 @@ def test_arms_that_nearly_touch(tmp_path: Path) -> None:
         near = replace(arms, robots=(arms.robots[0], replace(arms.robots[1], base=moved)))
         planner, backend = Planner(near), BulletBackend(near, looks=False)
         one, other = (planner.standing(planner.home(r.name)) for r in near.robots)
-        found = Comparison(near, planner, backend).two((one, None), (other, None))
+        found = Comparison(near, planner, Shown(backend)).two((one, None), (other, None))
         backend.close()
         assert found.outcome == outcome, (more, found)

@@ -290,12 +290,25 @@ class Here:
     """pn2code after the declarations of a net: the elaborator and the reference evaluator."""
 
     def __init__(self, net: Path, steps: int = 200_000) -> None:
-        d = Diagnostics()
-        typed = examine(net, d, compute=compute).typed
-        assert typed is not None, [e.message for e in d.errors]
+        self._d = Diagnostics()
+        typed = examine(net, self._d, compute=compute).typed
+        assert typed is not None, [e.message for e in self._d.errors]
         self.elaborator = typed.elaborator
         self.program = typed.program
         self.evaluator = Evaluator(typed.program, limits=Limits(steps=steps))
+
+    def declare(self, text: str) -> None:
+        """Declarations that stand before all expressions.
+
+        Raises:
+            ValueError: they are wrong.
+        """
+        before = len(self.elaborator.program().declarations)
+        self.elaborator.declarations(SourceText(text, NOWHERE))
+        if self._d.has_errors:
+            raise ValueError(self._d.errors[0].message)
+        self.program = self.elaborator.program()
+        self._evaluate(before)
 
     def say(self, text: str) -> Said:
         """The answer to an expression; declarations may come before it, each of which ends with `;` and a line.
@@ -352,6 +365,10 @@ class Here:
         self.elaborator.declarations(SourceText(text, NOWHERE))
         if d.has_errors:
             raise _RefusedError
+        self._evaluate(done)
+
+    def _evaluate(self, done: int) -> None:
+        """The declarations after so many of them."""
         for dec in self.elaborator.program().declarations[done:]:
             self.evaluator.globals.update(self.evaluator.run(self.evaluator._declare(dec, {})))
 

@@ -33,6 +33,7 @@ from pn2code.verify.exploring.limits import Limits, cores
 if TYPE_CHECKING:
     from pn2code.geometry.placing.free import Free
     from pn2code.geometry.placing.look import Missed, Placed, Tried
+    from pn2code.geometry.placing.proving import Proof
     from pn2code.geometry.placing.search import Candidate
     from pn2code.run.record import RunRecord
 
@@ -259,12 +260,11 @@ def _text(
             yield f"  proved for {where}:"
             yield "    each move can be done from wherever the arm can be then, without touching what stands or itself"
             yield "    no two arms collide, nor an arm and a part, in any interleaving that the net permits"
-            yield f"    on the whole way: {_figures(tried.proof.condition, tried.proof.limit, tried.proof.clearance)}"
+            yield f"    on the whole way: {_whole(tried.proof)}"
             continue
         yield f"  does not hold, {where}: {tried.proof.trouble}"
         if math.isfinite(tried.proof.condition):
-            figures = _figures(tried.proof.condition, tried.proof.limit, tried.proof.clearance)
-            yield f"    on the whole way: {figures}"
+            yield f"    on the whole way: {_whole(tried.proof)}"
     if found.chosen is None:
         is_open = any(t.proof.answer == "unknown" for t in found.tried)
         answer = (
@@ -307,6 +307,16 @@ def _figures(condition: float, limit: float, clearance: float) -> str:
     margin = f"{math.degrees(limit):.1f} deg" if math.isfinite(limit) else "-"
     apart = f"{1000.0 * clearance:.0f} mm" if math.isfinite(clearance) else "not measured"
     return f"worst condition {worst}, least margin of a limit {margin}, clearance {apart}"
+
+
+def _whole(proof: Proof) -> str:
+    """What is certain, not what was measured somewhere."""
+    figures = _figures(proof.condition, proof.limit, proof.clearance)
+    return (
+        figures.replace("clearance ", "clearance at least ", 1)
+        if math.isfinite(proof.clearance)
+        else figures
+    )
 
 
 def _none(found: Placed) -> Iterator[str]:

@@ -8,13 +8,19 @@ activity.end, activity.after    # where the arm stands afterwards, and the parts
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from pn2code.base.frozen import frozen
 from pn2code.geometry.legs import Leg, Planner, Stand
-from pn2code.robot.commands import Command, ToolAction
-from pn2code.robot.parts import Part, PartFault, Parts
+from pn2code.geometry.shown import Shown
+from pn2code.geometry.sweeps import ROUNDING
+from pn2code.robot.commands import Command, Handling, ToolAction
+from pn2code.robot.lying import Trouble, overlap, unsupported
+from pn2code.robot.parts import Part, PartChange, PartFault, Parts
 from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.transforms import describe
 
 _DIGITS = 6
 
@@ -57,6 +63,7 @@ class Activity:
         fault: why it cannot be done to its end; in which leg: the last.
         kinds: the kinds of parts that it handles.
         is_part: the fault is about a part; command: what cannot be done then.
+        doubt: why it is not known whether an action can be done; "": it is.
     """
 
     number: int
@@ -67,6 +74,7 @@ class Activity:
     kinds: frozenset[str] = frozenset()
     is_part: bool = False
     command: Command | None = None
+    doubt: str = ""
 
     @property
     def between(self) -> tuple[Contents, ...]:
@@ -75,15 +83,28 @@ class Activity:
 
 
 class Doing:
-    """Works activities out, each once."""
+    """Works activities out, each once.
 
-    def __init__(self, planner: Planner, cell: RobotCell) -> None:
-        self.planner, self._cell = planner, cell
+    Args:
+        shown: where what is put down is looked at: does it lie on something, and overlap nothing? None: nowhere.
+    """
+
+    def __init__(self, planner: Planner, cell: RobotCell, shown: Shown | None = None) -> None:
+        self.planner, self._cell, self._shown = planner, cell, shown
         self._known: dict[tuple[object, ...], Activity] = {}
         self._contents: dict[tuple[str, ...], Contents] = {}
         self._standing: dict[tuple[int, int], Activity] = {}
         self.activities: list[Activity] = []
         self.start = self._kept(Parts(cell))
+
+    def overlaps_at_start(self) -> list[tuple[Part, Trouble]]:
+        """Parts of the start that are in something, or perhaps are: such a run ends before it begins."""
+        if self._shown is None:
+            return []
+        parts = self.start.parts.present
+        self._shown.show(parts.values())
+        found = [(p, overlap(self._shown.backend, p.name, ROUNDING)) for p in parts.values()]
+        return [(part, trouble) for part, trouble in found if trouble is not None]
 
     def _kept(self, parts: Parts) -> Contents:
         key = tuple(sorted(spot(p) for p in parts.present.values()))
@@ -109,9 +130,7 @@ class Doing:
         return self._known[key]
 
     def _added(self, a: Activity) -> Activity:
-        made = Activity(
-            len(self.activities), a.legs, a.end, a.after, a.fault, a.kinds, a.is_part, a.command
-        )
+        made = replace(a, number=len(self.activities))
         self.activities.append(made)
         return made
 
@@ -119,6 +138,7 @@ class Doing:
         self, owner: str, commands: tuple[Command, ...], stand: Stand | None, contents: Contents
     ) -> Activity:
         legs: list[tuple[Leg, Contents]] = []
+        doubtful: tuple[str, Command | None] = ("", None)
         kinds = frozenset(
             c.handling.part
             for c in commands
@@ -138,7 +158,8 @@ class Doing:
                     base = self._cell.robot(owner).T_world_base
                     tcp = base @ stand.T_base_tcp
                 try:
-                    parts.handle(owner, command.handling, tcp)
+                    change = parts.handle(owner, command.handling, tcp)
+                    doubt = self._expect_lying(owner, command.handling, change, parts)
                 except PartFault as fault:
                     return Activity(
                         0,
@@ -151,4 +172,42 @@ class Doing:
                         command=command,
                     )
                 contents = self._kept(parts)
-        return Activity(0, tuple(legs), stand, contents, "", kinds)
+                if doubt and not doubtful[0]:
+                    doubtful = (doubt, command)
+        return Activity(
+            0,
+            tuple(legs),
+            stand,
+            contents,
+            kinds=kinds,
+            command=doubtful[1],
+            doubt=doubtful[0],
+        )
+
+    def _expect_lying(self, who: str, handling: Handling, change: PartChange, parts: Parts) -> str:
+        """Whether a part that is put down lies on something and overlaps nothing, as a run looks at it.
+
+        Gives why that is not known; "": it is so.
+        Raises PartFault if it is not so.
+        """
+        if self._shown is None or change.effect not in ("releases", "creates"):
+            return ""
+        self._shown.show(p for p in parts.present.values() if not p.holder)
+        does = f"`{who}` releases `{change.part}`"
+        if change.effect == "creates":
+            does = f"`{who}` puts `{change.part}` at `{handling.place}`"
+        found = [(f"{does}, which", overlap(self._shown.backend, change.part, ROUNDING))]
+        if change.effect == "releases":
+            hangs = unsupported(self._shown.backend, change.part, ROUNDING)
+            found.append((f"{does} in the air:", hangs))
+        for what, trouble in found:
+            if trouble is not None and trouble.margin < -ROUNDING:
+                raise PartFault(f"{what} {trouble.text}, part at {describe(change.pose)}")
+        return next(
+            (
+                f"{what} {x.text}: that is as much as is permitted, to {1000.0 * ROUNDING:g} mm"
+                for what, x in found
+                if x is not None
+            ),
+            "",
+        )

@@ -8,6 +8,15 @@ from pn2code.base.frozen import frozen
 from pn2code.geometry.runs import Run
 from pn2code.robot.backend import Clearance
 
+
+@frozen(eq=False)
+class Nearest:
+    """How near two arms come: what was measured (None: nothing so near), and m that are certain, of all pairs."""
+
+    where: Clearance | None
+    least: float
+
+
 Verdict = Literal["yes", "no", "unknown"]
 _WORST: tuple[Verdict, ...] = ("no", "unknown", "yes")
 
@@ -76,7 +85,7 @@ class Pair:
         robots: whose they are; the second "" of a part that stands.
         doing: transitions and commands, in words.
         answer: "no" or "unknown"; says: why.
-        where: what meets what, and where; distance: m, negative: an overlap.
+        where: what meets what, and where; distance: m, negative: an overlap; least: nowhere is it less (None: unknown).
         joints: where the arms are then, by robot, rad.
         run: in which they are under way.
     """
@@ -91,6 +100,7 @@ class Pair:
     joints: tuple[tuple[str, tuple[float, ...]], ...] = ()
     run: Run | None = None
     picture: str = ""
+    least: float | None = None
 
     def row(self) -> dict[str, Any]:
         """For programs."""
@@ -103,6 +113,7 @@ class Pair:
             "links": [self.where.a, self.where.b] if self.where else None,
             "point_m": [round(v, 4) for v in self.where.point] if self.where else None,
             "distance_m": round(self.distance, 6),
+            "at_least_m": _rounded(self.least, 6),
             "joints": {name: [round(v, 6) for v in q] for name, q in self.joints},
             "run": run_row(self.run),
             "picture": self.picture or None,
@@ -152,7 +163,7 @@ class Layout:
         name: "" where there are none.
         states, situations: that were seen; looked: pairs of legs that were compared, and `queries` distances measured.
         open: why not all situations are known; "": they are.
-        nearest: the pair of arms that comes nearest without touching, as far as it was measured.
+        nearest: the pair of arms that comes nearest, if all keep apart.
     """
 
     name: str
@@ -165,7 +176,7 @@ class Layout:
     seconds: float
     open: str = ""
     proposals: tuple[Proposal, ...] = ()
-    nearest: Clearance | None = None
+    nearest: Nearest | None = None
 
     @property
     def of_moves(self) -> Verdict:
@@ -206,8 +217,12 @@ class Layout:
     def _nearest_row(self) -> dict[str, Any] | None:
         if self.nearest is None:
             return None
-        links = [self.nearest.a, self.nearest.b]
-        return {"links": links, "distance_m": round(self.nearest.distance, 5)}
+        where = self.nearest.where
+        return {
+            "links": [where.a, where.b] if where else None,
+            "distance_m": round(where.distance, 5) if where else None,
+            "at_least_m": round(self.nearest.least, 5),
+        }
 
 
 def run_row(run: Run | None) -> dict[str, Any] | None:

@@ -1,6 +1,6 @@
 """Sweeps what situations show: each leg against the scene, legs of two arms against each other, legs and parts.
 
-    compared = Comparison(cell, planner, backend)
+    compared = Comparison(cell, planner, Shown(backend))
     compared.move(leg, held)                     # Swept: clearances, margins
     compared.two((leg, held), (other, held))     # Apart
 
@@ -17,11 +17,12 @@ import numpy as np
 
 from pn2code.base.frozen import frozen
 from pn2code.geometry.activities import Activity, spot
+from pn2code.geometry.answers import Nearest
 from pn2code.geometry.legs import Leg, Planner
-from pn2code.geometry.sweeps import Apart, Sweeper
+from pn2code.geometry.shown import Shown
+from pn2code.geometry.sweeps import SEARCHED, Apart, Sweeper, much_less
 from pn2code.geometry.tracks import ArmShape, Track
 from pn2code.robot.along import AlongTrajectory
-from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.kinematics import MOST_CONDITION
 from pn2code.robot.motion import LinearTrajectory
 from pn2code.robot.parts import Part
@@ -30,6 +31,8 @@ from pn2code.robot.transforms import Array
 
 _PIECES = 16
 _SAMPLES = 65
+_MOST_NEAREST = 2000
+"""Distances that are measured only to say how near arms come."""
 
 
 @frozen(eq=False)
@@ -44,9 +47,10 @@ class Margins:
 class Comparison:
     """Keeps what has been swept."""
 
-    def __init__(self, cell: RobotCell, planner: Planner, backend: BulletBackend) -> None:
+    def __init__(self, cell: RobotCell, planner: Planner, shown: Shown) -> None:
+        backend = shown.backend
         self.cell, self._planner, self._backend = cell, planner, backend
-        self.sweeper = Sweeper(backend)
+        self.sweeper = Sweeper(shown)
         self._shapes = {r.name: ArmShape.of(r, backend) for r in cell.robots}
         self._boxes = {k.name: backend.part_box(k) for k in cell.parts.values()}
         self._tracks: dict[tuple[int, str], Track] = {}
@@ -90,11 +94,32 @@ class Comparison:
         if (one, other) not in self._pairs:
             self.compared += 1
             (low, high), (from_, to) = self._extent(one), self._extent(other)
-            if (low > to).any() or (high < from_).any():
-                self._pairs[one, other] = Apart("clear", 0.0, math.inf)
+            off = np.maximum(np.maximum(low - to, from_ - high), 0.0)
+            if off.any():
+                self._pairs[one, other] = Apart("clear", float(np.linalg.norm(off)), math.inf)
             else:
                 self._pairs[one, other] = self.sweeper.apart(first, second)
         return self._pairs[one, other]
+
+    def nearest(self) -> Nearest | None:
+        """How near arms come that keep apart; None: no two do."""
+        clear = {key: x for key, x in self._pairs.items() if x.outcome == "clear"}
+        best = min((x.nearest for x in clear.values()), default=math.inf)
+        where = next((x.where for x in clear.values() if x.nearest == best), None)
+        best = min(best, SEARCHED)
+        begun = self.sweeper.queries
+        certain = SEARCHED
+        for one, other in sorted(clear, key=lambda key: clear[key].least):
+            least = clear[one, other].least
+            if least < much_less(best) and self.sweeper.queries - begun < _MOST_NEAREST:
+                found = self.sweeper.nearest(self._tracks[one], self._tracks[other], best)
+                least = max(least, found.least)
+                if found.nearest < best:
+                    best, where = found.nearest, found.where
+            certain = min(certain, least)
+        if not clear:
+            return None
+        return Nearest(where, min(certain, best))
 
     def activities(self, a: Activity, b: Activity) -> Iterator[tuple[Leg, Leg, Apart]]:
         """Each leg of one with each of the other, since nobody knows how far they are."""
@@ -135,8 +160,7 @@ class Comparison:
         q = leg.path.on_way(np.linspace(0.0, 1.0, _SAMPLES if leg.is_moving else 1))
         if isinstance(leg.path, LinearTrajectory | AlongTrajectory):
             q = np.vstack([q, leg.path.grid])
-        arm = kinematics.arm
-        off = np.minimum(q - arm.lower, arm.upper - q).min(axis=0)[kinematics.joints]
+        off = kinematics.turning_margins(q).min(axis=0)
         axis = int(np.argmin(off))
         worst = max(c.condition for c in kinematics.conditioning_many(q))
         return Margins(float(off[axis]), axis, worst if worst <= MOST_CONDITION else math.inf)

@@ -18,11 +18,11 @@ from pn2code.geometry.compare import Comparison
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.runs import Run, write
+from pn2code.geometry.shown import Shown
 from pn2code.geometry.situations import Met, Side, Situations
-from pn2code.geometry.sweeps import Apart
+from pn2code.geometry.sweeps import ROUNDING, Apart
 from pn2code.geometry.words import numbers, reason, words
 from pn2code.geometry.zones import Explore, Zones
-from pn2code.robot.backend import Clearance
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.parts import Part
 from pn2code.robot.robot_cell import RobotCell
@@ -56,12 +56,12 @@ class Look:
     def __init__(self, graph: CellGraph, cell: RobotCell, options: Options, layout: str) -> None:
         self.graph, self.cell, self.options, self.layout = graph, cell, options, layout
         self.planner = Planner(cell)
-        self.doing = Doing(self.planner, cell)
         self.backend = BulletBackend(cell, looks=False)
-        self.comparison = Comparison(cell, self.planner, self.backend)
+        shown = Shown(self.backend)
+        self.doing = Doing(self.planner, cell, shown)
+        self.comparison = Comparison(cell, self.planner, shown)
         self.robots = tuple(r.name for r in cell.robots)
         self.runs: dict[tuple[int, tuple[int, ...]], Run] = {}
-        self.nearest: Clearance | None = None
 
     def close(self) -> None:
         """Ends the collision library."""
@@ -95,13 +95,14 @@ class Look:
             time.perf_counter() - began,
             reason(found.why),
             tuple(zones or ()),
-            self.nearest,
+            self.comparison.nearest() if not any(p.answer == "no" for p in pairs) else None,
         )
 
     # --- moves -----------------------------------------------------------------------------------
 
     def _moves(self, found: Situations) -> list[Move]:
         rows: dict[tuple[int, str], Move] = {}
+        handled: dict[tuple[str, str, str], Move] = {}
         for (number, _element), met in found.activities.items():
             activity = self.doing.activities[number]
             for leg, contents in activity.legs:
@@ -113,12 +114,25 @@ class Look:
                 row = self._move(found, leg, held, met)
                 if leg.command is not None or row.answer != "yes":
                     rows[key] = row
-            if activity.is_part and (-1 - number, "") not in rows:
-                rows[-1 - number, ""] = self._handling(found, activity, met)
-        return list(rows.values())
+            if activity.is_part or activity.doubt:
+                row = self._handling(found, activity, met)
+                key_ = (row.transition, row.command, row.begins)
+                if key_ not in handled or (handled[key_].answer, row.answer) == ("unknown", "no"):
+                    handled[key_] = row
+        return [*self._at_start(), *rows.values(), *handled.values()]
+
+    def _at_start(self) -> list[Move]:
+        """Parts that cannot be where cell.toml puts them."""
+        out = []
+        for part, trouble in self.doing.overlaps_at_start():
+            answer: Verdict = "no" if trouble.margin < -ROUNDING else "unknown"
+            does = f"stands at {numbers(pose_of(part.frame))}"
+            why = f"`{part.name}`, as `[parts.{part.kind.name}]` places it, {trouble.text}"
+            out.append(Move(part.name, "", does, "", "part", answer, why))
+        return out
 
     def _handling(self, found: Situations, activity: Activity, met: Met) -> Move:
-        """What an action cannot do to a part."""
+        """What an action cannot do to a part, or perhaps cannot."""
         t, owner = _who(found, met.elements[0])
         begins = ""
         if activity.end is not None:
@@ -126,7 +140,9 @@ class Look:
             begins = numbers(pose_of(base @ activity.end.T_base_tcp))
         does = words(activity.command)
         run = self._run(found, met)
-        return Move(owner, t, does, begins, "tool", "no", activity.fault, run=run)
+        answer: Verdict = "no" if activity.is_part else "unknown"
+        why = activity.fault or activity.doubt
+        return Move(owner, t, does, begins, "tool", answer, why, run=run)
 
     def _move(self, found: Situations, leg: Leg, held: Part | None, met: Met) -> Move:
         t, _ = _who(found, met.elements[0])
@@ -181,18 +197,11 @@ class Look:
             if sides in bad and bad[sides].answer == "no":
                 continue
             for leg, other, apart in self.comparison.activities(a, b):
-                self._note_nearest(apart)
                 if apart.outcome == "touch" or (apart.outcome == "open" and sides not in bad):
                     bad[sides] = self._pair(found, leg, other, apart, met)
                 if apart.outcome == "touch":
                     break
         return bad
-
-    def _note_nearest(self, apart: Apart) -> None:
-        gap = apart.where
-        if apart.outcome == "clear" and gap is not None:
-            least = self.nearest.distance if self.nearest is not None else math.inf
-            self.nearest = gap if gap.distance < least else self.nearest
 
     def _pair(self, found: Situations, leg: Leg, other: Leg, apart: Apart, met: Met) -> Pair:
         first, second = (_who(found, e)[0] for e in met.elements)
@@ -267,6 +276,7 @@ def _met(
         apart.where.distance if apart.where else 0.0,
         tuple((r, tuple(map(float, q))) for r, q in zip(robots, apart.joints, strict=False) if r),
         run,
+        least=_most_in(apart) if is_touch else None,
     )
 
 
@@ -274,9 +284,20 @@ def _least(apart: Apart) -> float | None:
     return None if apart.outcome == "open" else apart.least
 
 
+def _most_in(apart: Apart) -> float:
+    """The least distance (m) that the links which touch can have anywhere on the way."""
+    assert apart.where is not None
+    permitted = apart.nearest - apart.where.distance
+    return min(apart.least - permitted, apart.where.distance)
+
+
 def touch_in_words(apart: Apart) -> str:
-    """Which links overlap, by how much and where."""
+    """Which links overlap, where, by how much, and that it is nowhere much more."""
     gap = apart.where
     assert gap is not None
     at = ", ".join(f"{1000.0 * v:.0f}" for v in gap.point)
-    return f"`{gap.a}` and `{gap.b}` overlap by {-1000.0 * gap.distance:.1f} mm at ({at}) mm"
+    most = -1000.0 * _most_in(apart)
+    return (
+        f"`{gap.a}` and `{gap.b}` overlap by {-1000.0 * gap.distance:.1f} mm at ({at}) mm, "
+        f"and nowhere on the way by more than {math.ceil(10.0 * most) / 10.0:.1f} mm"
+    )

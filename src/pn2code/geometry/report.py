@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 
 from pn2code.geometry.answers import Layout, Move, Pair, Proposal
 from pn2code.geometry.runs import Run
-from pn2code.geometry.sweeps import RESOLUTION, SEARCHED
+from pn2code.geometry.sweeps import RESOLUTION
 
 MOST_MOVES = 12
 """Moves of a table that is not full."""
@@ -52,18 +52,20 @@ def _verdicts(layout: Layout) -> Iterator[str]:
         f"permits ({resolution})"
     )
     if layout.of_pairs == "yes" and layout.nearest is not None:
-        near = layout.nearest
-        yield (
-            f"           the nearest that was measured: `{near.a}` and `{near.b}`, "
-            f"{1000.0 * near.distance:.0f} mm"
+        near = layout.nearest.where
+        seen = (
+            f"; the nearest that was measured: `{near.a}` and `{near.b}`, {1000.0 * near.distance:.0f} mm"
+            if near
+            else ""
         )
+        yield f"           two arms keep at least {_millimetres(layout.nearest.least)} apart{seen}"
 
 
 def _table(moves: Sequence[Move], full: bool) -> Iterator[str]:
     shown = sorted(moves, key=_badness)
     left = 0 if full else max(0, len(shown) - MOST_MOVES)
     rows: list[tuple[str, ...]] = [
-        ("robot", "transition", "move", "limit", "condition", "scene", "itself", "")
+        ("robot", "transition", "move", "limit", "condition", "scene >=", "itself >=", "")
     ]
     rows += [_cells(m) for m in (shown[:MOST_MOVES] if left else shown)]
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
@@ -110,8 +112,6 @@ def _cells(m: Move) -> tuple[str, ...]:
 def _millimetres(value: float | None) -> str:
     if value is None:
         return "-"
-    if value >= SEARCHED - 0.15 * SEARCHED:
-        return f"> {1000.0 * value:.0f} mm"
     return f"{1000.0 * value:.0f} mm" if value >= 0.01 else f"{1000.0 * value:.1f} mm"
 
 

@@ -215,6 +215,7 @@ class Situations:
             for (e, a), (f, b) in itertools.product(one, other):
                 self.pairs.setdefault((a.number, b.number), Met(number, (e, f)))
         self._note_parts(number, here, under_way, by_arm)
+        self._note_put_down(number, under_way)
         self._expect_order(under_way)
 
     def _note_parts(
@@ -239,6 +240,22 @@ class Situations:
                 for i, (_, contents) in enumerate(activity.legs):
                     for spot in contents.standing.keys() | added:
                         self.beside.setdefault((activity.number, i, spot), Met(number, (element,)))
+
+    def _note_put_down(self, number: int, under_way: dict[int, Activity]) -> None:
+        """What is put down while somebody else is half way through with other parts: these may not be there, or be.
+
+        What comes before and after all that the other one does is a situation of its own.
+        """
+        handling = [(e, a) for e, a in under_way.items() if a.kinds]
+        for (e, a), (f, b) in itertools.permutations(handling, 2):
+            if self.graph.elements[e].owner == self.graph.elements[f].owner or a.fault:
+                continue
+            halfway = {c.number: c for c in b.between[1:-1]}
+            for contents in halfway.values():
+                if contents not in (b.between[0], b.after):
+                    again = self._again(e, a, contents)
+                    if again.is_part or again.doubt:
+                        self.activities.setdefault((again.number, e), Met(number, (e, f)))
 
     def _expect_order(self, under_way: dict[int, Activity]) -> None:
         """What two do to parts of a kind must come to the same in both orders; else it depends on how far each is."""

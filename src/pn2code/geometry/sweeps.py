@@ -1,6 +1,6 @@
 """Whether two legs, whenever each is where, keep apart: pieces against pieces, smaller where they are near.
 
-    sweeper = Sweeper(cell, backend)
+    sweeper = Sweeper(Shown(backend))
     sweeper.apart(track, other)           # Apart("clear" | "touch" | "open", distance, ...)
     sweeper.around(track, "scene")        # how near a leg comes to what stands
 
@@ -14,17 +14,18 @@ from __future__ import annotations
 import heapq
 import itertools
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 
 from pn2code.base.frozen import frozen
+from pn2code.geometry.shown import Shown
 from pn2code.geometry.tracks import Knots, Link, Track
 from pn2code.robot.backend import Clearance
-from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.parts import Part
-from pn2code.robot.transforms import Array, Numbers, translation
+from pn2code.robot.transforms import Array, Flags, Numbers
 
 RESOLUTION = 2e-4
 """m: two pieces in which no points are further apart than this are not divided."""
@@ -35,10 +36,13 @@ COARSE = 0.08
 SEARCHED = 0.5
 """m: larger clearances are not measured."""
 FINE, ROUGH = 2e-3, 0.15
-"""m, or part of it: how exactly the least clearance of a leg is told."""
+"""m, or part of it: how exactly the least clearance, or the deepest overlap, is told."""
 MOST_QUERIES = 20_000
-"""Of the collision library, for one question."""
+"""Of the collision library, for one question ..."""
+MOST_DEEPER = 600
+"""... and to see how deep an overlap is that was found."""
 
+Measure = Callable[[Array, Array, float], list[Clearance]]
 Outcome = Literal["clear", "touch", "open"]
 
 
@@ -48,7 +52,8 @@ class Apart:
 
     Args:
         outcome: never nearer than touching, touching somewhere, or not known.
-        least: m, that is certain; nearest: the smallest distance that was measured (inf: none).
+        least: m, that is certain: where they touch, nothing overlaps by more than -least.
+        nearest: the smallest distance that was measured (inf: none); where they touch, the deepest overlap.
         where: the nearest links and points; at: of each leg the fraction of its way; joints: and where its arm is, rad.
         why: of "open".
     """
@@ -65,39 +70,38 @@ class Apart:
 class Sweeper:
     """Asks the collision library."""
 
-    def __init__(self, backend: BulletBackend) -> None:
-        self._backend = backend
+    def __init__(self, shown: Shown) -> None:
+        self._backend = shown.backend
+        self._show = shown.show
         self.queries = 0
-        self._shown: dict[str, Part] = {}
-
-    # --- what is shown ---------------------------------------------------------------------------
-
-    def _show(self, parts: Iterable[Part]) -> None:
-        """Exactly these parts are in the cell."""
-        shown = list(parts)
-        wanted = {p.name: p for p in shown}
-        assert len(wanted) == len(shown), "each part has a name of its own"
-        for name in [n for n in self._shown if n not in wanted]:
-            away = self._shown.pop(name)
-            self._backend.set_part(Part(name, away.kind, translation(0.0, 0.0, -1000.0)))
-        for name, part in wanted.items():
-            if self._shown.get(name) is not part:
-                self._backend.set_part(part)
-                self._shown[name] = part
 
     # --- two legs --------------------------------------------------------------------------------
 
     def apart(self, a: Track, b: Track) -> Apart:
-        """Two legs of two arms."""
+        """Two legs of two arms; where they touch, how deep."""
+        return self._search(a, b, self._of_two(a, b), is_free="ptp" in (a.leg.kind, b.leg.kind))
+
+    def nearest(self, a: Track, b: Track, known: float) -> Apart:
+        """How near two legs come that keep apart, as far as it is less than what is known (m)."""
+        is_free = "ptp" in (a.leg.kind, b.leg.kind)
+        two = Two(a, b, self._of_two(a, b), is_free, self, self._skipped(a, b, is_free=is_free))
+        return deepest(two, Apart("clear", known, known))
+
+    def _of_two(self, a: Track, b: Track) -> Measure:
         self._show(x for x in (a.part, b.part) if x is not None)
-        free = "ptp" in (a.leg.kind, b.leg.kind)
 
         def measure(q_a: Array, q_b: Array, limit: float) -> list[Clearance]:
             self._backend.set_joints(a.robot, q_a)
             self._backend.set_joints(b.robot, q_b)
             return self._backend.pairs("robots", a.robot, limit, b.robot)
 
-        return self._search(a, b, measure, is_free=free)
+        return measure
+
+    def _skipped(self, a: Track, b: Track, *, is_free: bool) -> Flags:
+        """Links that may touch, (links of a, links of b)."""
+        may = self._backend.allowed
+        rows = [[not is_free and may(x, y) is not None for y in b.names] for x in a.names]
+        return np.array(rows)
 
     def beside(self, a: Track, part: Part, box: tuple[Array, Array]) -> Apart:
         """A leg and a part that stands."""
@@ -109,13 +113,13 @@ class Sweeper:
             self._backend.set_joints(a.robot, q_a)
             return self._backend.pairs("scene", a.robot, limit, only={part.name})
 
-        return self._search(a, _Standing(part, box), measure, is_free=free)
+        return self._search(a, Standing(part, box), measure, is_free=free)
 
     def _search(
         self,
         a: Track,
-        b: Track | _Standing,
-        measure: Callable[[Array, Array, float], list[Clearance]],
+        b: Track | Standing,
+        measure: Measure,
         *,
         is_free: bool,
     ) -> Apart:
@@ -153,12 +157,13 @@ class Sweeper:
                 middle = ((own[0] + own[1]) / 2.0, (own[2] + own[3]) / 2.0)
                 is_clear = True
                 for gap in found:
-                    allowed = None if is_free else gap.allowed
+                    allowed = gap.permitted(is_free=is_free)
                     slack = gap.distance if allowed is None else gap.distance + allowed
                     if allowed is None and gap.distance < nearest:
                         nearest, where, at = gap.distance, gap, middle
-                    if (slack <= 0.0 and allowed is None) or (allowed is not None and slack < 0.0):
-                        return Apart("touch", slack, gap.distance, gap, middle, "", (q_a, q_b))
+                    if slack < 0.0 or (slack <= 0.0 and allowed is None):
+                        touch = Apart("touch", slack, slack, gap, middle, "", (q_a, q_b))
+                        return deepest(Two(a, b, measure, is_free, self), touch)
                     spread = _spread_of(gap.a, a, one.spread[one_at[i]])
                     spread += _spread_of(gap.b, b, two.spread[two_at[i]])
                     if slack <= spread + ROUNDING:
@@ -181,51 +186,71 @@ class Sweeper:
     # --- a leg and what stands -------------------------------------------------------------------
 
     def around(self, a: Track, kind: Literal["scene", "self"]) -> Apart:
-        """How near a leg comes to the scene, or to the arm itself."""
+        """How near a leg comes to the scene, or to the arm itself; where it touches, how deep."""
         self._show([] if a.part is None else [a.part])
         begun = self.queries
+        most = MOST_QUERIES
         count = itertools.count()
         best = SEARCHED
         where: Clearance | None = None
         at = 0.0
-        heap: list[tuple[float, int, float, float]] = [(0.0, next(count), 0.0, 1.0)]
+        # What comes first, its number, from where to where; nothing in it is below the last.
+        heap: list[tuple[float, int, float, float, float]] = [(0.0, 0, 0.0, 1.0, -math.inf)]
+        next(count)
         least = SEARCHED
         open_: Apart | None = None
+        touch: Apart | None = None
         while heap:
-            low, _, first, last = heapq.heappop(heap)
-            fine = best - max(FINE, ROUGH * best)
-            if low > max(fine, ROUNDING) or low >= SEARCHED:
+            low, _, first, last, deep = heapq.heappop(heap)
+            if touch is not None:
+                if deep > best - max(FINE, ROUGH * -best) or self.queries - begun >= most:
+                    least = min(least, deep)
+                    break
+            elif low > max(best - max(FINE, ROUGH * best), ROUNDING) or low >= SEARCHED:
                 least = min(low, best)
                 break
             knots = a.knots(np.array([first]), np.array([last]))
             wide = float(knots.spread.max())
             middle = (first + last) / 2.0
+            halves = ((first, middle), (middle, last))
             # Both halves at once take half as long.
             if wide > RESOLUTION:
                 a.knots(np.array([first, middle]), np.array([middle, last]))
             if wide > 4.0 * COARSE:
-                for one, other in ((first, middle), (middle, last)):
-                    heapq.heappush(heap, (low, next(count), one, other))
+                for one, other in halves:
+                    first_of = low if touch is None else deep
+                    heapq.heappush(heap, (first_of, next(count), one, other, deep))
                 continue
-            if self.queries - begun >= MOST_QUERIES:
+            if self.queries - begun >= most:
                 why = f"more than {MOST_QUERIES:,} distances would have to be measured"
                 return Apart("open", 0.0, best, where, (at, 0.0), why)
             self.queries += 1
             self._backend.set_joints(a.robot, knots.q[0])
             times = 2.0 if kind == "self" else 1.0
-            limit = best + times * wide + ROUNDING
+            limit = max(best, 0.0) + times * wide + ROUNDING
             found = self._backend.pairs(kind, a.robot, limit)
             bound = best + ROUNDING
             is_open = False
+            deepest = max(best, 0.0) + ROUNDING
             for gap in found:
-                allowed = None if a.leg.kind == "ptp" else gap.allowed
+                allowed = gap.permitted(is_free=a.leg.kind == "ptp")
                 slack = gap.distance if allowed is None else gap.distance + allowed
-                if (slack <= 0.0 and allowed is None) or (allowed is not None and slack < 0.0):
-                    joints = (knots.q[0],)
-                    return Apart("touch", slack, gap.distance, gap, (middle, 0.0), "", joints)
                 spread = _spread_of(gap.a, a, knots.spread[0])
                 if kind == "self":
                     spread += _spread_of(gap.b, a, knots.spread[0])
+                deepest = min(deepest, slack - spread)
+                touches = slack < 0.0 or (slack <= 0.0 and allowed is None)
+                if touches and (touch is None or slack < best):
+                    if touch is None:
+                        most = self.queries - begun + MOST_DEEPER
+                        heap = [(d, n, x, y, d) for _, n, x, y, d in heap]
+                        heapq.heapify(heap)
+                        least = -RESOLUTION
+                    best = slack
+                    joints = (knots.q[0],)
+                    touch = Apart("touch", slack, slack, gap, (middle, 0.0), "", joints)
+                if touch is not None:
+                    continue
                 if allowed is None:
                     if gap.distance < best:
                         best, where, at = gap.distance, gap, middle
@@ -236,14 +261,24 @@ class Sweeper:
                     near = f"{1000.0 * max(slack, 0.0):.2f} mm"
                     why = f"`{gap.a}` and `{gap.b}` come within {near}, which is less than can be told apart"
                     open_ = Apart("open", 0.0, best, gap, (middle, 0.0), why)
+            deep = max(deep, deepest)
+            if touch is not None:
+                if wide * times <= RESOLUTION:
+                    least = min(least, deep)
+                else:
+                    for one, other in halves:
+                        heapq.heappush(heap, (deep, next(count), one, other, deep))
+                continue
             if wide * times <= RESOLUTION:
                 continue
             if is_open or bound < best - max(FINE, ROUGH * best) or bound <= ROUNDING:
                 low = ROUNDING if is_open else max(bound, 0.0)
-                for one, other in ((first, middle), (middle, last)):
-                    heapq.heappush(heap, (low, next(count), one, other))
+                for one, other in halves:
+                    heapq.heappush(heap, (low, next(count), one, other, deep))
             else:
                 least = min(least, bound)
+        if touch is not None:
+            return replace(touch, least=min(touch.least, least))
         if open_ is not None:
             return open_
         if a.trouble:
@@ -251,7 +286,71 @@ class Sweeper:
         return Apart("clear", max(0.0, min(least, best)), best, where, (at, 0.0))
 
 
-class _Standing:
+def much_less(distance: float) -> float:
+    """What is nearer than this is nearer by so much that it is told."""
+    return distance - max(FINE, ROUGH * abs(distance))
+
+
+@frozen(eq=False)
+class Two:
+    """Two legs, or a leg and what stands, and how they are measured.
+
+    Args:
+        skipped: pairs of links of which nothing is asked; None: all are asked, and contacts that are permitted count.
+    """
+
+    a: Track | Standing
+    b: Track | Standing
+    measure: Measure
+    is_free: bool
+    sweeper: Sweeper
+    skipped: Flags | None = None
+
+
+def deepest(two: Two, known: Apart) -> Apart:
+    """The least slack of two legs that is less than what is known, and what is certain of it: best first."""
+    a, b, best = two.a, two.b, known
+    begun, count = two.sweeper.queries, itertools.count()
+    least = best.nearest
+    heap = [(-math.inf, next(count), np.array([0.0, 1.0, 0.0, 1.0]))]
+    while heap:
+        low, number, own = heapq.heappop(heap)
+        if low > much_less(best.nearest) or two.sweeper.queries - begun >= MOST_DEEPER:
+            least = min(least, low)
+            break
+        one, other = a.knots(own[None, 0], own[None, 1]), b.knots(own[None, 2], own[None, 3])
+        both = one.spread[0][:, None] + other.spread[0][None, :]
+        bound = _gaps(one, a.radii, other, b.radii)[0] - both
+        if two.skipped is not None:
+            bound[two.skipped] = math.inf
+        low = max(low, float(bound.min()))
+        cut = much_less(best.nearest)
+        is_near = bound <= cut
+        wide = float(np.where(is_near, both, 0.0).max())
+        if low <= cut and wide <= COARSE:
+            two.sweeper.queries += 1
+            joints = (one.q[0], other.q[0])
+            measured = cut + ROUNDING
+            middle = ((own[0] + own[1]) / 2.0, (own[2] + own[3]) / 2.0)
+            for gap in two.measure(*joints, wide + max(cut, 0.0) + 2.0 * ROUNDING):
+                allowed = gap.permitted(is_free=two.is_free)
+                if allowed is not None and two.skipped is not None:
+                    continue
+                slack = gap.distance if allowed is None else gap.distance + allowed
+                spread = _spread_of(gap.a, a, one.spread[0]) + _spread_of(gap.b, b, other.spread[0])
+                measured = min(measured, slack - spread)
+                if slack < best.nearest:
+                    best = Apart(known.outcome, slack, slack, gap, middle, "", joints)
+            low = max(low, measured)
+        if low > much_less(best.nearest) or wide <= RESOLUTION:
+            least = min(least, low)
+            continue
+        for half in _halves(own, a, b, one.spread[0], other.spread[0]):
+            heapq.heappush(heap, (low, next(count), half))
+    return replace(best, least=min(least, best.nearest))
+
+
+class Standing:
     """A part that stands, in the form of a track."""
 
     trouble = ""
@@ -268,14 +367,14 @@ class _Standing:
         return self._knots.pick(np.zeros(len(a), int))
 
 
-def _unique(track: Track | _Standing, a: Array, b: Array) -> tuple[Knots, Numbers]:
+def _unique(track: Track | Standing, a: Array, b: Array) -> tuple[Knots, Numbers]:
     """The knots of pieces, each worked out once, and which is which."""
     pairs, index = np.unique(np.stack([a, b], axis=1), axis=0, return_inverse=True)
     return track.knots(pairs[:, 0], pairs[:, 1]), np.asarray(index).reshape(-1)
 
 
 def _halves(
-    piece: Array, a: Track | _Standing, b: Track | _Standing, spread_a: Array, spread_b: Array
+    piece: Array, a: Track | Standing, b: Track | Standing, spread_a: Array, spread_b: Array
 ) -> list[Array]:
     """The piece of the leg that goes further, divided."""
     first = not a.is_still and (b.is_still or spread_a.max() >= spread_b.max())
@@ -286,7 +385,7 @@ def _halves(
     return [one, other]
 
 
-def _spread_of(name: str, track: Track | _Standing, spread: Array) -> float:
+def _spread_of(name: str, track: Track | Standing, spread: Array) -> float:
     """How far a link may be from where it was measured."""
     return float(spread[track.names[name]]) if name in track.names else float(spread.max())
 

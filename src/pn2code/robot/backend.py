@@ -32,6 +32,7 @@ class Clearance:
         distance: m; negative when they overlap.
         allowed: overlap that is permitted between these two, m; None: they must keep apart.
         point: where, on `a`, in the world; other: the nearest point on `b`.
+        stands: `a` stands on `b`, so the overlap is permitted on joint moves as well.
     """
 
     kind: ClearanceKind
@@ -42,6 +43,11 @@ class Clearance:
     allowed: float | None = None
     point: tuple[float, float, float] = (0.0, 0.0, 0.0)
     other: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    stands: bool = False
+
+    def permitted(self, *, is_free: bool) -> float | None:
+        """The overlap that is permitted, m; `is_free`: on a joint move, which permits only what stands to do so."""
+        return self.allowed if self.stands or not is_free else None
 
 
 @frozen

@@ -37,8 +37,8 @@ from pn2code.robot.geometry import Body, Solid, bodies, body_of
 from pn2code.robot.looks import Look
 from pn2code.robot.parts import Part
 from pn2code.robot.parts_table import PartKind
-from pn2code.robot.robot_cell import CellRobot, RobotCell
-from pn2code.robot.transforms import Array, pose_of
+from pn2code.robot.robot_cell import PART_CONTACT, CellRobot, RobotCell
+from pn2code.robot.transforms import Array, pose_of, translation
 
 _SKY = (148.0, 166.0, 186.0)
 _HORIZON = (236.0, 239.0, 242.0)
@@ -94,10 +94,11 @@ class _Standing:
 
 @record
 class _Placed:
-    """A part in PyBullet."""
+    """A part in PyBullet; one that is hidden is there no more, but can be shown again quickly."""
 
     part: Part
     id: int
+    hidden: bool = False
 
 
 @frozen
@@ -171,8 +172,27 @@ class BulletBackend:
         self._rules: dict[tuple[str, str], float | None] = {}
         for robot in cell.robots:
             self.set_joints(robot.name, robot.home)
+        self._sunk = dict(self._depths_of_lifted())
 
     # Loading
+
+    def _depths_of_lifted(self) -> Iterator[tuple[tuple[str, str], float]]:
+        """How deep the base link of an arm on a lift may be in what it stands on: so deep as it is at HOME, and a bit.
+
+        By robot and thing. The base of any other arm keeps its height, and is not tested against what it stands on.
+        """
+        for a in self._robots.values():
+            robot = a.robot
+            up = [robot.T_world_base[:3, :3] @ track.direction for track in robot.axes.tracks]
+            if not any(abs(float(direction[2])) > 1e-9 for direction in up):
+                continue
+            for side in self._standing():
+                if robot.name in side.ignored_by:
+                    found = self._p.getClosestPoints(
+                        a.body, side.id, 0.0, a.root, physicsClientId=self._client
+                    )
+                    deepest = min((float(c[8]) for c in found), default=0.0)
+                    yield (robot.name, side.whole), PART_CONTACT - min(deepest, 0.0)
 
     def _load_egl(self) -> None:
         """The GPU renderer, where there is one; it must be there before any body. Asked for by name,
@@ -295,7 +315,15 @@ class BulletBackend:
             with _silent():
                 placed = _Placed(part, self._load_body(body_of(shape), self._looks).id)
             self._parts[part.name] = placed
-        placed.part = part
+        placed.part, placed.hidden = part, False
+        self._known = {}
+        self._move(placed)
+
+    def hide_part(self, name: str) -> None:
+        """The part is not there until it is shown again."""
+        placed = self._parts[name]
+        away = Part(name, placed.part.kind, translation(0.0, 0.0, -1000.0))
+        placed.part, placed.hidden = away, True
         self._known = {}
         self._move(placed)
 
@@ -405,11 +433,13 @@ class BulletBackend:
                 )
                 skip_base = first.base != "" and first.base in second.ignored_by
                 for c in found:
-                    if skip_base and c[3] == first.root:
-                        continue
+                    stands = skip_base and c[3] == first.root
                     one, two = first.link(c[3]), second.link(c[4])
-                    allowed = self._allowed(one, two)
-                    gap = Clearance(kind, first.robot or robot, one, two, c[8], allowed, c[5], c[6])
+                    allowed = self._permitted(first, second, one, two, stands=stands)
+                    if stands and allowed is None:
+                        continue
+                    who = first.robot or robot
+                    gap = Clearance(kind, who, one, two, c[8], allowed, c[5], c[6], stands)
                     _keep_nearest(best, gap)
         return list(best.values())
 
@@ -430,7 +460,7 @@ class BulletBackend:
                 a.body, a.body, limit, i, j, physicsClientId=self._client
             )
             one, two = (f"{a.robot.name}/{a.links[k]}" for k in (i, j))
-            allowed = self._allowed(one, two)
+            allowed = self.allowed(one, two)
             for c in found:
                 yield Clearance("self", a.robot.name, one, two, c[8], allowed, c[5], c[6])
 
@@ -486,7 +516,7 @@ class BulletBackend:
         for thing in self._scene:
             yield _Side("", thing.id, {}, thing.body.name, ignored_by=thing.body.ignored_by)
         for part in self._parts.values():
-            if not part.part.holder:
+            if not part.part.holder and not part.hidden:
                 yield _Side("", part.id, {}, part.part.name)
 
     def _between(self, kind: ClearanceKind, a: _Side, b: _Side, limit: float) -> list[Clearance]:
@@ -498,10 +528,11 @@ class BulletBackend:
             best: Clearance | None = None
             touching: dict[tuple[str, str], Clearance] = {}
             for c in found:
-                if skip_base and c[3] == a.root:
-                    continue
+                stands = skip_base and c[3] == a.root
                 name_a, name_b = a.link(c[3]), b.link(c[4])
-                allowed = self._allowed(name_a, name_b)
+                allowed = self._permitted(a, b, name_a, name_b, stands=stands)
+                if stands and allowed is None:
+                    continue
                 if allowed is not None:
                     old = touching.get((name_a, name_b))
                 elif best is None or c[8] < best.distance:
@@ -510,7 +541,9 @@ class BulletBackend:
                 else:
                     continue
                 if old is None or c[8] < old.distance:
-                    item = Clearance(kind, a.robot, name_a, name_b, c[8], allowed, c[5], c[6])
+                    item = Clearance(
+                        kind, a.robot, name_a, name_b, c[8], allowed, c[5], c[6], stands
+                    )
                     touching[name_a, name_b] = item
             if best is not None or reach >= limit:
                 break
@@ -559,7 +592,11 @@ class BulletBackend:
         self._guess[key] = limit if best is None else max(best.distance, 0.0) + _FIRST_GUESS
         return [] if best is None else [best]
 
-    def _allowed(self, a: str, b: str) -> float | None:
+    def _permitted(self, a: _Side, b: _Side, one: str, two: str, *, stands: bool) -> float | None:
+        """The same of two sides; of what stands on the other one, None: it is not tested."""
+        return self._sunk.get((a.base, b.whole)) if stands else self.allowed(one, two)
+
+    def allowed(self, a: str, b: str) -> float | None:
         """How deep two parts may overlap; None: they must keep apart."""
         if (a, b) not in self._rules:
             depths = [

@@ -151,7 +151,7 @@ class Monitor:
         for found in clearances or ():
             others = (found.robot, found.b.split("/")[0])
             free = any(kinds.get(name) == "ptp" for name in others)
-            gap = replace(found, allowed=None) if free else found
+            gap = replace(found, allowed=found.permitted(is_free=free))
             fault = fault or self._collision(gap, t, poses[gap.robot])
             if gap.allowed is not None and gap.distance >= 0.0:
                 continue

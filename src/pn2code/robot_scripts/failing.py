@@ -117,7 +117,7 @@ class Known:
         match e:
             case t.Binary("div" | "mod", _, right) if 0 in self.range_of(right):
                 return True
-            case t.CallExpression("floor" | "ceil" | "round" | "trunc"):
+            case t.CallExpression("floor" | "ceil" | "round" | "trunc" | "single"):
                 return True
             case t.Binary("+" | "-" | "*" | "div") | t.Unary("-") | t.CallExpression("abs"):
                 found = self._computed(e)

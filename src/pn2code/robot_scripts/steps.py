@@ -36,6 +36,7 @@ from pn2code.robot_scripts.ir import Chain, Comment, Element, Line, Node
 from pn2code.robot_scripts.machine import Machine, Outcome, Step, delayed_tokens
 from pn2code.robot_scripts.names import Names, identifier
 from pn2code.robot_scripts.not_a_number import may_be_nan
+from pn2code.robot_scripts.rounding import rounded
 from pn2code.robot_scripts.situation import Situation
 from pn2code.robot_scripts.strict import Owed, Path, open_of, statements, without_repetition
 from pn2code.robot_scripts.values import (
@@ -436,7 +437,8 @@ class StepTranslator:
             is_seen = arc.place not in self.machine.sinks and self.shapes[arc.place] != Fields(())
             for conditions, values, delay in found:
                 try:
-                    out += self._of_alternative(conditions, [*(values or ()), delay], env)
+                    place = self.shapes.get(arc.place)
+                    out += self._of_alternative(conditions, [*(values or ()), delay], env, place)
                 except UnsupportedError:
                     if is_seen:
                         raise
@@ -449,13 +451,17 @@ class StepTranslator:
         conditions: Iterable[tuple[core.Exp, bool]],
         values: Iterable[core.Exp | None],
         env: Env,
+        shape: Shape | None,
     ) -> list[Owed]:
-        """What is computed for some of the ways in which an inscription turns out."""
+        """What is computed for some of the ways in which an inscription turns out, for a place of that shape."""
         path, out = self._way(conditions, env)
         if path is not None:
             for e in values:
                 if e is not None:
-                    out += self.pure.owing(e, env, path)[1]
+                    value, owed = self.pure.owing(e, env, path)
+                    out += owed
+                    if shape is not None:
+                        out += [Owed(path, x) for x in rounded(value, shape, self.names)]
         return out
 
     def _way(

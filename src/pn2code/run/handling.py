@@ -13,13 +13,10 @@ from dataclasses import dataclass, field
 
 from pn2code.robot.backend import Backend
 from pn2code.robot.commands import Handling
+from pn2code.robot.lying import overlap, unsupported
 from pn2code.robot.parts import PartChange, PartFault, Parts
-from pn2code.robot.robot_cell import PART_CONTACT, RobotCell
+from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array, describe
-
-REST_GAP = 0.005
-"""m: a part that is released may fall so far."""
-_SEARCHED = 0.5
 
 
 @dataclass(slots=True)
@@ -62,24 +59,14 @@ class PartKeeper:
         return change
 
     def _expect_apart(self, name: str, who: str) -> None:
-        around = self.backend.around(name, 0.0)
-        if around and around[0].distance < -PART_CONTACT:
-            depth = -1000.0 * around[0].distance
-            raise PartFault(f"{who} is {depth:.1f} mm deep in `{around[0].name}`")
+        trouble = overlap(self.backend, name)
+        if trouble is not None:
+            raise PartFault(f"{who} {trouble.text}")
 
     def _expect_rest(self, who: str, name: str, change: PartChange) -> None:
-        around = self.backend.around(name, _SEARCHED)
-        if around is None:
-            return
-        below = [b for b in around if b.is_below]
-        if below and below[0].distance <= REST_GAP:
-            return
-        under = (
-            f"`{below[0].name}`, the nearest thing below it, is {1000.0 * below[0].distance:.1f} mm away"
-            if below
-            else f"there is nothing below it within {1000.0 * _SEARCHED:g} mm"
-        )
-        raise PartFault(
-            f"`{who}` releases `{name}` in the air: {under} (at most {1000.0 * REST_GAP:g} mm), "
-            f"part at {describe(change.pose)}"
-        )
+        trouble = unsupported(self.backend, name)
+        if trouble is not None:
+            where = describe(change.pose)
+            raise PartFault(
+                f"`{who}` releases `{name}` in the air: {trouble.text}, part at {where}"
+            )

@@ -128,11 +128,10 @@ class Judge:
         walks = {name: plan.walk(placed.robot(name), placed) for name, plan in self.plans.items()}
         for name, walk in walks.items():
             kinematics = placed.robot(name).kinematics
-            arm = kinematics.arm
             seconds += walk.seconds
             q = walk.q[walk.counts]
             if len(q):
-                off = np.minimum(q - arm.lower, arm.upper - q)[:, kinematics.joints]
+                off = kinematics.turning_margins(q)
                 limit = min(limit, float(off.min()))
                 found = kinematics.conditioning_many(q)
                 condition = max(condition, *(c.condition for c in found))
@@ -185,6 +184,7 @@ class Judge:
 
 def _counted(gap: Clearance, is_loose: bool) -> float:
     """On a joint move nothing may touch; else what may touch does not count."""
-    if gap.allowed is None or is_loose:
+    allowed = gap.permitted(is_free=is_loose)
+    if allowed is None:
         return gap.distance
-    return FAR if gap.distance + gap.allowed >= 0.0 else gap.distance
+    return FAR if gap.distance + allowed >= 0.0 else gap.distance
