@@ -20,6 +20,7 @@ from pn2code.pipeline import Generated
 from pn2code.toolchain import build
 from pn2code.verify.exploring import explore
 
+
 @pytest.fixture(scope="session", autouse=True)
 def objects(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """The runtime of cells is compiled once with each set of flags, also when several workers build them."""

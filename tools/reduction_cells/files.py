@@ -47,7 +47,9 @@ def judged(
         shown.update(_noticed(partition, storage, limits, options))
 
 
-def _noticed(partition: Partition, storage: Mapping[str, Any], limits: Limits, options: ExploreOptions) -> Iterator[str]:
+def _noticed(
+    partition: Partition, storage: Mapping[str, Any], limits: Limits, options: ExploreOptions
+) -> Iterator[str]:
     if by_cell.why_not(partition, Rules()):
         if by_cell.looked(partition, storage, limits, options) is not None:
             yield "programs may send and wait as they like"

@@ -303,9 +303,7 @@ class Elaborator:
                 self._break(names, types_declared_by(dec))
                 break_modules(dec, self._ctx.top)
 
-    def _declaration(
-        self, text: SourceText, dec: s.Dec, examine: Examine = _nothing
-    ) -> None:
+    def _declaration(self, text: SourceText, dec: s.Dec, examine: Examine = _nothing) -> None:
         self._repeats.clear()
         resolved = resolve_declaration(dec, self._fixities, self._d)
         if resolved is None:

@@ -255,8 +255,8 @@ ENGINE_INFIX = register(
     "engine-infix",
     "an infix operator has the name of a function that CPN Tools uses itself",
     "CPN Tools makes functions for each colour set (`lt`, `cmp`, `ord`, `legal`, ...), and code for each transition. "
-    "After `infix lt` at top level it refuses every colour set that follows; with `infix cmp`, `time`, `not` or `ref` "
-    "it accepts the net and cannot compile its transitions.",
+    "After `infix lt` at top level it refuses the enumerations, indexes, products, records and unions that follow; "
+    "with `infix cmp`, `time`, `not` or `ref` it accepts the net and cannot compile its transitions.",
 )
 RESERVED_WORD = register(
     "reserved-word",

@@ -1,6 +1,6 @@
 """Infix operators of a net whose names the engine of CPN Tools uses in code of its own.
 
-After `infix lt` at top level the engine cannot declare a colour set, since it declares a function `lt` for it; after
+After `infix lt` at top level the engine cannot declare an enumeration, since it declares a function `lt` for it; after
 `infix cmp` it accepts the net, but cannot compile its transitions. Inside structures and `local` nothing is wrong.
 (Found by experiment with each name.)
 """
@@ -12,10 +12,18 @@ from collections.abc import Iterable
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.net.codes import ENGINE_INFIX
 
-_OF_COLSETS = frozenset(
-    "base all size ord col ran lt cmp legal illegal_msg mkstr mkstr_ms input output".split()
-)
-_OF_PRODUCTS = frozenset({"mult"})
+_OF_VALUES = (
+    "base", "all", "size", "ord", "col", "ran", "lt", "cmp", "legal", "illegal_msg", "mkstr", "mkstr_ms", "input",
+    "output",
+)  # fmt: skip
+_OF_KINDS: dict[str, frozenset[str]] = {
+    "enum": frozenset(_OF_VALUES),
+    "index": frozenset(_OF_VALUES) - {"input"},
+    "product": frozenset({*_OF_VALUES, "mult", "ref"}),
+    "record": frozenset({*_OF_VALUES, "mult", "ref"}),
+    "union": frozenset({*_OF_VALUES, "ref"}),
+}
+"""Kind of a colour set -> names that the code has which the engine makes for it; other kinds have none."""
 _OF_TRANSITIONS = frozenset({"cmp", "time", "not", "ref"})
 
 
@@ -29,11 +37,10 @@ def refuse(kind: str, name: str, infix: Iterable[str], origin: Origin, d: Diagno
         origin: of its declaration.
         d: gets the error.
     """
-    own = _OF_COLSETS | (_OF_PRODUCTS if kind in ("product", "record") else frozenset())
-    for operator in sorted(own.intersection(infix)):
+    for operator in sorted(_OF_KINDS.get(kind, frozenset()).intersection(infix)):
         d.error(
             ENGINE_INFIX,
-            f"colour set `{name}` has a function `{operator}`, which is an infix operator here",
+            f"colour set `{name}` needs a function `{operator}`, which is an infix operator here",
             origin,
             hint=f"put the colour set before `infix {operator}`, or give the operator another name",
         )

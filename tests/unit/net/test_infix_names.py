@@ -37,6 +37,13 @@ def test_products_have_one_more() -> None:
     assert said(first="infixr mult").count(("error", "engine-infix")) == 1
 
 
+def test_other_kinds_have_no_functions_of_their_own() -> None:
+    others = ("int with 1..3", "list INT", "subset INT by (fn n => n > 1)", "INT timed", "string")
+    lines = "\n".join(f"  colset X{i} = {kind};" for i, kind in enumerate(others))
+    d = diagnose(f"net Others\n  colset INT = int;\n  infix lt;\n  infix size;\n{lines}\n")
+    assert d.items == []
+
+
 @pytest.mark.parametrize("name", ["cmp", "time", "not", "ref"])
 def test_transitions_cannot_be_compiled(name: str) -> None:
     assert said(second=f"infix 5 {name}") == [("warning", "engine-infix")]

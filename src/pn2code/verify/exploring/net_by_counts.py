@@ -64,7 +64,11 @@ def abstract(
     least: int = LEAST_TOKENS,
 ) -> Abstract | None:
     """The limits of a net; None: it is not possible, or there is nothing to count so."""
-    if net.timed or len(net.transitions) > MOST_OWNERS or len({t.priority for t in net.transitions}) > 1:
+    if (
+        net.timed
+        or len(net.transitions) > MOST_OWNERS
+        or len({t.priority for t in net.transitions}) > 1
+    ):
         return None
     try:
         table = turns(net, range(len(net.transitions)))
