@@ -18,7 +18,7 @@ _OF_VALUES = (
 )  # fmt: skip
 _OF_KINDS: dict[str, frozenset[str]] = {
     "enum": frozenset(_OF_VALUES),
-    "index": frozenset(_OF_VALUES) - {"input"},
+    "index": frozenset({"lt", "size"}),
     "product": frozenset({*_OF_VALUES, "mult", "ref"}),
     "record": frozenset({*_OF_VALUES, "mult", "ref"}),
     "union": frozenset({*_OF_VALUES, "ref"}),

@@ -42,6 +42,9 @@ def test_other_kinds_have_no_functions_of_their_own() -> None:
     lines = "\n".join(f"  colset X{i} = {kind};" for i, kind in enumerate(others))
     d = diagnose(f"net Others\n  colset INT = int;\n  infix lt;\n  infix size;\n{lines}\n")
     assert d.items == []
+    for name, count in (("lt", 1), ("size", 1), ("ord", 0), ("cmp", 0)):
+        d = diagnose(f"net Index\n  infix {name};\n  colset X = index ix with 1..2;\n")
+        assert len(d.errors) == count
 
 
 @pytest.mark.parametrize("name", ["cmp", "time", "not", "ref"])
