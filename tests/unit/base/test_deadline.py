@@ -53,7 +53,7 @@ def test_a_deadline() -> None:
     assert (deadline.left, deadline.is_over(), deadline.is_long_over()) == (10.0, False, False)
     clock.now += 10.0
     assert (deadline.left, deadline.is_over(), deadline.is_long_over()) == (0.0, True, False)
-    clock.now += 0.4
+    clock.now += 0.3
     assert not deadline.is_long_over()
     clock.now += 0.1
     assert deadline.is_long_over()
