@@ -122,6 +122,8 @@ variable = "v"
 file = "gauge.txt"
 default = 4
 seed = 5
+sees = "here"
+part = "box"
 
 [scene]
 floor = false
@@ -224,6 +226,7 @@ about = "net"
 
 _NEEDED = {
     "primitives": ("parts", "places", "frames", "robots"),
+    "sensors": ("parts", "places", "robots"),
     "report": ("channel", "primitives", "parts", "places", "frames", "robots"),
     "frames": ("robots",),
     "scene": ("robots",),

@@ -309,6 +309,19 @@ SENSOR = Section(
             "a value of the variable",
         ),
         Key("seed", "whole", "Of what is drawn at random.", "a whole number", default=1),
+        Key(
+            "sees",
+            "text",
+            "A name of `[places]`: in a run the sensor, of a truth value, says whether a part stands there at the time "
+            "it is asked. See *Sensors that see the scene*.",
+            "the name of a place",
+        ),
+        Key(
+            "part",
+            "text",
+            "with `sees`: Only a part of this kind, a name of `[parts]`, is seen; without it, any part.",
+            "the name of a kind of parts",
+        ),
     )
 )
 ACTION = Key(

@@ -388,7 +388,12 @@ class Engine:
                 raise CellStoppedError(f"{robot.script}:{line}: {robot.name}: {message}")
 
     def _sense(self, robot: RobotRunner, request: Sense) -> Scalar | None:
-        value = self.sensors.ask(robot.name, request.sensor)
+        looks = self.sensors.seen.get(request.sensor)
+        value: Scalar | None = (
+            self.sensors.ask(robot.name, request.sensor)
+            if looks is None
+            else self.parts.parts.is_seen(*looks)
+        )
         self.record.events.append(
             {
                 "t": self.now,
