@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, settings
 
-from helpers import tiny_compiler
+from helpers import delivered_runtime, tiny_compiler
 from helpers.compiled import DELIVERED, FAST, SANITIZERS, Workshop
 from helpers.session import alone, common, once
 from helpers.thorough import THOROUGH
@@ -64,10 +64,11 @@ settings.load_profile("any machine")
 
 @pytest.fixture(scope="session", autouse=True)
 def quick_programs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
-    """Explorers and simulators are compiled without optimization, which takes a third of the time.
+    """Nets of explorers and simulators are compiled without optimization, which takes a third of the time.
 
     Not so for those who use `as_delivered`, nor in `make thorough`. Their runtime is compiled by one worker; others
-    that want the same wait for it. The tests compile more nets than a user does, and come back to them later.
+    that want the same wait for it. That of explorers is the one that users have: it is compiled once, and most of
+    what exploring takes is spent in it. The tests compile more nets than a user does, and come back to them later.
     """
     folder = common(tmp_path_factory)
     library = programs._Builder._library
@@ -82,6 +83,7 @@ def quick_programs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
         if not THOROUGH:
             flags = tuple("-O0" if flag == "-O2" else flag for flag in DELIVERED)
             changed.setattr(programs, "FLAGS", (*flags, *tiny_compiler.use(changed)))
+            delivered_runtime.use(changed)
         yield
 
 

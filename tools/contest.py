@@ -1,11 +1,12 @@
 """`./dev contest`: the inputs of the Model Checking Contest beside the repository, one examination after the other.
 
-    ./dev contest [--seconds 60] [--models TEXT] [--sample] [--examinations NAME ...] [--log FILE] [--table]
+    ./dev contest [--seconds 60] [--models TEXT] [--sample] [--every N] [--examinations NAME ...] [--log FILE] [--table]
 
 Each examination of each input is asked by `pn2code contest` with that time, and compared with the verdicts on which the
 contest's tools agreed. What has been asked with the same time is in the log, and not asked again: the run may be
-interrupted and resumed. `--sample` takes one input of each family, the one in the middle by name. `--table` only prints
-the table of the log, as in docs/contest.md. Exit code 1 if an answer is wrong.
+interrupted and resumed. `--sample` takes one input of each family, the one in the middle by name; `--every N` takes one
+of N by name. The log names what was not answered. `--table` only prints the table of the log, as in docs/contest.md.
+Exit code 1 if an answer is wrong.
 """
 
 from __future__ import annotations
@@ -39,6 +40,7 @@ def main() -> int:
     parser.add_argument("--seconds", type=float, default=60.0, help="for each examination")
     parser.add_argument("--models", default="", help="only inputs with this in their names")
     parser.add_argument("--sample", action="store_true", help="one input of each family")
+    parser.add_argument("--every", type=int, default=1, metavar="N", help="one of N inputs")
     parser.add_argument("--examinations", nargs="*", default=list(ALL), choices=ALL)
     parser.add_argument("--log", type=Path, default=Path("contest.jsonl"))
     parser.add_argument("--table", action="store_true", help="ask nothing, print the table")
@@ -48,7 +50,8 @@ def main() -> int:
         if not folder.is_dir():
             parser.error(f"no inputs at {folder} (set PN2CODE_SHARED)")
         found = sorted((folder / "inputs").glob("*.tgz"))
-        archives = [p for p in (_sample(found) if a.sample else found) if a.models in p.stem]
+        found = (_sample(found) if a.sample else found)[:: max(1, a.every)]
+        archives = [p for p in found if a.models in p.stem]
         _ask_all(archives, _verdicts(folder / "verdicts.tsv"), a.examinations, a.seconds, a.log)
     rows = [r for r in _logged(a.log) if r["seconds"] == a.seconds]
     print("\n".join(_table(rows)))
@@ -116,6 +119,7 @@ def _asked(
         "took": round(time.monotonic() - began, 2),
         "asked": len(verdicts),
         "right": sum(said.get(k) == v for k, v in verdicts.items()),
+        "open": sorted(k for k in verdicts if k not in said),
         "wrong": [
             f"{k} {said[k]} {v}" for k, v in verdicts.items() if said.get(k) not in (None, v)
         ],

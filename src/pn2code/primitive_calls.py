@@ -98,8 +98,11 @@ def _unknown(function: str, _argument: Any) -> Heard:
 def told(primitive: Primitive, argument: Any) -> tuple[commands.Command, ...]:
     """What the robot is told by a call, in order: poses in m and rad."""
     speed = primitive.speed
-    # A tuple; a pose and a joint position are longer.
-    is_several = primitive.command in GOING and isinstance(argument, tuple) and len(argument) <= 5
+    # A tuple whose first value is a tuple: that of a pose or a joint position is a number.
+    is_several = isinstance(argument, tuple) and (
+        primitive.command == "move_external"
+        or (primitive.command in GOING and len(argument) > 0 and isinstance(argument[0], tuple))
+    )
     values = argument if is_several else (argument,)
     if primitive.command in GOING and len(values) > primitive.takes:
         *values, speed = values
@@ -107,14 +110,14 @@ def told(primitive: Primitive, argument: Any) -> tuple[commands.Command, ...]:
     # The factors are those of scripts (`pn2code.tdl`), so that speeds are equal to the last digit.
     fraction = 1.0 if speed is None else speed * 0.01
     metres = None if speed is None else speed / 1000.0
-    frame = primitive.frame or "world"
+    frame, tcp = primitive.frame or "world", primitive.tcp
+    elbow = None if primitive.arm_angle is None else math.radians(primitive.arm_angle)
     ramp = 1.0 if primitive.acceleration is None else primitive.acceleration * 0.01
     match primitive.command:
         case "move_joint":
-            moves = [
-                commands.MoveJoint(_pose(values[0]), fraction, frame, ramp, along, primitive.tcp)
-            ]
-            return (*_departure(primitive, None, ramp), *moves)
+            pose = _pose(values[0])
+            moved_to = commands.MoveJoint(pose, fraction, frame, ramp, along, tcp, elbow)
+            return (*_departure(primitive, None, ramp), moved_to)
         case "move_axes":
             # By label, a1 .. a6: the order of SML.
             axes = tuple(math.radians(float(v)) for v in values[0])
@@ -124,17 +127,17 @@ def told(primitive: Primitive, argument: Any) -> tuple[commands.Command, ...]:
             return (commands.MoveExternal(along, fraction, ramp),)
         case "move_linear":
             assert primitive.frame is not None, "an entry without a frame is an error"
-            line = commands.MoveLinear(_pose(values[0]), frame, metres, ramp, along, primitive.tcp)
+            pose = _pose(values[0])
+            line = commands.MoveLinear(pose, frame, metres, ramp, along, tcp, elbow)
             if not primitive.approach:
                 return (*_departure(primitive, metres, ramp), line)
             before = _si(*pose_before(_numbers(values[0]), primitive.approach))
-            there = commands.MoveJoint(before, 1.0, frame, ramp, along, primitive.tcp)
+            there = commands.MoveJoint(before, 1.0, frame, ramp, along, tcp, elbow)
             return (*_departure(primitive, metres, ramp), there, line)
         case "move_circular":
             assert primitive.frame is not None, "an entry without a frame is an error"
             via, end = map(_pose, values[:2])
-            arc = commands.MoveCircular(via, end, frame, metres, ramp, along, primitive.tcp)
-            return (arc,)
+            return (commands.MoveCircular(via, end, frame, metres, ramp, along, tcp, elbow),)
         case "move_home":
             return (*_departure(primitive, None, ramp), commands.MoveHome(fraction, ramp))
         case "measure":

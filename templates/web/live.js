@@ -3,6 +3,7 @@
 
 import { load } from "./data.js";
 import { byId, el } from "./dom.js";
+import { Hand } from "./hand.js";
 import { LiveClock } from "./liveclock.js";
 import { LiveLink, addTo } from "./livelink.js";
 import { ReplayPage, probes } from "./replaypage.js";
@@ -11,6 +12,7 @@ import { Sides } from "./sides.js";
 const WINDOW_S = 30;
 const WATCH_MS = 1000;
 const KEY = "pn2code-stop";
+const ACT_KEY = "pn2code-act";
 
 class LivePage extends ReplayPage {
   /** @param {any} data */
@@ -28,6 +30,7 @@ class LivePage extends ReplayPage {
   /** @param {(name: string) => any} add */
   firstPanel(add) {
     this.sides = new Sides(add("State"), (t) => this.clock.seek(t));
+    if (this.run.hand) this.hand = new Hand(add("Intervene"), this.run.hand, { wish: (wish) => link.say({ do: "act", wish }), join: askToJoin });
   }
 
   /** The address keeps no moments: it is that of what happens now. */
@@ -63,6 +66,7 @@ class LivePage extends ReplayPage {
       this.watch?.grow();
     }
     this.sides?.update(this.latest.update, this.latest.pages, this.course.steps);
+    if (this.latest.update.hand) this.hand?.update(this.latest.update.hand);
     if (this.latest.update.verdict) this.ended(this.latest.update.verdict);
     this.update();
   }
@@ -92,9 +96,11 @@ let page = null;
 /** @type {{updates: any[], pages: number}[]} */
 const queue = [];
 const started = load();
-const token = new URLSearchParams(location.hash.slice(1)).get("stop") ?? "";
-if (token) {
-  sessionStorage.setItem(KEY, token);
+const given = new URLSearchParams(location.hash.slice(1));
+for (const [name, key] of [["stop", KEY], ["act", ACT_KEY]]) {
+  const token = given.get(name);
+  if (!token) continue;
+  sessionStorage.setItem(key, token);
   history.replaceState(null, "", location.pathname);
 }
 
@@ -120,6 +126,7 @@ function begin(data, first) {
   page = new LivePage(data);
   const live = byId("live");
   live.addEventListener("click", () => /** @type {LiveClock | undefined} */ (page?.clock)?.goLive());
+  join();
   /** @type {any} */ (globalThis).live = { ...probes(page), link };
 }
 
@@ -151,7 +158,9 @@ const link = new LiveLink({
     await started;
     drain(await started);
   },
-  onLost: () => say("The connection is lost: what is shown is no longer what happens. The page tries again.", "bad"),
+  onOpen: () => join(),
+  onAct: (text) => acted(text),
+  onLost: () => (page?.hand?.left(), say("The connection is lost: what is shown is no longer what happens. The page tries again.", "bad")),
   onBack: () => {
     say("", "");
     const verdict = page?.latest?.update.verdict;
@@ -181,6 +190,7 @@ function drain(data) {
 
 function finish() {
   if (queue.length) return;
+  page?.hand?.left();
   /** @type {LiveClock | undefined} */ (page?.clock)?.finish();
   byId("stop").disabled = true;
   if (page?.run.watched) {
@@ -207,21 +217,52 @@ function stop(given) {
   if (!link.stop(given)) say("The cell goes on: there is no connection. Use Ctrl-C in the terminal.", "bad");
 }
 
+/** Takes part, if the token is known. */
+function join() {
+  const token = sessionStorage.getItem(ACT_KEY);
+  if (page?.hand && token) link.say({ do: "join", token });
+}
+
+/** @param {string} answer */
+function acted(answer) {
+  if (answer === "joined") page?.hand?.joined();
+  if (answer !== "wrong token") return;
+  sessionStorage.removeItem(ACT_KEY);
+  say("This is not the token that the terminal has printed for those who take part.", "bad");
+}
+
+function askToJoin() {
+  ask("Take part", "You say what sensors see, and what fails. This needs the token that the terminal has printed behind `#act=`.", "Take part", (token) => {
+    sessionStorage.setItem(ACT_KEY, token);
+    join();
+  });
+}
+
 function askToStop() {
   const known = sessionStorage.getItem(KEY);
   if (known) {
     stop(known);
     return;
   }
+  ask("Stop the cell", "Supervisor and robots stop safely. This needs the token that the terminal has printed.", "Stop the cell", (token) => {
+    sessionStorage.setItem(KEY, token);
+    stop(token);
+  });
+}
+
+/**
+ * Asks for a token.
+ * @param {string} title
+ * @param {string} text
+ * @param {string} button
+ * @param {(token: string) => void} work
+ */
+function ask(title, text, button, work) {
   const field = el("input", { type: "password", autocomplete: "off", "aria-label": "Token", required: true });
   const dialogue = el(
-    "dialog", { "aria-label": "Stop the cell" }, el("h2", { text: "Stop the cell" }),
-    el("p", { text: "Supervisor and robots stop safely. This needs the token that the terminal has printed." }),
-    el("form", { method: "dialog", onsubmit: () => {
-      sessionStorage.setItem(KEY, field.value);
-      stop(field.value);
-    } }, field, el("p", { class: "buttons" },
-      el("button", { class: "stop", text: "Stop the cell" }), el("button", { type: "button", text: "Cancel", onclick: () => dialogue.close() }))),
+    "dialog", { "aria-label": title }, el("h2", { text: title }), el("p", { text }),
+    el("form", { method: "dialog", onsubmit: () => work(field.value) }, field, el("p", { class: "buttons" },
+      el("button", { class: "stop", text: button }), el("button", { type: "button", text: "Cancel", onclick: () => dialogue.close() }))),
   );
   dialogue.addEventListener("close", () => dialogue.remove());
   document.body.append(dialogue);

@@ -6,7 +6,7 @@ import { push } from "./course.js";
 const AGAIN_MS = 1000;
 
 export class LiveLink {
-  /** @param {{onNews: (updates: any[], pages: number) => void, onLost: () => void, onBack: () => void, onOver: () => void, onFailed: () => void, onSaid: (text: string) => void}} ears */
+  /** @param {{onNews: (updates: any[], pages: number) => void, onLost: () => void, onBack: () => void, onOver: () => void, onFailed: () => void, onSaid: (text: string) => void, onOpen: () => void, onAct: (text: string) => void}} ears */
   constructor(ears) {
     this.ears = ears;
     /** How many updates have come. */
@@ -23,6 +23,7 @@ export class LiveLink {
     url.searchParams.set("at", String(this.at));
     this.socket = new WebSocket(url);
     this.socket.onmessage = (e) => this.hear(JSON.parse(e.data));
+    this.socket.onopen = () => this.ears.onOpen();
     this.socket.onclose = () => this.closed();
   }
 
@@ -49,6 +50,7 @@ export class LiveLink {
       this.isOver = true;
       this.ears.onSaid(said.broken);
     } else if (said.stop) this.ears.onSaid(said.stop);
+    else if (said.act) this.ears.onAct(said.act);
   }
 
   /**
@@ -56,8 +58,16 @@ export class LiveLink {
    * @param {string} token
    */
   stop(token) {
+    return this.say({ do: "stop", token });
+  }
+
+  /**
+   * Says something; whether that could be done.
+   * @param {any} what
+   */
+  say(what) {
     if (this.socket?.readyState !== WebSocket.OPEN) return false;
-    this.socket.send(JSON.stringify({ do: "stop", token }));
+    this.socket.send(JSON.stringify(what));
     return true;
   }
 }

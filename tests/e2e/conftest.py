@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from helpers import explorations
-from helpers.compiled import DELIVERED
 from helpers.explored import SANITIZERS, Explorers
 from helpers.generated import Cached
 from helpers.objects import Objects
@@ -17,11 +17,8 @@ from pn2code import pipeline
 from pn2code.diagnostics import Diagnostics, render
 from pn2code.emission.write import write
 from pn2code.pipeline import Generated
-from pn2code.toolchain import build, programs
+from pn2code.toolchain import build
 from pn2code.verify.exploring import explore
-
-LARGE = ("timed",)
-"""Examples with so many states, as they run, that to explore them takes longer than to compile the explorer well."""
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -64,12 +61,9 @@ def cached(tmp_path_factory: pytest.TempPathFactory) -> Cached:
 def of_example(root: Path, cached: Cached) -> Callable[..., Generated]:
     """An example cell, generated once a session, of which there is nothing to say."""
 
-    def generated(name: str, *, checked: bool = True) -> Generated:
+    def generated(name: str, **options: Any) -> Generated:
         d = Diagnostics()
-        with pytest.MonkeyPatch.context() as changed:
-            if name in LARGE and checked:
-                changed.setattr(programs, "FLAGS", DELIVERED)
-            found = cached(root / "examples" / name, d, checked=checked)
+        found = cached(root / "examples" / name, d, **options)
         assert found is not None and not list(d), render.report(d)
         return found
 

@@ -63,14 +63,22 @@ def test_the_functions_that_allocate_are_known(tmp_path: Path) -> None:
     assert own == {"sup_read_inputs", "sup_run_cell"}
 
 
-@pytest.mark.parametrize("name", ["riveting", "sorting", "timed"])
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("riveting", {}),
+        ("sorting", {}),
+        ("timed", {"parts": "1", "orders": "1"}),
+    ],  # a million states with three parts
+)
 def test_the_examples_run_in_what_is_proven(
     name: str,
-    of_example: Callable[[str], Generated],
+    values: dict[str, str],
+    of_example: Callable[..., Generated],
     tmp_path: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    example = of_example(name)
+    example = of_example(name, **({"values": values} if values else {}))
     made = _written(example, tmp_path)
     config = (tmp_path / "cell_config.c").read_text()
     assert made < 100_000 and "proven to be enough" in config

@@ -20,6 +20,7 @@ from tools.forgery.forgeries import forgeries
 from tools.forgery.judge import WRONG, Judge
 from typer.testing import CliRunner
 
+from helpers.solvers import solver_for
 from helpers.thorough import THOROUGH, amount
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
@@ -83,6 +84,15 @@ EXAMPLES = {
         {"brought": 4, "milled": 4, "stored": 4, "breaks": 0}, {"t": {"stored": 3, "scrapped": 1}},
         ("supervisor", "arm1", "arm2", "feeder", "mill", "gauge"),
     ),
+    "welding": Expected(
+        "cell", ("Supervisor", "supervisor.svg"), 890, 5,
+        {"seams": 6, "again": 1, "by_hand": 0}, {"c": 0}, ("supervisor", "left", "right"),
+    ),
+    "assembly": Expected(
+        "cell", ("Supervisor", "supervisor.svg"), 285, 3,
+        {"screws": 2, "cables": 2, "handed_over": 1, "rejected": 1}, {"c": 1, "n": 3},
+        ("supervisor", "left", "right", "worker"),
+    ),
     "timed": Expected(
         "timed", ("Supervisor", "supervisor.svg"), 31014, 1668,
         {"beads": 3, "repairs": 2, "interruptions": 2, "answers": 2, "timeouts": 1, "late": 1},
@@ -91,9 +101,13 @@ EXAMPLES = {
     ),
 }  # fmt: skip
 
+FEWER = ("--set", "parts=1", "--set", "orders=1")
+"""The timed cell, with a thirtieth of the states as it runs."""
+
 
 @pytest.mark.parametrize("name", [*EXAMPLES, "riveting", "philosophers"])
 def test_check_has_nothing_to_say(name: str, root: Path) -> None:
+    solver_for(name)
     done = CliRunner().invoke(app, ["check", str(root / "examples" / name)])
     assert done.exit_code == 0, done.output
     assert done.stderr == ""  # a cell has a table of its channels besides
@@ -102,6 +116,7 @@ def test_check_has_nothing_to_say(name: str, root: Path) -> None:
 
 @pytest.fixture(scope="module", params=EXAMPLES)
 def example(request: pytest.FixtureRequest, root: Path) -> tuple[Path, Expected]:
+    solver_for(request.param)
     return root / "examples" / request.param, EXAMPLES[request.param]
 
 
@@ -137,18 +152,17 @@ def test_the_picture_is_that_of_the_net(example: tuple[Path, Expected], tmp_path
 
 
 @pytest.mark.cc
-def test_verify(
-    example: tuple[Path, Expected], tmp_path: Path, request: pytest.FixtureRequest
-) -> None:
+def test_verify(example: tuple[Path, Expected], tmp_path: Path) -> None:
+    """The net as it is, with the cell as it runs; a large one runs with fewer parts, but in `make thorough`."""
     folder, expected = example
-    if expected.is_large:  # exploring takes longer than compiling
-        request.getfixturevalue("as_delivered")
-    options = ["--json", "--no-medium", "--traces", str(tmp_path), "--threads", "1"]
-    done = CliRunner().invoke(app, ["verify", str(folder), *options])
-    assert done.exit_code == 0, done.output
-    said = json.loads(done.stdout)
+    options = [folder, "--no-medium", "--threads", "1", "--traces", tmp_path]
+    is_small = THOROUGH or not expected.is_large
+    said = _verified(*options, *(() if is_small else ("--no-found", "--no-controller")))
     assert said["complete"] and not said["dead_transitions"]
     assert (said["nodes"], said["dead_markings"]) == (expected.nodes, expected.dead)
+    if not is_small:
+        said = _verified(*options, *FEWER)
+    assert said["complete"] and said["status"] == 0
     assert len(said["properties"]) >= expected.properties
     assert {p["name"]: p["answer"] for p in said["properties"] if p["answer"] != "yes"} == {}
     assert all(p["says"] for p in said["properties"])
@@ -173,7 +187,7 @@ def test_a_cell_that_goes_on_for_ever_is_verified_without_its_time(
 def _verified(*arguments: str | Path) -> dict[str, Any]:
     done = CliRunner().invoke(app, ["verify", *map(str, arguments), "--json"])
     said: dict[str, Any] = json.loads(done.stdout)
-    return said
+    return said | {"status": done.exit_code}
 
 
 @pytest.mark.cc
@@ -246,7 +260,7 @@ def test_the_riveting_cell_has_its_properties(root: Path, tmp_path: Path) -> Non
     "file",
     [
         "sorting/cell.toml", "handover/cell.toml", "tending/cell.toml", "palletiser/cell.toml", "shared-zone/cell.toml",
-        "timed/cell.toml", "riveting/cell.properties.toml",
+        "welding/cell.toml", "assembly/cell.toml", "timed/cell.toml", "riveting/cell.properties.toml",
     ],
 )  # fmt: skip
 def test_properties_are_told_in_plain_words(root: Path, file: str) -> None:

@@ -5,8 +5,12 @@ from __future__ import annotations
 import csv
 import hashlib
 import json
+import subprocess
 from collections import Counter
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from lxml import html
@@ -14,10 +18,19 @@ from lxml import html
 from e2e.test_input_sizes import STOCK
 from e2e.test_input_sizes import cell as stock
 from helpers.netbuilder import cpn, write
-from helpers.processes import pn2code
+from helpers.processes import pn2code, started
 from pn2code.dossier.steps import Done
 
-pytestmark = pytest.mark.cc
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
+
+
+@contextmanager
+def forks() -> Iterator[None]:
+    """The commands of a report are forks of the tests', and find compiled what these have compiled."""
+    with pytest.MonkeyPatch.context() as changed:
+        own = SimpleNamespace(Popen=started, DEVNULL=subprocess.DEVNULL)
+        changed.setattr("pn2code.dossier.steps.subprocess", own)
+        yield
 
 
 def first_page(folder: Path) -> html.HtmlElement:
@@ -52,9 +65,10 @@ def broken(folder: Path) -> list[str]:
 
 
 @pytest.fixture(scope="module")
-def minimal(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+def minimal(root: Path, quick_build: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("minimal") / "report"
-    done = pn2code("report", root / "examples/minimal", "-o", out, "--backend", "fake")
+    with forks():
+        done = pn2code("report", root / "examples/minimal", "-o", out, "--backend", "fake")
     assert done.returncode == 0, done.stdout + done.stderr
     return out
 
@@ -100,7 +114,8 @@ def test_what_is_not_as_it_should_be_is_named(tmp_path: Path) -> None:
     cell = stock(tmp_path / "cell", "2\n")
     text = '[[property]]\nname = "no <b>end</b>"\nholds = "never { size (Mark.Sup\'Finished 1) > 0 }"\n'
     (cell / "cell.properties.toml").write_text(text)
-    done = pn2code("report", cell, "-o", tmp_path / "out", "--backend", "fake")
+    with forks():
+        done = pn2code("report", cell, "-o", tmp_path / "out", "--backend", "fake")
     assert done.returncode == 1, done.stdout + done.stderr
     assert verdict(tmp_path / "out").startswith("Not as it should be: no <b>end</b>")
     assert commands(tmp_path / "out")["verify"] == "1"
@@ -110,7 +125,8 @@ def test_what_is_not_as_it_should_be_is_named(tmp_path: Path) -> None:
 
 def test_what_cannot_be_made_is_left_out(tmp_path: Path) -> None:
     cell = stock(tmp_path / "cell", "2\n", STOCK.replace("in Pieces : n", "in Pieces : nn"))
-    done = pn2code("report", cell, "-o", tmp_path / "out", "--backend", "fake")
+    with forks():
+        done = pn2code("report", cell, "-o", tmp_path / "out", "--backend", "fake")
     assert done.returncode == 1, done.stdout + done.stderr
     found = commands(tmp_path / "out")
     assert found["check"] == "1" and found["draw"] == "0"
@@ -120,6 +136,7 @@ def test_what_cannot_be_made_is_left_out(tmp_path: Path) -> None:
 
 
 def test_a_net_without_a_cell(tmp_path: Path) -> None:
+    """Its commands are processes of their own, as users have them."""
     net = write(
         "net n\n  standard\n  page P\n    place A = 1\n    place B\n    trans T\n      in A : ()\n      out B : ()\n",
         tmp_path / "n.cpn",

@@ -125,10 +125,10 @@ def test_runs_of_random_cells_keep_the_bounds(seed: int, tmp_path: Path) -> None
     assert not wrong
 
 
-EXAMPLES = ("handover", "tending", "palletiser", "minimal")
+EXAMPLES = ("handover", "tending", "palletiser", "minimal", "welding", "assembly")
 
 
-@pytest.mark.parametrize("name", EXAMPLES[: amount(1, 4)])
+@pytest.mark.parametrize("name", EXAMPLES[: amount(1, 6)])
 def test_runs_of_examples_keep_the_bounds(name: str, root: Path, tmp_path: Path) -> None:
     """With planned times, and with sensors that say something else."""
     folder = root / "examples" / name

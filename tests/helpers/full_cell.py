@@ -32,6 +32,8 @@ capacity.Buffer = 9
 joint_speed = 0.7
 joint_acceleration_deg_s2 = 150.0
 joint_jerk_deg_s3 = 900.0
+slide_acceleration = 1.5
+slide_jerk = 15.0
 linear_speed = 0.1
 linear_acceleration = 0.6
 linear_jerk = 4.0
@@ -59,7 +61,7 @@ joint = { command = "move_joint", frame = "bench", speed = 0.5, acceleration = 0
 axes = { command = "move_axes", speed = 0.5, acceleration = 0.4 }
 line = { command = "move_linear", frame = "bench", speed = 0.2, acceleration = 0.3, approach = 0.2 }
 arc = { command = "move_circular", frame = "tool", speed = 0.2, acceleration = 0.3 }
-grasp = { command = "move_joint", tcp = "gripper" }
+grasp = { command = "move_joint", tcp = "gripper", arm_angle = 20.0 }
 both = { command = "move_external", track = "rail", turntable = "plate", speed = 0.5, acceleration = 0.4 }
 led = { command = "move_linear", frame = "seam", track = "rail", turntable = "plate" }
 home = { command = "move_home", speed = 0.5, acceleration = 0.2, depart = 0.05 }
@@ -95,6 +97,13 @@ home = 0.5
 speed = 0.4
 acceleration = 0.8
 jerk = 5.0
+
+[robots.seven]
+instance = "Seven"
+model = "iiwa14_r820"
+base = { y = -9.0 }
+home = [0.0, 30.0, 0.0, 90.0, 0.0, -60.0, 0.0]
+arm_angle = 15.0
 
 [robots.turner]
 instance = "Turner"
@@ -307,6 +316,7 @@ def read(folder: Path, data: dict[str, Any], section: str) -> tuple[str, Diagnos
         shown += [
             (name, k.T_flange_tcp.tolist()) for r in cell.robots for name, k in r.tcps.items()
         ]
+        shown += [r.kinematics.arm_angle for r in cell.robots]
         shown += [a.described() for r in cell.robots for a in r.axes]
     return re.sub(r"Origin\([^()]*\)", "", repr(shown).replace(str(folder), "")), d
 

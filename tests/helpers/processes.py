@@ -17,10 +17,11 @@ import sys
 import tempfile
 import time
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
+from typing import IO
 
 from pn2code.cli.main import VERBS, play
 
@@ -88,6 +89,10 @@ class Child:
         """Sends a signal, if it still runs."""
         if self.poll() is None:
             os.kill(self.pid, number)
+
+    def terminate(self) -> None:
+        """SIGTERM, if it still runs."""
+        self.signal(signal.SIGTERM)
 
     def kill(self) -> None:
         """SIGKILL, and waits for the end."""
@@ -176,6 +181,26 @@ class Talking(Child):
         self.stdout.close()
         self.stderr.close()
         return said, errors
+
+
+def started(
+    command: Sequence[str],
+    *,
+    cwd: Path,
+    stdin: int,
+    stdout: IO[bytes],
+    stderr: IO[bytes],
+) -> Child:
+    """`python -m pn2code ARGUMENTS` as a fork: what tests put in the place of a command's own `subprocess.Popen`."""
+    python, flag, module, *arguments = command
+    assert (python, flag, module, stdin) == (sys.executable, "-m", "pn2code", subprocess.DEVNULL)
+
+    def body() -> int:
+        os.chdir(cwd)
+        sys.argv = ["pn2code", *arguments]
+        play()
+
+    return Child(body, stdout.fileno(), stderr.fileno())
 
 
 def pn2code(

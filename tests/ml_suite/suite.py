@@ -121,6 +121,8 @@ _ATOMS = {
     "order": "show_order",
     "word": "Word.toString",
     "substring": "show_substring",
+    **{f"Word{n}.word": f"Word{n}.toString" for n in (8, 32, 64)},
+    **{f"Int{n}.int": f"Int{n}.toString" for n in (32, 64)},
 }
 _CONTAINERS = {
     "list": "show_list",

@@ -40,7 +40,16 @@ from pn2code.verify.exploring.limits import Limits, cores
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 STEPS = 3_000
-CELLS = ("minimal", "handover", "palletiser", "shared-zone", "tending", "riveting")
+CELLS = (
+    "minimal",
+    "handover",
+    "palletiser",
+    "shared-zone",
+    "tending",
+    "welding",
+    "assembly",
+    "riveting",
+)
 
 
 def looked(cell: Path, traces: Path) -> Geometry:

@@ -51,6 +51,7 @@ _NAMES = {
     "Int.int": "int", "Real.real": "real", "String.string": "string", "Word.word": "word", "CPN'timed": "timed",
     "Word31.word": "word", "Position.int": "int", "Substring.substring": "substring", "IEEEReal.real_order": "order",
     "Order.order": "order", "Word8Vector.elem": "Word8.word", "FmtFields.fmt_item": "fmt_item",
+    **{f"word{n}": f"Word{n}.word" for n in (8, 32, 64)}, **{f"int{n}": f"Int{n}.int" for n in (32, 64)},
     "CharVector.vector": "string", "CharVector.elem": "char",
 }  # fmt: skip
 _BASIC = {
@@ -228,7 +229,7 @@ class Printer:
     def constructed(self, name: str, args: tuple[Type, ...], value: Any, tight: bool) -> str:
         made = ""
         match name:
-            case "int" | "IntInf.int":
+            case "int" | "IntInf.int" | "Int32.int" | "Int64.int":
                 return str(value).replace("-", "~")
             case "time" | "real":
                 return (
@@ -240,7 +241,7 @@ class Printer:
                 return string_text(value)
             case "char":
                 return "#" + string_text(value)
-            case "word" | "Word8.word":
+            case "word" | "Word8.word" | "Word32.word" | "Word64.word":
                 return f"0wx{value:X}"
             case "list":
                 return f"[{','.join(self.text(args[0], v) for v in value)}]"
@@ -289,12 +290,25 @@ class Here:
     """pn2code after the declarations of a net: the elaborator and the reference evaluator."""
 
     def __init__(self, net: Path, steps: int = 200_000) -> None:
-        d = Diagnostics()
-        typed = examine(net, d, compute=compute).typed
-        assert typed is not None, [e.message for e in d.errors]
+        self._d = Diagnostics()
+        typed = examine(net, self._d, compute=compute).typed
+        assert typed is not None, [e.message for e in self._d.errors]
         self.elaborator = typed.elaborator
         self.program = typed.program
         self.evaluator = Evaluator(typed.program, limits=Limits(steps=steps))
+
+    def declare(self, text: str) -> None:
+        """Declarations that stand before all expressions.
+
+        Raises:
+            ValueError: they are wrong.
+        """
+        before = len(self.elaborator.program().declarations)
+        self.elaborator.declarations(SourceText(text, NOWHERE))
+        if self._d.has_errors:
+            raise ValueError(self._d.errors[0].message)
+        self.program = self.elaborator.program()
+        self._evaluate(before)
 
     def say(self, text: str) -> Said:
         """The answer to an expression; declarations may come before it, each of which ends with `;` and a line.
@@ -351,6 +365,10 @@ class Here:
         self.elaborator.declarations(SourceText(text, NOWHERE))
         if d.has_errors:
             raise _RefusedError
+        self._evaluate(done)
+
+    def _evaluate(self, done: int) -> None:
+        """The declarations after so many of them."""
         for dec in self.elaborator.program().declarations[done:]:
             self.evaluator.globals.update(self.evaluator.run(self.evaluator._declare(dec, {})))
 

@@ -379,8 +379,11 @@ class Texts:
                 )
             case "IEEEReal.rounding_mode":
                 return r.choice(("IEEEReal.TO_NEAREST", "IEEEReal.TO_ZERO", "IEEEReal.TO_POSINF"))
-            case "Word8.word":
-                return r.choice(("(Word8.fromInt 65)", "(Word8.fromInt 255)"))
+            case "Word8.word" | "Word32.word":
+                structure = name.split(".")[0]
+                return f"({structure}.fromInt {r.choice(('65', '~1', '0', '200'))})"
+            case "Int32.int":
+                return r.choice(("(Int32.fromInt 7)", "(Int32.fromInt ~3)", "(valOf Int32.maxInt)"))
             case "Word8Vector.vector":
                 return '(Byte.stringToBytes "ab")'
             case "Date.month":

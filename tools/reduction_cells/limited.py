@@ -126,7 +126,7 @@ class Limited:
         if not found.complete:
             return
         limited = {x.place for x in self.made.counts.limits}
-        is_fine = all(row["answer"] == "yes" for row in found.answers)
+        is_fine = all(row["answer"] == "yes" for row in found.answers[1:])
         is_said = all(row["answer"] == "yes" for row in whole.answers[:_FIRST])
         if is_fine and not is_said:
             yield f"they say that all is well: {[row['answer'] for row in whole.answers]}"

@@ -1,4 +1,7 @@
-"""The types of joint positions in a net: records of six reals a1 .. a6 or j1 .. j6 (or A1, J1, ...), in degrees."""
+"""The types of joint positions in a net: records of reals a1 .. a6 or j1 .. j6 (or A1, J1, ...), one for each axis.
+
+In degrees, of an axis that slides in mm; arms have four, six or seven axes.
+"""
 
 from __future__ import annotations
 
@@ -6,16 +9,17 @@ from collections.abc import Iterable
 
 from pn2code.ml.core.types import REAL, TRecord, Type
 
-AXES = 6
-"""Of an arm."""
-_LABELS = tuple(frozenset(f"{letter}{n}" for n in range(1, AXES + 1)) for letter in "ajAJ")
+COUNTS = (4, 6, 7)
+"""How many axes an arm may have."""
+_LABELS = tuple(
+    frozenset(f"{letter}{n}" for n in range(1, count + 1)) for letter in "ajAJ" for count in COUNTS
+)
 
 
 def is_axes(t: Type) -> bool:
     """Whether the values of a type are joint positions."""
     return (
         isinstance(t, TRecord)
-        and len(t.fields) == AXES
         and are_axes(label for label, _ in t.fields)
         and all(x == REAL for _, x in t.fields)
     )

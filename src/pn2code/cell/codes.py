@@ -130,8 +130,8 @@ CHANNEL_LIMIT = register(
 UNSUPPORTED_CHANNEL_COLSET = register(
     "unsupported-channel-colset",
     "the colour set of a channel or input has no fixed number of scalars",
-    "Messages are lines of scalars: unit, bool, int, real, string, enumerations, indexes, and products and records of "
-    "these. Lists and unions have no fixed length.",
+    "Messages are lines of scalars: unit, bool, int, time, real, string, enumerations, indexes, and products and "
+    "records of these. Lists and unions have no fixed length.",
 )
 
 CELL_MISSING = register(

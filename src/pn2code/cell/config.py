@@ -43,6 +43,7 @@ class Primitive:
         along: of moves: external axes that move as well, each with whether it is a track; the function takes their
             positions, in mm and degrees, behind the poses.
         tcp: of moves to poses: the tool frame that comes there; "": that of the tool.
+        arm_angle: of moves to poses: degrees, where the elbow of an arm with seven axes is then; None: nothing is said.
     """
 
     function: str
@@ -57,6 +58,7 @@ class Primitive:
     depart: float = 0.0
     along: tuple[tuple[str, bool], ...] = ()
     tcp: str = ""
+    arm_angle: float | None = None
 
     @property
     def places(self) -> int:

@@ -9,6 +9,7 @@ _SCALARS = {
     Kind.BOOL,
     Kind.INT,
     Kind.INTINF,
+    Kind.TIME,
     Kind.REAL,
     Kind.STRING,
     Kind.ENUM,

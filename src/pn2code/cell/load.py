@@ -375,6 +375,9 @@ def _primitives(r: Tables, data: dict[str, Any]) -> dict[str, Primitive]:
             _scaled(r, table, at, command, "depart", 1000.0) or 0.0,
             tuple(_along(r, data, table, at, command)),
             _tcp(r, data, table, at) if "tcp" in own else "",
+            r.number(table, at, PRIMITIVE["arm_angle"])
+            if "arm_angle" in own and "arm_angle" in table
+            else None,
         )
         _check_approach(r, out[name], at)
     return out

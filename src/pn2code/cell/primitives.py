@@ -442,7 +442,8 @@ def _takes_any_pose(t: Type) -> bool:
 
 _RECORDS = {
     "POSE": "POSE is a record of six reals x y z rx ry rz",
-    "AXES": "AXES is a record of six reals a1 .. a6 or j1 .. j6: the angles of the axes, in degrees",
+    "AXES": "AXES is a record of a real for each axis, a1 .. a6 or j1 .. j6 (of an arm with four axes to a4, with "
+    "seven to a7), in degrees, of axes that slide in mm",
 }
 
 

@@ -13,6 +13,10 @@ from enum import Enum
 
 from pn2code.base.frozen import frozen
 from pn2code.ml.core.colsets import Colset, Kind
+from pn2code.ml.core.types import REAL
+
+TIMES = (-(2**30), 2**30 - 1)
+"""The times of an integer clock that a message can carry: those that fit into an integer of a script."""
 
 
 class ScalarKind(Enum):
@@ -51,7 +55,6 @@ _SIMPLE = {
     Kind.BOOL: ScalarKind.BOOL,
     Kind.INT: ScalarKind.INT,
     Kind.INTINF: ScalarKind.INT,
-    Kind.TIME: ScalarKind.INT,
     Kind.REAL: ScalarKind.REAL,
     Kind.STRING: ScalarKind.STRING,
     Kind.ENUM: ScalarKind.ENUM,
@@ -76,7 +79,9 @@ def scalars_of(colset: Colset, label: str = "") -> tuple[Scalar, ...] | None:
                 return None
             found.extend(inner)
         return tuple(found)
-    kind = _SIMPLE.get(c.kind)
+    if c.kind is Kind.TIME and c.type != REAL:
+        return (Scalar(ScalarKind.INT, label or colset.name, colset.name, (), *TIMES),)
+    kind = ScalarKind.REAL if c.kind is Kind.TIME else _SIMPLE.get(c.kind)
     if kind is None:
         return None
     bounded = kind in (ScalarKind.INT, ScalarKind.REAL, ScalarKind.INDEX)

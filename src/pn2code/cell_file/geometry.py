@@ -61,6 +61,24 @@ MOTION = Section(
             high=1e8,
         ),
         Key(
+            "slide_acceleration",
+            "number",
+            "Acceleration of every axis of an arm that slides.",
+            default=2.0,
+            unit="m/s²",
+            low=1e-4,
+            high=1e4,
+        ),
+        Key(
+            "slide_jerk",
+            "number",
+            "Jerk of every axis of an arm that slides.",
+            default=20.0,
+            unit="m/s³",
+            low=1e-4,
+            high=1e6,
+        ),
+        Key(
             "linear_speed",
             "number",
             "Speed of the TCP on linear moves.",
@@ -387,8 +405,12 @@ AXIS = Section(
     ),
     by="kind",
 )
-BRANCHES = tuple(
-    f"{s}/{e}/{w}" for s in ("front", "back") for e in ("up", "down") for w in ("plus", "minus")
+_SIGNS = ("plus", "minus")
+BRANCHES = (
+    *(f"{s}/{e}/{w}" for s in ("front", "back") for e in ("up", "down") for w in _SIGNS),
+    *(f"{s}/{e}/{w}" for s in _SIGNS for e in _SIGNS for w in _SIGNS),
+    "left",
+    "right",
 )
 ROBOT = Section(
     (
@@ -424,18 +446,29 @@ ROBOT = Section(
         Key(
             "home",
             "numbers",
-            "Its joint angles at HOME.",
+            "Its joint position at HOME, a number for each axis; of an axis that slides m. The default is for arms "
+            "with six axes.",
             default=(0.0, -90.0, 90.0, 0.0, 0.0, 0.0),
             unit=_DEGREES,
-            counts=(6,),
+            counts=(4, 6, 7),
         ),
         Key(
             "branch",
             "text",
-            "The only branch in which joint moves end: shoulder, elbow, sign of axis 5; `any`: the one that is reached "
-            "first.",
+            "The only branch in which joint moves end: shoulder, elbow, sign of axis 5; of seven axes, the signs of 2, "
+            "4 and 6; of a SCARA, the side of the elbow; `any`: the one that is reached first.",
             default="any",
             words=("any", *BRANCHES),
+        ),
+        Key(
+            "arm_angle",
+            "number",
+            "Of an arm with seven axes: where its elbow is at the end of moves to poses that say nothing else "
+            "([robots.md](robots.md#seven-axes)).",
+            default=0.0,
+            unit=_DEGREES,
+            low=-180.0,
+            high=180.0,
         ),
         Key(
             "tcps",

@@ -204,6 +204,17 @@ PRIMITIVE = Section(
             only=("move_joint", *LED),
         ),
         Key(
+            "arm_angle",
+            "number",
+            "Where the elbow of an arm with seven axes is at the end ([Seven axes](robots.md#seven-axes)); without it, "
+            "where `arm_angle` of the robot has it.",
+            "a number",
+            unit="degrees",
+            low=-180.0,
+            high=180.0,
+            only=("move_joint", *LED),
+        ),
+        Key(
             "track",
             "text",
             "A track of the robot that moves as well: the function takes its position, too, in mm.",

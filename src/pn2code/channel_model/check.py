@@ -14,7 +14,7 @@ from typing import Any
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import Partition
-from pn2code.channel_model import by_turns
+from pn2code.channel_model import by_cell, by_turns
 from pn2code.channel_model.compose import compose
 from pn2code.channel_model.faults import SAYS, Fault
 from pn2code.channel_model.places import ChannelModel, Crashes, modelled
@@ -27,7 +27,7 @@ from pn2code.verify.answers import basis
 from pn2code.verify.answers.properties import Verdict
 from pn2code.verify.answers.reasons import clause
 from pn2code.verify.controller import messages
-from pn2code.verify.controller.premises import IN_TURNS
+from pn2code.verify.controller.premises import COUNTED, IN_TURNS
 from pn2code.verify.controller.running import chunks
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits, Reduction
@@ -39,6 +39,8 @@ MOST_STATES = 2_000_000
 MOST_IN_TURNS = 4_000_000
 """The same where the sides are looked at in turns."""
 MOST_TRACES = 16
+FILES_FROM = 300_000
+"""Of a cell with its medium: then it is asked what the cell as it runs says of its files (`by_cell`)."""
 QUICK_STATES = 2_000
 """Of a cell: beyond that it pays to have the compiler work longer."""
 WHOLE = "the cell with its medium"
@@ -66,7 +68,8 @@ class Answer:
         why: why it is inconclusive, or what fails that `evidence` does not show; "" else.
         nodes, arcs, seconds: of the exploration; `places`, `transitions`: of its net.
         assumes: what the answer rests on.
-        reduced: whether `nodes` and `arcs` are those of the reduced space of `by_turns`.
+        reduced: whether `nodes` and `arcs` are those of the reduced space of `by_turns`, or of one of the cell without
+            its medium (`by_cell`).
     """
 
     check: str
@@ -138,6 +141,7 @@ def check_channel_model(
     cell_states: int | None = 0,
     most: int | None = None,
     options: ExploreOptions | None = None,
+    shown: by_cell.Shown | None = None,
 ) -> Iterator[Answer]:
     """All checks of a cell; none if it has no channels.
 
@@ -151,6 +155,7 @@ def check_channel_model(
         cell_states: of the cell's own net; None: too many to explore it with its medium.
         most: of them with its medium that are looked at; None: as many as the limits permit.
         options: who is told of the progress, and who may interrupt; None: nobody.
+        shown: what the checks of the supervisor have shown of the files already; None: nothing.
     """
     rules = rules or Rules()
     run = Run(limits, d, replace(options or ExploreOptions(), quick=True))
@@ -163,9 +168,8 @@ def check_channel_model(
         ends = [n for n in (limits.max_states, most) if n is not None]
         part = limits.deadline.share(WHOLE_PART)  # the exchanges are small
         own_limits = replace(limits, max_states=min(ends, default=None), deadline=part)
-        yield whole(
-            partition, storage, replace(run, limits=own_limits, options=fitting), rules, left_out
-        )
+        own_run = replace(run, limits=own_limits, options=fitting)
+        yield whole(partition, storage, own_run, rules, left_out, shown)
     else:
         yield too_large()
     seen: dict[Topology, str] = {}
@@ -183,8 +187,9 @@ def whole(
     run: Run,
     rules: Rules,
     left_out: Sequence[str] = (),
+    shown: by_cell.Shown | None = None,
 ) -> Answer:
-    """The cell's own net with its medium; no side crashes."""
+    """The cell's own net with its medium; no side crashes. `shown`: as for `check_channel_model`."""
     net = compose(partition, rules, Crashes(life_cycle=False))
     assumes = "no side crashes"
     if net.net.timed:
@@ -208,12 +213,50 @@ def whole(
         )
 
     first, most = run.limits.turns_from, run.limits.max_states or MOST_STATES
-    if first is None or most <= first or partition.net.timed or not partition.final_places:
+    if first is None or partition.net.timed or not partition.final_places:
+        return full(run.limits)
+    if shown is not None and not by_cell.why_not(partition, rules):
+        return _by_cell(shown, assumes, 0.0)
+    if not by_cell.why_not(partition, rules) and min(first, most) > FILES_FROM:
+        part = full(replace(run.limits, max_states=FILES_FROM))
+        if part.answer != "inconclusive" or part.why != _incomplete("states"):
+            return part
+        began = time.perf_counter()
+        limits = replace(run.limits, max_states=run.limits.max_states or MOST_IN_TURNS)
+        found = by_cell.shown(partition, rules, storage, limits, run.options)
+        if found is not None:
+            return _by_cell(found, assumes, time.perf_counter() - began)
+    if most <= first:
         return full(run.limits)
     part = full(replace(run.limits, max_states=first))
     if part.answer != "inconclusive" or part.why != _incomplete("states"):
         return part
     return _in_turns(partition, storage, run, rules, assumes) or full(run.limits)
+
+
+_OF_CELL = (
+    "files are not looked at one by one: in the cell as it runs no channel holds a second message before the first one "
+    "has been taken, so that no file does (docs/reductions.md)"
+)
+
+
+def _by_cell(shown: by_cell.Shown, assumes: str, seconds: float) -> Answer:
+    """The "yes" that follows from the cell as it runs."""
+    how = [assumes, _OF_CELL, IN_TURNS, *([COUNTED] if shown.is_counted else [])]
+    return Answer(
+        check=WHOLE,
+        says=_ASKED,
+        answer="yes",
+        why="",
+        nodes=shown.nodes,
+        arcs=shown.arcs,
+        places=shown.places,
+        transitions=shown.transitions,
+        seconds=seconds,
+        assumes="; ".join(how),
+        evidence=(),
+        reduced=True,
+    )
 
 
 _ASKED = (

@@ -20,9 +20,11 @@ from pn2code.contest.portfolio import METHODS, answers, space
 from pn2code.contest.tables import Tables
 from pn2code.diagnostics import Diagnostics
 from pn2code.net import front
+from pn2code.net.flat import FlatNet
 from pn2code.semantics.evaluation.constants import compute
 from pn2code.semantics.game.token_game import GameError
 from pn2code.unfold.codes import UNFOLDING_FAULT
+from pn2code.unfold.plain import plain
 from pn2code.unfold.unfold import unfold
 
 EPILOG = """Examples:
@@ -90,16 +92,26 @@ def _read(folder: Path, examination: Examination) -> tuple[Tables, list[Asked]] 
     net = front.load(folder / "model.pnml", d, compute=compute)
     if net is None:
         stop(d, Format.FULL)
+    tables = _tables(net, d)
+    if tables is None:
+        return None
+    return tables, [] if examination == SPACE else asked(tables, examination, folder)
+
+
+def _tables(net: FlatNet, d: Diagnostics) -> Tables | None:
+    """The net unfolded, without names if that can be done; None after the reason, on the standard error."""
+    found = plain(net)
+    if found is not None:
+        return Tables.of_plain(net, found)
     unfolding = unfold(net, d)
     print_diagnostics(d.sorted(), Format.FULL)
     if unfolding is None or any(x.code == UNFOLDING_FAULT for x in d):
         return None
     try:
-        tables = Tables.of(unfolding)
+        return Tables.of(unfolding)
     except ValueError as error:
         typer.echo(f"pn2code: {error}", err=True)
         return None
-    return tables, [] if examination == SPACE else asked(tables, examination, folder)
 
 
 def _formulas(

@@ -189,6 +189,7 @@ def _own(trace: Path, opened: OpenNet, files: Path | None, claims: Claims) -> di
         "transition": result.transition,
         "ended": result.ended,
         "given": list(result.given),
+        "by_hand": result.by_hand,
         "time": game.marking.time if game else None,
         "engine": Engine.REFERENCE.value,
         "places": places(opened.flat, game.marking) if game else [],
@@ -210,6 +211,8 @@ def _sentence(trace: Path, result: dict[str, Any]) -> str:
     if result.get("given"):
         names = ", ".join(f"`{name}`" for name in result["given"])
         text += f"; it begins with other tokens than the net in {names}, as its header says"
+    if by_hand := result.get("by_hand"):
+        text += f"; a person has chosen {by_hand} of the values, pauses and fates of messages in it"
     if "ended" in result and not result["ended"]:
         text += "; its last line is missing, the run may have continued"
     return text + (f"\n{result['why']}" if result["why"] else "")

@@ -28,26 +28,29 @@ def repeat_own(
 
     opened = as_traced(opened, trace)
 
+    by_hand: list[int] = []
+
     def run(d: Diagnostics) -> Outcome | None:
-        _checked(trace)
+        by_hand.append(_checked(trace))
         return repeat(opened.flat, opened.storage, trace, files, d, initial=opened.initial)
 
     outcome = _run(run, form)
-    answer = _answer(outcome, opened)
+    answer = {**_answer(outcome, opened), "by_hand": sum(by_hand)}
     wrong = _claimed(trace, opened, files, claims, outcome) if answer["ok"] else None
     if wrong is not None:
         return {**answer, "ok": False, "failed_step": outcome.replayed + 1, "why": wrong}
     return answer
 
 
-def _checked(trace: Path) -> None:
-    """Compares the members of each line with docs/trace.md.
+def _checked(trace: Path) -> int:
+    """Compares the members of each line with docs/trace.md; how many say what a person has chosen.
 
     Raises:
         TraceRefusedError: a line has others.
         OSError: it cannot be read.
     """
     is_first = True
+    by_hand = 0
     with trace.open(encoding="utf-8", errors="surrogateescape") as lines:
         for number, text in enumerate(lines, 1):
             if not text.strip():
@@ -61,7 +64,9 @@ def _checked(trace: Path) -> None:
             wrong = form_problem(line, is_first=is_first)
             if wrong is not None:
                 raise TraceRefusedError(wrong, number)
+            by_hand += not is_first and "by" in line
             is_first = False
+    return by_hand
 
 
 def _claimed(

@@ -25,7 +25,6 @@ from pn2code.robot.commands import Command
 from pn2code.run.robot import Arm, InstantArm, RobotExit, RobotPlayer, script_specs
 from pn2code.run.sensors import Sensors
 from pn2code.semantics.evaluation.constants import compute
-from pn2code.tdl import flow
 from pn2code.tdl import tree as t
 from pn2code.tdl.check import CheckedProgram, check
 from pn2code.tdl.parse import parse
@@ -121,7 +120,7 @@ def robot(
 
         arm = MovingArm(executor, speed)
         _check_files(program, specs, name, d)
-    elif asked := _sensors_of(program):
+    elif asked := program.sensors:
         names = ", ".join(f"`{x}`" for x in asked)
         _usage(
             f"`{script.name}` asks {names}: the values of sensors are given in the cell, so --cell is needed"
@@ -175,17 +174,6 @@ def _default_directory(script: Path) -> Path:
         )
     memory = Path("/dev/shm")
     return memory / f"pn2code-{Path(source).stem}" if memory.is_dir() else script.parent / "shared"
-
-
-def _sensors_of(program: CheckedProgram) -> list[str]:
-    """The sensors that a script asks, each once."""
-    found = {
-        i.statement.sensor: None
-        for body in program.bodies.values()
-        for i in body.instructions
-        if isinstance(i, flow.Do) and isinstance(i.statement, t.Sense)
-    }
-    return list(found)
 
 
 def _in_cell(

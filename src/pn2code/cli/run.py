@@ -32,6 +32,7 @@ from pn2code.diagnostics import Diagnostics
 if TYPE_CHECKING:
     from pn2code.live.view import LiveView
     from pn2code.run.cell import Prepared
+    from pn2code.run.hand import Hand
 
 EPILOG = """Examples:
 
@@ -42,6 +43,8 @@ EPILOG = """Examples:
   pn2code run examples/riveting --unchecked
 
   pn2code run examples/riveting --realtime --live
+
+  pn2code run examples/sorting --realtime --live --intervene
 
   pn2code run examples/sorting --backend fake --cycles 50 --warm-up 5 --seed 1 --stops robot:600/30
 """
@@ -99,6 +102,25 @@ def run(
     port: Annotated[
         int, port_option("With --live, the port of the page. 0 is any that is free.")
     ] = 0,
+    intervene: Annotated[
+        bool,
+        typer.Option(
+            "--intervene",
+            help="With --live, let whoever has a token of its own play a robot or the fault: say what sensors see, "
+            "make a command fail, hold a robot, delay or lose messages.",
+        ),
+    ] = False,
+    patience: Annotated[
+        float | None,
+        typer.Option(
+            metavar="S",
+            min=0.1,
+            max=3600.0,
+            callback=finite,
+            help="With --intervene, how many seconds a person has to say what a sensor sees. (Default: 15, or half of "
+            "reply_timeout_s in cell.toml if that is less.)",
+        ),
+    ] = None,
     seed: Annotated[
         int | None,
         typer.Option(metavar="K", help="The seed of the values that sensors draw at random."),
@@ -157,6 +179,12 @@ def run(
         raise typer.BadParameter("it has a meaning only with `--realtime`", param_hint="--live")
     if port and not live:
         raise typer.BadParameter("it has a meaning only with `--live`", param_hint="--port")
+    if intervene and not live:
+        raise typer.BadParameter("it has a meaning only with `--live`", param_hint="--intervene")
+    if patience is not None and not intervene:
+        raise typer.BadParameter(
+            "it has a meaning only with `--intervene`", param_hint="--patience"
+        )
     if cycles is None and (warm_up or stops):
         raise typer.BadParameter(
             "it has a meaning only with `--cycles`",
@@ -191,7 +219,7 @@ def run(
         return
     album = Album(out, pictures=pictures, video=video)
     motion = Motion()
-    view = _live_view(port, speed) if live else None
+    view = _live_view(port, speed, may_act=intervene) if live else None
     with ExitStack() as stack:
         if view is not None:
             stack.enter_context(view)
@@ -214,7 +242,14 @@ def run(
                 who = view.interrupted() if view is not None else ""
                 return who or ("an interrupt" if wish.is_wanted() else "")
 
-            result = run_cell(cell, options, d, observers, ready=ready, interrupted=interrupted)
+            def hand_of(prepared: Prepared) -> Hand:
+                assert view is not None
+                return view.lend(prepared, patience)
+
+            result = run_cell(
+                cell, options, d, observers, ready=ready, interrupted=interrupted,
+                hand_of=hand_of if intervene else None,
+            )  # fmt: skip
             if view is not None and view.has_failed:
                 typer.echo("pn2code: the live page has ended before the run did", err=True)
         if result is not None and wish.is_wanted():
@@ -252,17 +287,19 @@ def run(
         raise typer.Exit(Exit.INTERRUPTED if wish.is_wanted() else Exit.MODEL)
 
 
-def _live_view(port: int, speed: float) -> LiveView:
+def _live_view(port: int, speed: float, *, may_act: bool) -> LiveView:
     """The live page; its address and the token of its Stop button are printed."""
     from pn2code.live.view import LiveView
     from pn2code.web.serving import PortTaken
 
     try:
-        view = LiveView(port, speed)
+        view = LiveView(port, speed, may_act=may_act)
     except PortTaken as why:
         typer.echo(f"pn2code: {why}; give another one, or leave --port out", err=True)
         raise typer.Exit(Exit.USAGE) from None
     typer.echo(f"live: {view.address}")
     typer.echo(f"with a Stop button that needs no token: {view.stop_address}")
     typer.echo(f"token of the Stop button: {view.stop_token}")
+    if may_act:
+        typer.echo(f"to play a robot or the fault: {view.act_address}")
     return view

@@ -30,7 +30,7 @@ from pn2code.verify.answers.properties import kind as kind_of
 from pn2code.verify.answers.waiting import Scripts
 from pn2code.verify.answers.who_waits import lacks_messages_alone, supervisor_waits
 from pn2code.verify.controller.control_types import TITLES
-from pn2code.verify.exploring.result import Exploration, Trace
+from pn2code.verify.exploring.result import Exploration, Known, Trace
 from pn2code.verify.report import control_text
 from pn2code.verify.report.properties_text import said as said_of
 from pn2code.verify.report.properties_text import told
@@ -225,6 +225,9 @@ def _row(name: str, what: str) -> Iterator[str]:
 
 def _sizes(said: Said) -> Iterator[str]:
     net, found = said.net, said.found
+    if found.known is not None:
+        yield from _of_counted(said, found.known)
+        return
     for name, what in basis.complete(found):
         more = ""
         if name == "Markings":
@@ -255,6 +258,21 @@ def _sizes(said: Said) -> Iterator[str]:
     if found.bounds is not None:
         yield from _row("Bounds", _most(net, found))
     yield from (x for line in _growing(net, found) for x in _row("Grows, perhaps", line))
+
+
+def _of_counted(said: Said, known: Known) -> Iterator[str]:
+    """Of a closed net whose markings were not counted to the end."""
+    net, found = said.net, said.found
+    more = f"{known.nodes:,} states stand for all of them, {known.seconds:.2f} s"
+    yield from _row("Markings", f"more than {found.nodes:,}, {found.seconds:.2f} s; {more}")
+    ends = "each has a token in a final place" if known.ends else "not known whether each is an end"
+    yield from _row("Dead markings", ends)
+    names = EngineNames(net)
+    never = [names.transition(i) for i in known.never]
+    yield from _row("Dead transitions", _listed(never, len(net.transitions)))
+    others = [names.transition(i) for i in found.dead_transitions() if i not in known.never]
+    if others:
+        yield from _row("Transitions not seen", _listed(others, len(net.transitions)))
 
 
 def _growing(net: FlatNet, found: Exploration) -> Iterator[str]:

@@ -63,8 +63,8 @@ class RunNotes:
         robot = str(line.get("robot"))
         if robot not in self._actions:
             return f"there is no robot or device `{robot}`"
-        if line["event"] == "stand":
-            return None  # it only takes time
+        if line["event"] in ("stand", "message"):
+            return None  # it only takes time; of messages the net knows that they arrive
         if line["event"] == "tool":
             begun, duration = float(line["t"]), float(line["duration"])
             if begun < self._busy_until[robot] - _ROUNDING_S:

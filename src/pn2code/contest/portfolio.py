@@ -39,6 +39,8 @@ METHODS = {
 _PAIRS = (("walk", "reach"), ("walk", "reach"), ("explore", "reach"), ("walk", "reach"))
 """For reachability and bounds the methods of the two lanes, by round; the last but one is repeated at the end."""
 _ROUNDS_S = (1.0, 3.0, 8.0, 20.0)
+_SIDE_ROUNDS = 3
+"""In so many rounds formulas of time are asked that only help with others."""
 REWRITING = "REWRITING"
 """What the initial marking and the formula alone decide."""
 _LEAST_S = 0.2
@@ -203,7 +205,8 @@ class _Portfolio:
             kind = "reach" if isinstance(wanted, Reach) else temporal.kind
             part = Part(kind, temporal.text(wanted))
         except (FormulaError, TooLargeError) as error:
-            line.why_not = str(error) or "its automaton is too large"
+            if not wanted.is_side:
+                line.why_not = str(error) or "its automaton is too large"
             return
         place = _Place(line, part, 0, wanted=wanted)
         self.places.append(place)
@@ -215,7 +218,10 @@ class _Portfolio:
     def _question(self, number: int) -> Question | None:
         place = self.places[number]
         if isinstance(place.wanted, Whole):
-            return Question(number, place.part.kind, TRUE, formula=place.wanted.formula)
+            of_time = place.wanted
+            return Question(
+                number, place.part.kind, TRUE, formula=of_time.formula, is_side=of_time.is_side
+            )
         return question(number, place.part, self.tables)
 
     def _start_structural(self) -> None:
@@ -248,6 +254,8 @@ class _Portfolio:
         while not all(line.is_done for line in self.lines):
             left = self.ends - time.monotonic()
             open_ = [n for n, p in enumerate(self.places) if p.is_open]
+            if number >= _SIDE_ROUNDS:
+                open_ = [n for n in open_ if not (self._is_side(n) and self._is_whole(n))]
             if number > len(_ROUNDS_S):  # only what has come since
                 open_ = [n for n in open_ if n >= self.given]
             if not open_ or left < _LEAST_S or self.only == "structure":
@@ -406,7 +414,10 @@ class _Portfolio:
     def _is_side(self, number: int) -> bool:
         """Whether a question is only asked since its answer would help with another one."""
         wanted = self.places[number].wanted
-        return isinstance(wanted, Reach) and wanted.is_side
+        return wanted is not None and wanted.is_side
+
+    def _is_whole(self, number: int) -> bool:
+        return isinstance(self.places[number].wanted, Whole)
 
     def _groups(self, numbers: list[int]) -> list[list[int]]:
         """The questions that have the same net."""

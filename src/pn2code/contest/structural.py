@@ -80,6 +80,7 @@ class Question:
         kind: "reach", "bound", "ctl" or "ltl".
         condition: what is to be reached; of a bound its sum.
         formula: of time; the condition is of no use then.
+        is_side: it only helps with another one.
         least: a number that the sum reaches.
         most: one that it never exceeds.
         smaller: the question about a reduced net, once there is one.
@@ -94,6 +95,7 @@ class Question:
     smaller: Smaller | None = None
     lock: threading.Lock = field(default_factory=threading.Lock)
     formula: Formula | None = None
+    is_side: bool = False
 
     def learn(self, least: int | None = None, most: int | None = None) -> int | None:
         """A bound is at least or at most that; the bound, if it is known now."""
@@ -208,6 +210,7 @@ class Structural(threading.Thread):
         new = [q for q in list(self.questions) if q.number not in self.seen]
         self.seen.update(q.number for q in new if q.is_done)
         still = [q for q in new if not q.is_done and q.formula is not None]
+        still.sort(key=lambda q: q.is_side)
         ends = time.monotonic() + self._left() / 3
         for i, q in enumerate(still):
             self._left()

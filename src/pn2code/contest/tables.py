@@ -23,7 +23,9 @@ from pn2code.contest.formulas import (
     Tokens,
     Truth,
 )
+from pn2code.net.flat import FlatNet
 from pn2code.unfold.net import Unfolding
+from pn2code.unfold.plain import PlainNet
 
 MOST = 1 << 30
 """The largest number of tokens, and weight, that the engine reads (`cnative/src/tables/tables_read.c`)."""
@@ -63,20 +65,27 @@ class Tables:
             raise ValueError("bindings that raise exceptions are not in the tables")
         if unfolding.has_priorities or any(t.inhibitors or t.resets for t in unfolding.transitions):
             raise ValueError("inhibitor arcs, reset arcs and priorities are not in the tables")
-        places = {
-            identity: unfolding.of_place[p.index]
-            for p in unfolding.net.places
-            for identity, _ in p.member_ids
-        }
-        of: dict[int, list[int]] = {t.index: [] for t in unfolding.net.transitions}
-        for t in unfolding.transitions:
-            of[t.transition].append(t.index)
-        return Tables(
+        made = PlainNet(
             unfolding.initial,
             tuple(t.pre for t in unfolding.transitions),
             tuple(t.post for t in unfolding.transitions),
-            places,
-            {t.id: tuple(of[t.index]) for t in unfolding.net.transitions},
+            tuple(t.transition for t in unfolding.transitions),
+            unfolding.of_place,
+        )
+        return Tables.of_plain(unfolding.net, made)
+
+    @staticmethod
+    def of_plain(net: FlatNet, unfolded: PlainNet) -> Tables:
+        """The tables of a net that was unfolded without names."""
+        of: dict[int, list[int]] = {t.index: [] for t in net.transitions}
+        for i, t in enumerate(unfolded.transition):
+            of[t].append(i)
+        return Tables(
+            unfolded.initial,
+            unfolded.pre,
+            unfolded.post,
+            {name: unfolded.of_place[p.index] for p in net.places for name, _ in p.member_ids},
+            {t.id: tuple(of[t.index]) for t in net.transitions},
         )
 
     def text(self, questions: Sequence[str], order: Sequence[int] = ()) -> str:

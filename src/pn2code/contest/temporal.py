@@ -6,7 +6,9 @@
     t.value                                  # True or False, once it is known
 
 A formula is a tree of `and`, `or` and `not` over formulas of paths, each of which is a question. What of it is about
-one marking is asked for as well: if it never has another value than in the initial marking, it is replaced by that.
+one marking is asked for as well: if it never has another value than in the initial marking, it is replaced by that. So
+is what a part of it follows from, or what follows from it, and each formula of paths without what stands within it
+(approximation.py).
 """
 
 from __future__ import annotations
@@ -15,12 +17,15 @@ from collections.abc import Iterator
 
 from pn2code.base.frozen import frozen
 from pn2code.contest import conditions, rewriting, stepwise
+from pn2code.contest.approximation import follows, is_nested, outline, suffices
 from pn2code.contest.formulas import Formula, FormulaError, Op, Truth
 from pn2code.contest.rewriting import is_plain
 from pn2code.contest.tables import Tables
 
 MOST_LEAVES = 12
 """Parts about one marking that are asked for, of one formula."""
+MOST_BOUNDS = 8
+"""And what follows from parts, or what they follow from."""
 
 
 @frozen
@@ -38,9 +43,15 @@ class Reach:
 
 @frozen
 class Whole:
-    """Whether a formula of paths holds in the initial marking."""
+    """Whether a formula of paths holds in the initial marking.
+
+    Args:
+        formula: of paths.
+        is_side: it is not asked for itself, but since another one follows from it or from its opposite.
+    """
 
     formula: Formula
+    is_side: bool = False
 
 
 Wanted = Reach | Whole
@@ -102,15 +113,48 @@ class Temporal:
         self._simplify()
 
     def _simplify(self) -> None:
-        rewrite = rewriting.branching if self.kind == "ctl" else rewriting.linear
         while True:
             before = self.formula
-            f = rewrite(before, self._constants.get)
-            f = self._put_in(rewriting.initially(f, self._holds))
-            self.formula = f
+            f = self._rewritten(self._constant(before))
+            self.formula = f = self._put_in(rewriting.initially(f, self._holds))
             if f == before:
                 break
         self.wanted = tuple(dict.fromkeys(self._questions()))
+
+    def _rewritten(self, f: Formula) -> Formula:
+        rewrite = rewriting.branching if self.kind == "ctl" else rewriting.linear
+        return rewrite(f, self._constants.get)
+
+    def _constant(self, f: Formula) -> Formula:
+        """The formula with true or false for parts that are the same everywhere, by what they imply or what does."""
+        if is_plain(f):
+            return f
+        assert isinstance(f, Op)
+        if self._is_nowhere(follows(f)):
+            return rewriting.FALSE
+        if self._is_nowhere(rewriting.negation(suffices(f))):
+            return rewriting.TRUE
+        if f.operator in "AE" and self.kind == "ctl":
+            (path,) = f.parts
+            assert isinstance(path, Op)
+            return Op(f.operator, (Op(path.operator, tuple(map(self._constant, path.parts))),))
+        parts = tuple(map(self._constant, f.parts))
+        return (
+            parts[0]
+            if f.operator in "AE" and isinstance(parts[0], Truth)
+            else Op(f.operator, parts)
+        )
+
+    def _is_nowhere(self, f: Formula) -> bool:
+        """Whether it is known that a formula about one marking never holds."""
+        if isinstance(f, Truth):
+            return not f.value
+        return self._values.get(rewriting.path("E", "F", f)) is False
+
+    def _outline(self, f: Formula, *, is_upper: bool) -> Formula:
+        """What f implies, or what implies it, with what is known put in."""
+        made = self._rewritten(outline(f, is_upper=is_upper))
+        return self._put_in(rewriting.initially(made, self._holds), is_exact=True)
 
     def _holds(self, f: Formula) -> bool:
         """Whether a formula about one marking holds in the initial one."""
@@ -118,15 +162,22 @@ class Temporal:
             self._initial[f] = _value(self.tables, f)
         return self._initial[f]
 
-    def _put_in(self, f: Formula) -> Formula:
-        """The values that are known."""
+    def _put_in(self, f: Formula, *, is_exact: bool = False) -> Formula:
+        """The values that are known; if not `is_exact`, those that follow from others as well."""
         if f in self._values:
             return Truth(self._values[f])
         match f:
             case Op("not", (part,)):
-                return rewriting.negation(self._put_in(part))
+                return rewriting.negation(self._put_in(part, is_exact=is_exact))
             case Op("and" | "or" as operator, parts):
-                return rewriting.joined(operator, map(self._put_in, parts))
+                return rewriting.joined(
+                    operator, [self._put_in(p, is_exact=is_exact) for p in parts]
+                )
+            case Op("A" | "E", _) if not is_exact and is_nested(f):
+                if self._outline(f, is_upper=True) == rewriting.FALSE:
+                    return rewriting.FALSE
+                if self._outline(f, is_upper=False) == rewriting.TRUE:
+                    return rewriting.TRUE
         return f
 
     def _questions(self) -> Iterator[Wanted]:
@@ -134,20 +185,53 @@ class Temporal:
         if self.is_whole:
             yield from map(Whole, nodes)
             return
-        for node in nodes:
-            match node:
-                case Op("E", (Op("F", (p,)),)) if is_plain(p):
-                    yield Reach(p)
-                case Op("A", (Op("G", (p,)),)) if is_plain(p):
-                    yield Reach(rewriting.negation(p))
-                case _:
-                    yield Whole(node)
-        of_paths = [n for n in nodes if not _is_reachability(n)]
+        asked = [_question(node) for node in nodes]
+        yield from asked
+        of_paths = [n for n, w in zip(nodes, asked, strict=True) if isinstance(w, Whole)]
         found = dict.fromkeys(leaf for n in of_paths for leaf in rewriting.leaves(n))
-        for leaf in list(found)[:MOST_LEAVES]:
-            other = rewriting.negation(leaf) if self._holds(leaf) else leaf
-            if rewriting.path("E", "F", other) not in self._values:
-                yield Reach(other, is_side=True)
+        sides: list[Wanted] = [
+            Reach(rewriting.negation(leaf) if self._holds(leaf) else leaf, is_side=True)
+            for leaf in list(found)[:MOST_LEAVES]
+        ]
+        sides += list(dict.fromkeys(w for n in of_paths for w in self._bounds(n)))[:MOST_BOUNDS]
+        for node in filter(is_nested, of_paths):
+            for is_upper in (True, False):
+                sides += map(_side, _nodes(self._outline(node, is_upper=is_upper)))
+        for wanted in sides:
+            if _question(_formula(wanted)) not in asked and _formula(wanted) not in self._values:
+                yield wanted
+
+    def _bounds(self, f: Formula) -> Iterator[Reach]:
+        """Whether what a part implies, or the opposite of what implies it, is somewhere."""
+        if is_plain(f):
+            return
+        assert isinstance(f, Op)
+        if f.operator not in "AE":
+            for somewhere in (follows(f), rewriting.negation(suffices(f))):
+                if not isinstance(somewhere, Truth) and not self._holds(somewhere):
+                    yield Reach(somewhere, is_side=True)
+        for part in f.parts:
+            yield from self._bounds(part)
+
+
+def _question(f: Formula) -> Wanted:
+    """A formula of paths as a question."""
+    match f:
+        case Op("E", (Op("F", (p,)),)) if is_plain(p):
+            return Reach(p)
+        case Op("A", (Op("G", (p,)),)) if is_plain(p):
+            return Reach(rewriting.negation(p))
+    return Whole(f)
+
+
+def _side(f: Formula) -> Wanted:
+    """A formula of paths as a question that only helps with another one."""
+    asked = _question(f)
+    return Reach(asked.condition, True) if isinstance(asked, Reach) else Whole(asked.formula, True)
+
+
+def _formula(asked: Wanted) -> Formula:
+    return rewriting.path("E", "F", asked.condition) if isinstance(asked, Reach) else asked.formula
 
 
 def check(tables: Tables, kind: str, f: Formula) -> None:
@@ -186,13 +270,6 @@ def _nodes(f: Formula) -> Iterator[Formula]:
                 yield from _nodes(part)
         case _:
             yield f
-
-
-def _is_reachability(f: Formula) -> bool:
-    match f:
-        case Op("E", (Op("F", (p,)),)) | Op("A", (Op("G", (p,)),)):
-            return is_plain(p)
-    return False
 
 
 def _value(tables: Tables, f: Formula) -> bool:

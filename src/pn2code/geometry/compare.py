@@ -160,8 +160,7 @@ class Comparison:
         q = leg.path.on_way(np.linspace(0.0, 1.0, _SAMPLES if leg.is_moving else 1))
         if isinstance(leg.path, LinearTrajectory | AlongTrajectory):
             q = np.vstack([q, leg.path.grid])
-        arm = kinematics.arm
-        off = np.minimum(q - arm.lower, arm.upper - q).min(axis=0)[kinematics.joints]
+        off = kinematics.turning_margins(q).min(axis=0)
         axis = int(np.argmin(off))
         worst = max(c.condition for c in kinematics.conditioning_many(q))
         return Margins(float(off[axis]), axis, worst if worst <= MOST_CONDITION else math.inf)

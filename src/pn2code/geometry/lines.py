@@ -14,8 +14,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pn2code.robot.kinematics import TURN, Kinematics
-from pn2code.robot.model import AXES
+from pn2code.robot.kinematics import Kinematics
 from pn2code.robot.motion import LinearTrajectory
 from pn2code.robot.transforms import Array, Flags
 
@@ -31,19 +30,20 @@ class Follower:
     def __init__(self, kinematics: Kinematics, path: LinearTrajectory) -> None:
         self._k, self._path = kinematics, path
         self.trouble = ""
-        self._speed = float(np.hypot(path.line.length, path.line.angle))
+        self._speed = float(np.hypot(np.hypot(path.line.length, path.line.angle), path.swivel))
         self._steep = _steepness(kinematics)
         self._planned = path.way(path.times)
 
     def pieces(self, a: Array, b: Array) -> tuple[Array, Array]:
-        """Of the pieces from a to b: joint positions in the middle, (n, 6), and how far axes are from there, (n, 6).
+        """Of the pieces from a to b: joint positions in the middle, (n, axes), and how far axes are from there.
 
         The latter is inf where it is not known.
         """
         count = len(a)
         parts = np.linspace(0.0, 1.0, SAMPLES + 1)
         s = a[:, None] + (b - a)[:, None] * parts
-        q = self._at(s.ravel()).reshape(count, SAMPLES + 1, AXES)
+        q = self._at(s.ravel())
+        q = q.reshape(count, SAMPLES + 1, q.shape[1])
         half = (b - a) * (self._speed / (2.0 * SAMPLES))
         turns, is_fine = self._bounds(q, s.reshape(count, SAMPLES + 1), half)
         middle = q[:, SAMPLES // 2]
@@ -60,35 +60,37 @@ class Follower:
 
     def _at(self, s: Array) -> Array:
         """Joint positions on the branch of the line, with the turns that the plan has there."""
-        rows = self._k.on_branch(self._path.line.at(s), self._path.branch)
+        rows = self._path.rows(s)
         index = np.searchsorted(self._planned, s).clip(0, len(self._planned) - 1)
-        near = self._path.grid[index]
-        return np.asarray(rows + TURN * np.round((near - rows) / TURN))
+        return self._k.unwound(rows, self._path.grid[index])
 
     def _bounds(self, q: Array, s: Array, half: Array) -> tuple[Array, Flags]:
-        """How far each axis turns from a sample to half way to the next, (n, samples, 6); for which pieces."""
+        """How far each axis turns from a sample to half way to the next, (n, samples, axes); for which pieces."""
         there = ~np.isnan(q).any(axis=(1, 2))
-        flat = np.nan_to_num(q).reshape(-1, AXES)
-        jacobian = self._k.jacobian_many(flat).reshape(*q.shape[:2], 6, AXES)
+        axes = q.shape[2]
+        flat = np.nan_to_num(q).reshape(-1, axes)
+        jacobian = self._k.led_jacobian(flat).reshape(*q.shape[:2], axes, axes)
+        more_steep, far = (x.reshape(q.shape[:2]) for x in self._k.led_steepness(flat))
+        steep = self._steep + more_steep
         sigma = np.linalg.svd(jacobian, compute_uv=False)[..., -1]
         w = half[:, None]
-        inside = sigma**2 - 2.0 * self._steep * w
-        y = (sigma - np.sqrt(np.maximum(inside, 0.0))) / self._steep
-        reach = sigma - self._steep * y
+        inside = sigma**2 - 2.0 * steep * w
+        y = (sigma - np.sqrt(np.maximum(inside, 0.0))) / steep
+        reach = sigma - steep * y
         # Neighbours are no further from each other than both half steps are long; else the branch leaps.
         leap = np.linalg.norm(np.diff(q, axis=1), axis=2)
-        is_fine = there & ((inside > 0.0) & (reach > 0.0)).all(axis=1)
+        is_fine = there & ((inside > 0.0) & (reach > 0.0) & (y <= far)).all(axis=1)
         is_fine &= (np.nan_to_num(leap, nan=np.inf) <= y[:, :-1] + y[:, 1:] + 1e-9).all(axis=1)
         line = self._path.line
         rotation = self._k.forward_many(flat)[:, :3, :3]
         spin = line.spins(rotation).reshape(*q.shape[:2], 3)
         shift = line.shifts(s.ravel()).reshape(spin.shape)
-        twist = np.concatenate([shift, spin], axis=2)
+        twist = self._k.led_twist(np.concatenate([shift, spin], axis=2), self._path.swivel)
         turns = np.zeros(q.shape)
         if is_fine.any():
             own = np.linalg.solve(jacobian[is_fine], twist[is_fine][..., None])[..., 0]
             least = sigma[is_fine]
-            other = self._steep * y[is_fine] / (least * reach[is_fine])
+            other = steep[is_fine] * y[is_fine] / (least * reach[is_fine])
             # The twist turns with the tool, by no more than the angle of half a step; that of an arc bends, too.
             way = w[is_fine] / max(self._speed, 1e-12)
             more = (other + w[is_fine] / least) * self._speed + way * line.bend / least
@@ -100,4 +102,4 @@ class Follower:
 def _steepness(kinematics: Kinematics) -> float:
     """A bound on the norm of dJ/dq: no column changes faster than the arm is long (m) and 1 for its turn."""
     reach = kinematics.longest
-    return float(AXES * np.sqrt(reach * reach + 1.0))
+    return float(len(kinematics.arm.lower) * np.sqrt(reach * reach + 1.0))

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pn2code.base.frozen import frozen
+from pn2code.geometry.legs import Leg
 from pn2code.geometry.situations import Situations
 from pn2code.geometry.words import words
 from pn2code.robot.along import AlongTrajectory
@@ -31,8 +32,7 @@ from pn2code.robot.commands import (
     MoveLinear,
     tcp_of,
 )
-from pn2code.robot.kinematics import BRANCHES, CHARACTERISTIC_LENGTH, TURN, Kinematics
-from pn2code.robot.model import AXES
+from pn2code.robot.kinematics import CHARACTERISTIC_LENGTH, Kinematics
 from pn2code.robot.motion import LinearTrajectory
 from pn2code.robot.robot_cell import CellRobot
 from pn2code.robot.transforms import Array, inverse, matrix_of
@@ -54,23 +54,31 @@ class Task:
         names: of the groups, the commands in words; (): they have none.
         shifts: of each pose how far tracks have carried the arm by then, in the frame of its base, (n, 3); None: it has
             no tracks.
+        angles: of each pose the arm angle, rad, (n,); None: the arm has none.
     """
 
     poses: Array
     groups: tuple[slice, ...]
     names: tuple[str, ...] = ()
     shifts: Array | None = None
+    angles: Array | None = None
 
     @property
     def carried(self) -> Array:
         """How far tracks have carried the arm, (n, 3)."""
         return np.zeros((len(self.poses), 3)) if self.shifts is None else self.shifts
 
+    @property
+    def elbows(self) -> Array:
+        """The arm angle of each pose, (n,); zeros where the arm has none."""
+        return np.zeros(len(self.poses)) if self.angles is None else self.angles
+
     @staticmethod
     def of(found: Situations, robot: CellRobot) -> Task:
         """All that a robot is told, from wherever it can be then; joint positions belong to the arm, not the task."""
         parts: list[Array] = []
         shifts: list[Array] = []
+        angles: list[Array] = []
         names: list[str] = []
         seen: set[tuple[float, ...]] = set()
         for leg in found.doing.planner.legs:
@@ -108,18 +116,33 @@ class Task:
             if tcp and (not robot.axes or isinstance(leg.path, LinearTrajectory | AlongTrajectory)):
                 back = inverse(robot.tcps[tcp].T_flange_tcp) @ robot.kinematics.T_flange_tcp
                 own = own @ back
-            ends = (own[[0, -1]], shift[[0, -1]])
+            angle = _arm_angles(robot, leg, len(own))
+            ends = (own[[0, -1]], shift[[0, -1]], angle[[0, -1]])
             key = tuple(x for e in ends for x in np.round(e, _DIGITS).ravel().tolist())
             if key not in seen:
                 seen.add(key)
                 parts.append(own)
                 shifts.append(shift)
+                angles.append(angle)
                 names.append(words(leg.command))
         last = np.cumsum([len(p) for p in parts], dtype=int).tolist()
         groups = tuple(slice(e - len(p), e) for e, p in zip(last, parts, strict=True))
         poses = np.concatenate(parts) if parts else np.zeros((0, 4, 4))
         carried = np.concatenate(shifts) if parts and robot.axes.tracks else None
-        return Task(poses, groups, tuple(names), carried)
+        is_redundant = parts and robot.kinematics.arm_angle is not None
+        elbows = np.concatenate(angles) if is_redundant else None
+        return Task(poses, groups, tuple(names), carried, elbows)
+
+
+def _arm_angles(robot: CellRobot, leg: Leg, count: int) -> Array:
+    """The arm angle (rad) at each pose of a leg; of arms that have none, zeros."""
+    path = leg.path.led if isinstance(leg.path, AlongTrajectory) else leg.path
+    if isinstance(path, LinearTrajectory):
+        return np.array([path.arm_angle_at(float(s)) or 0.0 for s in np.linspace(0.0, 1.0, count)])
+    said = robot.kinematics.arm_angle or 0.0
+    if isinstance(leg.command, MoveJoint | MoveLinear | MoveCircular):
+        said = said if leg.command.arm_angle is None else leg.command.arm_angle
+    return np.full(count, said)
 
 
 def _shift(robot: CellRobot, q: Array, command: MoveJoint | MoveLinear | MoveCircular) -> Array:
@@ -190,7 +213,7 @@ class Judged:
 
 def judge(robot: CellRobot, task: Task, T_world_base: Array) -> Judged:  # noqa: N803
     """What the arm could do with its base at each of these frames, (n, 4, 4)."""
-    each = max(1, _AT_ONCE // max(1, len(task.poses) * len(BRANCHES)))
+    each = max(1, _AT_ONCE // max(1, len(task.poses) * len(robot.kinematics.branches)))
     starts = range(0, len(T_world_base), each)
     parts = [_judged(robot, task, T_world_base[i : i + each]) for i in starts]
     columns = zip(*((p.reach, p.reached, p.condition, p.limit) for p in parts), strict=True)
@@ -208,12 +231,13 @@ def _judged(robot: CellRobot, task: Task, frames: Array) -> Judged:
     poses = T_base_world[:, None] @ task.poses
     poses[..., :3, 3] -= task.carried  # tracks go where the base has them
     poses = poses.reshape(-1, 4, 4)
-    rows = kinematics.all_branches(poses)
+    angles = None if task.angles is None else np.tile(task.angles, count)
+    rows = kinematics.all_branches(poses, angles)
     margin = _margins(kinematics, rows)
     inside = margin >= 0.0
     condition = np.full(rows.shape[:2], np.inf)
     condition[inside] = _conditions(kinematics, rows[inside])
-    shape = (count, len(task.poses), len(BRANCHES))
+    shape = (count, len(task.poses), len(kinematics.branches))
     margin, condition = margin.reshape(shape), condition.reshape(shape)
     reached = np.zeros((count, len(task.groups)), bool)
     worst, least = np.zeros(count), np.full(count, np.inf)
@@ -222,7 +246,7 @@ def _judged(robot: CellRobot, task: Task, frames: Array) -> Judged:
         own = condition[:, group].max(axis=1)
         is_line = group.stop - group.start > 1
         if robot.branch is not None and not is_line:
-            others = [b.index for b in BRANCHES if b != robot.branch]
+            others = [b.index for b in kinematics.branches if b != robot.branch]
             own[:, others] = np.inf
         best = own.argmin(axis=1)
         found = own[there, best]
@@ -241,13 +265,17 @@ def _margins(kinematics: Kinematics, rows: Array) -> Array:
     """Of each row the least distance from a limit with the turns that leave most; -inf: it is outside."""
     lower, upper = kinematics.arm.lower, kinematics.arm.upper
     middle = (lower + upper) / 2.0
-    q = rows + TURN * np.round((middle - rows) / TURN)
-    margin = np.nan_to_num(np.minimum(q - lower, upper - q).min(axis=-1), nan=-1.0)
+    q = kinematics.unwound(rows, middle)
+    each = kinematics.arm.margins(q)
+    margin = np.nan_to_num(each.min(axis=-1), nan=-1.0)
+    if kinematics.slides.any():  # of these it only matters whether they are inside
+        least = np.nan_to_num(each[..., ~kinematics.slides].min(axis=-1), nan=-1.0)
+        margin = np.where(margin >= 0.0, least, margin)
     return np.where(margin >= 0.0, margin, -np.inf)
 
 
 def _conditions(kinematics: Kinematics, q: Array) -> Array:
-    jacobian = kinematics.jacobian_many(q.reshape(-1, AXES))
+    jacobian = kinematics.jacobian_many(q)
     jacobian[:, :3] /= CHARACTERISTIC_LENGTH
     sigma = np.linalg.svd(jacobian, compute_uv=False)
     return np.asarray(sigma[:, 0] / np.maximum(sigma[:, -1], 1e-12))

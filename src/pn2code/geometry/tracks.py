@@ -161,7 +161,8 @@ class Track:
         self._ends = np.stack([x.ends for x in self.links])
         self._joints = np.array([x.joint for x in self.links])
         self._moved = np.stack([shape.moved(x) for x in self.links])
-        self._tracks = shape.robot.arm.tracks
+        arm = shape.robot.arm
+        self._slides = [arm.slides(j) for j in range(len(arm.axes))]
         self.names = {x.name: i for i, x in enumerate(self.links)}
         self._rows: dict[tuple[float, float], tuple[int, int]] = {}
         self._kept: list[Knots] = []
@@ -234,7 +235,7 @@ class Track:
         ends = (self._ends @ turn + shift) @ base[:3, :3].T + base[:3, 3]
         spread = np.zeros((len(q), len(self.links)))
         for j in reversed(range(turns.shape[1])):
-            if j < self._tracks:
+            if self._slides[j]:
                 more = spread + turns[:, j, None]
             else:
                 arms = corners - frames[j][:, None, None, :3, 3]
@@ -261,5 +262,5 @@ class Track:
         arm = float(np.linalg.norm(corners - tcp[:3, 3], axis=1).max())
         carried = 0.0
         if isinstance(path, AlongTrajectory):
-            carried = float(np.abs(path.delta[: self._tracks]).sum())
+            carried = float(np.abs(path.delta[: self.shape.robot.arm.tracks]).sum())
         return np.asarray(half * (path.line.length + path.line.angle * arm + carried))

@@ -47,16 +47,19 @@ def words(command: Command | None) -> str:
         case None:
             return "stands"
         case MoveJoint(target=pose, frame=frame):
-            return f"joint {numbers(pose)}{_within(frame)}{_by(command.tcp)}{_with(command.along)}"
+            how = f"{_by(command.tcp)}{_with(command.along)}{_elbow(command.arm_angle)}"
+            return f"joint {numbers(pose)}{_within(frame)}{how}"
         case MoveAxes(axes=axes):
             return f"axes {' '.join(_short(math.degrees(v)) for v in axes)}{_with(command.along)}"
         case MoveExternal(along=along):
             return f"external{_with(along)}"
         case MoveLinear(target=pose, frame=frame):
-            return f"linear {numbers(pose)}{_within(frame)}{_by(command.tcp)}{_with(command.along)}"
+            how = f"{_by(command.tcp)}{_with(command.along)}{_elbow(command.arm_angle)}"
+            return f"linear {numbers(pose)}{_within(frame)}{how}"
         case MoveCircular(target=pose, via=via, frame=frame):
             places = " ".join(_short(1000.0 * v) for v in (via.x, via.y, via.z))
-            return f"circular {numbers(pose)} via {places}{_within(frame)}{_by(command.tcp)}{_with(command.along)}"
+            how = f"{_by(command.tcp)}{_with(command.along)}{_elbow(command.arm_angle)}"
+            return f"circular {numbers(pose)} via {places}{_within(frame)}{how}"
         case MoveHome():
             return "home"
         case Measure():
@@ -69,6 +72,10 @@ def words(command: Command | None) -> str:
 
 def _within(frame: str) -> str:
     return "" if frame == "world" else f" in {frame}"
+
+
+def _elbow(arm_angle: float | None) -> str:
+    return "" if arm_angle is None else f", arm angle {_short(math.degrees(arm_angle))}"
 
 
 def _by(tcp: str) -> str:

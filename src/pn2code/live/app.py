@@ -1,9 +1,10 @@
 """The application of the live view: the page, and a WebSocket for each page.
 
-    app = application(show, hall, stopping)
+    app = application(show, hall, stopping, acting)
 
-`/` is the page. `/ws?at=N` gives all updates after the first N as lists of JSON objects, as they come; all that
-pages say is `{"do": "stop", "token": ...}`, which stops the cell if the token is the one that the terminal has printed.
+`/` is the page. `/ws?at=N` gives all updates after the first N as lists of JSON objects, as they come. Pages say
+`{"do": "stop", "token": ...}`, which stops the cell if the token is the one that the terminal has printed, and, where a
+person may interfere with the run, `{"do": "join", "token": ...}` and then `{"do": "act", "wish": {...}}`.
 """
 
 from __future__ import annotations
@@ -25,6 +26,8 @@ from pn2code.live.hall import Hall, text_of
 from pn2code.replay.served import Served
 
 MOST_PAGES = 64
+MOST_WISH = 2000
+"""Characters: with what is around it, it goes through a pipe in one piece."""
 PREPARING = (
     '<!DOCTYPE html><html lang="en"><head><meta charset="utf-8"><meta http-equiv="refresh" content="1">'
     "<title>pn2code</title></head><body><p>The cell is being built. This page comes by itself.</p></body></html>"
@@ -52,9 +55,7 @@ class Stopping:
 
     def ask(self, token: object) -> bool:
         """Stops the cell; False: the token is another one."""
-        if not self._token or not isinstance(token, str):
-            return False
-        if not secrets.compare_digest(token.encode("utf-8", "replace"), self._token.encode()):
+        if not _is_same(token, self._token):
             return False
         if not self.is_wanted:
             self.is_wanted = True
@@ -62,15 +63,59 @@ class Stopping:
         return True
 
 
-def application(show: Callable[[], Served | None], hall: Hall, stopping: Stopping) -> Starlette:
+class Acting:
+    """Who may interfere with the run: whoever has the token.
+
+    Args:
+        token: what the terminal has printed; "": nobody may.
+        say: hands an object to the run: `{"present": 2}` or `{"wish": {...}}`.
+    """
+
+    def __init__(self, token: str, say: Callable[[dict[str, Any]], None]) -> None:
+        self._token, self._say = token, say
+        self.present = 0
+
+    def join(self, token: object) -> bool:
+        """One more is there; False: the token is another one."""
+        if not _is_same(token, self._token):
+            return False
+        self._count(1)
+        return True
+
+    def leave(self) -> None:
+        """One fewer."""
+        self._count(-1)
+
+    def _count(self, by: int) -> None:
+        self.present += by
+        self._say({"present": self.present})
+
+    def act(self, wish: object) -> bool:
+        """Passes a wish on; False: it is none."""
+        if not isinstance(wish, dict) or len(json.dumps(wish)) > MOST_WISH:
+            return False
+        self._say({"wish": wish})
+        return True
+
+
+def _is_same(given: object, token: str) -> bool:
+    if not token or not isinstance(given, str):
+        return False
+    return secrets.compare_digest(given.encode("utf-8", "replace"), token.encode())
+
+
+def application(
+    show: Callable[[], Served | None], hall: Hall, stopping: Stopping, acting: Acting | None = None
+) -> Starlette:
     """The application.
 
     Args:
         show: the page; None while it is not known yet.
         hall: what is told.
         stopping: who may stop the cell.
+        acting: who may interfere with it; None: nobody.
     """
-    desk = _Desk(hall, stopping)
+    desk = _Desk(hall, stopping, acting or Acting("", lambda said: None))
 
     async def index(request: Request) -> Response:
         until = time.monotonic() + PATIENCE_S
@@ -86,8 +131,8 @@ def application(show: Callable[[], Served | None], hall: Hall, stopping: Stoppin
 class _Desk:
     """The pages that are open."""
 
-    def __init__(self, hall: Hall, stopping: Stopping) -> None:
-        self._hall, self._stopping = hall, stopping
+    def __init__(self, hall: Hall, stopping: Stopping, acting: Acting) -> None:
+        self._hall, self._stopping, self._acting = hall, stopping, acting
 
     async def serve(self, socket: WebSocket) -> None:
         """One page, from its first word to its last."""
@@ -122,19 +167,33 @@ class _Desk:
             )
 
     async def _hear(self, socket: WebSocket) -> None:
-        while True:
-            try:
-                text = await socket.receive_text()
-            except (WebSocketDisconnect, KeyError, RuntimeError):  # KeyError: a message of bytes
-                return
-            said = _object(text)
-            if said.get("do") != "stop":
-                await socket.send_text(text_of({"stop": "what is not understood is not done"}))
-            elif self._stopping.ask(said.get("token")):
-                await socket.send_text(text_of({"stop": "stopping"}))
-            else:
-                await asyncio.sleep(_WRONG_S)
-                await socket.send_text(text_of({"stop": "wrong token"}))
+        has_joined = False
+        try:
+            while True:
+                try:
+                    text = await socket.receive_text()
+                except (WebSocketDisconnect, KeyError, RuntimeError):  # KeyError: bytes
+                    return
+                said = _object(text)
+                match said.get("do"):
+                    case "stop" if self._stopping.ask(said.get("token")):
+                        answer = {"stop": "stopping"}
+                    case "join" if has_joined or self._acting.join(said.get("token")):
+                        has_joined = True
+                        answer = {"act": "joined"}
+                    case "act" if has_joined and self._acting.act(said.get("wish")):
+                        answer = {"act": "passed on"}
+                    case "act":
+                        answer = {"act": "not understood" if has_joined else "not joined"}
+                    case "stop" | "join" as what:
+                        await asyncio.sleep(_WRONG_S)
+                        answer = {"stop" if what == "stop" else "act": "wrong token"}
+                    case _:
+                        answer = {"stop": "what is not understood is not done"}
+                await socket.send_text(text_of(answer))
+        finally:
+            if has_joined:
+                self._acting.leave()
 
 
 def _object(text: str) -> dict[str, Any]:

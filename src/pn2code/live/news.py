@@ -139,6 +139,7 @@ class News:
                 "counts": dict(self._counts),
             },
             "verdict": verdict,
+            "hand": picture.get("hand"),
         }
 
     def _standing(self, picture: Json) -> tuple[list[Json], list[Json]]:

@@ -1,12 +1,14 @@
 """The server of the live view, as a process of its own: `python -m pn2code.live.server SOCKET`.
 
 SOCKET is the number of a socket that listens already. Standard input brings things that the run hands over
-(`handing`): first `Start`, then `Cell`, then pictures; standard output is where `stop` is written if somebody may and
-wants to stop the cell. It ends when its standard input does, after the pages have got the last update.
+(`handing`): first `Start`, then `Cell`, then pictures. On standard output it writes lines: `stop` if somebody may and
+wants to stop the cell, and what those say who interfere with it (`hearing`). It ends when its standard input does,
+after the pages have got the last update.
 """
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 import socket
@@ -15,12 +17,13 @@ import threading
 import time
 import traceback
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from typing import Any
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
 from pn2code.cell.partition import Partition
-from pn2code.live.app import Stopping, application
+from pn2code.live.app import Acting, Stopping, application
 from pn2code.live.hall import Hall
 from pn2code.live.handing import taken
 from pn2code.live.news import News
@@ -39,11 +42,13 @@ LEAST_S = 0.2
 
 @frozen
 class Start:
-    """What the server needs to listen: its port, the token of its address, and that of the Stop button."""
+    """What the server needs to listen: its port, the token of its address, that of the Stop button, and that of those
+    who may interfere with the run ("": nobody may)."""
 
     port: int
     token: str
     stop_token: str
+    act_token: str = ""
 
 
 @frozen
@@ -71,13 +76,16 @@ class Server:
         things: Iterator[Any],
         stop: Callable[[], None],
         rest: Callable[[], object],
+        say: Callable[[dict[str, Any]], None] = lambda said: None,
     ) -> None:
         self._things = things
         self._rest = rest
         self._hosts = tuple(f"{host}:{start.port}" for host in HOSTS)
         self._page: Served | None = None
         self.hall = Hall()
-        inner = application(lambda: self._page, self.hall, Stopping(start.stop_token, stop))
+        acting = Acting(start.act_token, say)
+        stopping = Stopping(start.stop_token, stop)
+        inner = application(lambda: self._page, self.hall, stopping, acting)
         self.app = Guard(inner, start.token, start.port)
 
     def begin(self, end: Callable[[], None]) -> None:
@@ -124,11 +132,15 @@ def main(arguments: list[str]) -> None:
     def stop() -> None:
         os.write(1, b"stop\n")
 
+    def say(said: dict[str, Any]) -> None:
+        with suppress(OSError):  # the run has ended
+            os.write(1, json.dumps(said).encode() + b"\n")
+
     def rest() -> None:
         while stream.read(1 << 16):
             pass
 
-    server = Server(start, things(), stop, rest)
+    server = Server(start, things(), stop, rest, say)
     with socket.socket(fileno=int(arguments[0])) as listening:
         serve(server.app, listening, begun=lambda: None, fed=server.begin)
 

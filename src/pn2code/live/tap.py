@@ -128,6 +128,7 @@ class Tap:
             "activity": engine.activity,
             "punctuality": engine.punctuality.described(),
             "left_out": self._left_out,
+            "hand": None if engine.hand is None else engine.hand.told(),
             **more,
         }
         self._handing.give(picture)
@@ -201,11 +202,20 @@ def _side(engine: RealtimeEngine, robot: RobotRunner) -> Json:
             "line": 0,
             "since": None,
         }
+    is_held = engine.hand is not None and engine.hand.holds(robot.name)
+    if robot.asking is not None:
+        return {
+            "name": robot.name,
+            "state": "asks",
+            "text": f"what sensor {robot.asking.sensor} sees",
+            "line": robot.asking.line,
+            "since": None,
+        }
     if robot.motion is not None:
         text = kind_and_label(robot.motion.command)[1]
         return {
             "name": robot.name,
-            "state": "works",
+            "state": "is held" if is_held else "works",
             "text": text,
             "line": robot.line,
             "since": robot.motion.began,
@@ -214,7 +224,7 @@ def _side(engine: RealtimeEngine, robot: RobotRunner) -> Json:
     text = f"for {' or '.join(waiting.names)}" if waiting else ""
     return {
         "name": robot.name,
-        "state": "waits",
+        "state": "is held" if is_held else "waits",
         "text": text,
         "line": waiting.line if waiting else 0,
         "since": None,

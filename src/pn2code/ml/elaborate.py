@@ -13,10 +13,10 @@ from __future__ import annotations
 
 import sys
 from collections import Counter
-from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence, Set
+from collections.abc import Callable, Hashable, Iterable, Iterator, Mapping, Sequence, Set
 from contextlib import contextmanager
 from dataclasses import field, replace
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -75,6 +75,17 @@ Examine = Callable[[s.Dec, Diagnostics], None]
 
 _RECURSION_LIMIT = 20_000
 """Python frames for one text: nesting is limited by `fixity.MAX_DEPTH`, chains of operators are not."""
+
+
+def _nothing(dec: s.Dec, d: Diagnostics) -> None:
+    """An `Examine` that finds nothing wrong."""
+
+
+@cache
+def _of_library(name: str) -> tuple[SourceText, tuple[s.Dec, ...]]:
+    """A text of the library, and its declarations: they are the same for all nets of a process."""
+    text = SourceText(library.declaration(name), Origin(f"library/{name}.sml", 1, 1))
+    return text, parse_program(text, Diagnostics()) or ()
 
 
 @record
@@ -264,7 +275,7 @@ class Elaborator:
             hint="rename one of them",
         )
 
-    def declarations(self, text: SourceText, examine: Examine = lambda dec, d: None) -> None:
+    def declarations(self, text: SourceText, examine: Examine = _nothing) -> None:
         """An `ml` element: any number of CPN ML declarations.
 
         Args:
@@ -275,6 +286,10 @@ class Elaborator:
         if program is None:
             self._break(declared_names(text), ())
             return
+        self._each(text, program, examine)
+
+    def _each(self, text: SourceText, program: Iterable[s.Dec], examine: Examine) -> None:
+        """Declarations one after the other."""
         for dec in program:
             before = len(self._d.items)
             self._border(text, partial(self._declaration, text, dec, examine))
@@ -283,9 +298,7 @@ class Elaborator:
                 self._break(names, types_declared_by(dec))
                 break_modules(dec, self._ctx.top)
 
-    def _declaration(
-        self, text: SourceText, dec: s.Dec, examine: Examine = lambda dec, d: None
-    ) -> None:
+    def _declaration(self, text: SourceText, dec: s.Dec, examine: Examine = _nothing) -> None:
         self._repeats.clear()
         resolved = resolve_declaration(dec, self._fixities, self._d)
         if resolved is None:
@@ -696,8 +709,7 @@ class Elaborator:
         self._ctx.top = self._ctx.scope = self._library_top
         self._ctx.colsets, self._fixities = {}, dict(INFIX)
         try:
-            origin = Origin(f"library/{name}.sml", 1, 1)
-            self.declarations(SourceText(library.declaration(name), origin))
+            self._each(*_of_library(name), _nothing)
         finally:
             self._ctx.top, self._ctx.scope, self._ctx.colsets, self._fixities = before
 

@@ -100,15 +100,24 @@ def noted(line: Mapping[str, Any]) -> Json | None:
     """A line of a trace as an event of a robot or device; None: it is none."""
     match line.get("event"):
         case "sense":
-            text = f"sensor {line['sensor']}: {line['value']}"
+            text = f"sensor {line['sensor']}: {line['value']}{_chosen(line)}"
             return {"t": line["t"], "kind": "sense", "party": line["robot"], "text": text}
         case "stand":
-            text = f"stands for {line['duration']:.2f} s"
+            began = f" since {line['t'] - line['duration']:.2f} s" if _chosen(line) else ""
+            text = f"stands for {line['duration']:.2f} s{began}{_chosen(line)}"
+            return {"t": line["t"], "kind": "stand", "party": line["robot"], "text": text}
+        case "message":
+            late = f" by {line['seconds']:g} s" if "seconds" in line else ""
+            text = f"message {line['channel']}: {line['fate']}{late}{_chosen(line)}"
             return {"t": line["t"], "kind": "stand", "party": line["robot"], "text": text}
         case "part":
             text = f"{line['effect']} {line['part']}"
             return {"t": line["t"], "kind": "part", "party": line["robot"], "text": text}
     return None
+
+
+def _chosen(line: Mapping[str, Any]) -> str:
+    return f", chosen by a {line['by']}" if "by" in line else ""
 
 
 def _curves(record: RunRecord, config: CellConfig, near: float) -> list[Json]:

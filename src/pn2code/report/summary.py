@@ -19,6 +19,7 @@ from pn2code.run.record import RunRecord, merged_rows, summary_counts
 
 MOST_PARTS = 12
 """on one screen"""
+MOST_BY_HAND = 12
 MOST_NUMBERS = 12
 """in one line"""
 KINDS = ("joint", "home", "linear", "tool", "measure", "wait")
@@ -86,6 +87,15 @@ def summarise(
         "accuracy": record.accuracy,
         "pictures": record.pictures,
         **({"parts": _parts(record)} if record.parts else {}),
+        **(
+            {
+                "by_hand": [
+                    {"t": round(h.t, 6), "robot": h.robot, "text": h.text} for h in record.by_hand
+                ]
+            }
+            if record.by_hand
+            else {}
+        ),
         "warnings": [
             {"t": round(w.t, 6), "robot": w.robot, "text": w.text} for w in record.warnings
         ],
@@ -201,6 +211,12 @@ def page(summary: dict[str, Any]) -> RenderableType:
         facts.add_row("further parts", f"{len(summary['parts']) - MOST_PARTS}, see summary.json")
     for name, value in summary["accuracy"].items():
         facts.add_row(name, f"{value:.2e} mm")
+
+    by_hand = summary.get("by_hand", [])
+    for h in by_hand[:MOST_BY_HAND]:
+        facts.add_row("by a person", f"{h['robot']}: {h['text']} ({h['t']:.2f} s)")
+    if len(by_hand) > MOST_BY_HAND:
+        facts.add_row("", f"{len(by_hand) - MOST_BY_HAND} more, see summary.json")
 
     parts: list[RenderableType] = [head, "", facts, _times(summary)]
     parts += [

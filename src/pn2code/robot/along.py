@@ -23,6 +23,7 @@ from pn2code.robot.motion import (
     MotionLimits,
     Pace,
     Still,
+    Swivel,
     Way,
     arc_pace,
     led,
@@ -42,6 +43,7 @@ class Led:
         T_base_tcp: where the TCP is.
         table: the turntable on whose plate it is led, by its index among the axes; None: in the world.
         target: where it goes, on the plate or in the base frame; via: of an arc.
+        swivel: of the arm angle, where the arm has one.
     """
 
     start: Array
@@ -50,6 +52,7 @@ class Led:
     table: int | None
     target: Array
     via: Array | None = None
+    swivel: Swivel | None = None
 
 
 class Coordinated:
@@ -178,10 +181,10 @@ def plan_led(
     inner: Line | Arc
     if wanted.via is None:
         inner = Line(first, wanted.target)
-        pace = line_pace(inner, limits, speed)
+        pace = line_pace(inner, limits, speed, wanted.swivel)
     else:
         inner = Arc(first, wanted.via, wanted.target)
-        pace = arc_pace(inner, limits, speed)
+        pace = arc_pace(inner, limits, speed, wanted.swivel)
     delta = np.abs(wanted.end - wanted.start)
     delta[k.joints] = 0.0
     pace = _with(pace, delta, limits)
@@ -192,7 +195,7 @@ def plan_led(
     law = Law(*pace)
     own = replace(limits, axis_velocity=limits.axis_velocity[k.joints])
     try:
-        path = led(k.alone, way, law, wanted.start[k.joints], own)
+        path = led(k.alone, way, law, wanted.start[k.joints], own, wanted.swivel)
     except MotionFault as fault:
         raise _in_base(fault, way, law) from None
     return AlongTrajectory(path, k, wanted, way)

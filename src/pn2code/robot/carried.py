@@ -235,7 +235,7 @@ class WithAxes(Kinematics):
 
     # Of the arm alone
 
-    def _closed_form(self, T_base_tcp: Array) -> Array:
+    def _closed_form(self, T_base_tcp: Array, arm_angle: Array | None = None) -> Array:
         raise AssertionError(
             "the inverse is that of the arm alone: where its tracks stand is not known"
         )
@@ -252,26 +252,34 @@ class WithAxes(Kinematics):
         """`T_base_tcp`, and the conditioning of the arm."""
         return self.forward_many(q), self.conditioning_many(q)
 
+    def arm_angle_of(self, q: ArrayLike) -> float | None:
+        """That of the arm."""
+        return self.alone.arm_angle_of(np.asarray(q, float)[self.joints])
+
     def branch_of(self, q: ArrayLike) -> Branch:
         """The branch of the arm."""
         return self.alone.branch_of(np.asarray(q, float)[self.joints])
 
     def nearest(
-        self, T_base_tcp: Array, reference: ArrayLike, branch: Branch | None = None
+        self,
+        T_base_tcp: Array,
+        reference: ArrayLike,
+        branch: Branch | None = None,
+        arm_angle: float | None = None,
     ) -> Solution | None:
         """As of the arm, with the external axes where they are in `reference`."""
         q = np.asarray(reference, float)
-        found = self.alone.nearest(inverse(self.T_base_arm(q)) @ T_base_tcp, q[self.joints], branch)
+        target = inverse(self.T_base_arm(q)) @ T_base_tcp
+        found = self.alone.nearest(target, q[self.joints], branch, arm_angle)
         return None if found is None else Solution(found.branch, self.whole(q, found.q))
 
     def limit_margin(self, q: ArrayLike) -> tuple[float, int]:
         """Of the joints of the arm; of an external axis only where it is outside."""
         q = np.asarray(q, float)
-        margins = np.minimum(q - self.arm.lower, self.arm.upper - q)
-        own = margins[self.joints]
+        margins = self.arm.margins(q)
         outside = np.array(margins)
         outside[self.joints] = np.inf
         if outside.min() < -1e-9:
             return float(outside.min()), int(np.argmin(outside))
-        axis = int(np.argmin(own))
-        return float(own[axis]), self.joints.start + axis
+        own, axis = self.alone.limit_margin(q[self.joints])
+        return own, self.joints.start + axis

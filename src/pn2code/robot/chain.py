@@ -1,5 +1,7 @@
 """The kinematic chain of an arm: frames of many joint positions at once, and what follows from the axes.
 
+Axes turn or slide; how many there are the URDF says.
+
 Also derives the parameters of the closed-form inverse from the URDF's axes (`derive`).
 """
 
@@ -27,47 +29,64 @@ def cross(a: Array, b: Array) -> Array:
 
 
 class Chain:
-    """Forward kinematics of n joint positions (n, 6) at once; arrays of frames are (n, 4, 4)."""
+    """Forward kinematics of n joint positions (n, axes) at once; arrays of frames are (n, 4, 4).
+
+    Attributes:
+        count: how many axes there are; slides: which of them are no rotations.
+        zero: `T_base_joint` of the axes and `T_base_flange` with all axes at zero.
+    """
 
     def __init__(self, arm: Arm) -> None:
         before: list[Array] = []
+        slides: list[bool] = []
         self.axes: list[Array] = []
         fixed = np.eye(4)
         for joint in arm.chain:
             fixed = fixed @ joint.T_parent_joint
             if joint.type != "fixed":
                 before.append(fixed)
+                slides.append(joint.type == "prismatic")
                 self.axes.append(np.array(joint.axis))
                 fixed = np.eye(4)
         self.before = np.stack(before)
+        self.count = len(before)
+        self.slides = np.array(slides)
         self.end = fixed
+        self._sliding = np.flatnonzero(self.slides)
         self._k = np.stack([skew(a) for a in self.axes])
         self._kk = self._k @ self._k
-        self.zero = np.stack([f[0] for f in self.frames(np.zeros((1, AXES)))])
-        self.p2, self.p3, self.wrist_centre = self._points()
-        self._centre_in_4 = (np.linalg.inv(self.zero[3]) @ np.append(self.wrist_centre, 1.0))[:3]
+        self.zero = np.stack([f[0] for f in self.frames(np.zeros((1, self.count)))])
+        self.is_six = self.count == AXES and not slides.count(True)
+        if self.is_six:
+            self.p2, self.p3, self.wrist_centre = self._points()
+            self._centre_in_4 = (np.linalg.inv(self.zero[3]) @ np.append(self.wrist_centre, 1.0))[
+                :3
+            ]
 
     def frames(self, q: Array) -> list[Array]:
-        """`T_base_joint` of axes 1 to 6 (after their own rotation) and `T_base_flange`."""
+        """`T_base_joint` of all axes (after their own motion) and `T_base_flange`."""
         # Rodrigues: R = I + sin K + (1 - cos) K^2, all axes at once.
-        turns = np.zeros((len(q), AXES, 4, 4))
+        turns = np.zeros((len(q), self.count, 4, 4))
         turns[:, :, 3, 3] = 1.0
         sine, versine = np.sin(q)[..., None, None], (1.0 - np.cos(q))[..., None, None]
         turns[:, :, :3, :3] = np.eye(3) + sine * self._k + versine * self._kk
+        for i in self._sliding.tolist():
+            turns[:, i, :3, :3] = np.eye(3)
+            turns[:, i, :3, 3] = q[:, i, None] * self.axes[i]
         steps = self.before @ turns
         out = [steps[:, 0]]
-        for i in range(1, AXES):
+        for i in range(1, self.count):
             out.append(out[-1] @ steps[:, i])
         out.append(out[-1] @ self.end)
         return out
 
     def axis(self, i: int, frames: Sequence[Array]) -> Array:
-        """Direction of axis i (0..5) in the base frame, (n, 3)."""
+        """Direction of axis i (from 0) in the base frame, (n, 3)."""
         return np.asarray(frames[i][:, :3, :3] @ self.axes[i])
 
     def all_axes(self, frames: Sequence[Array]) -> Array:
-        """Directions of the six axes in the base frame, (n, 6, 3)."""
-        return np.stack([frames[i][:, :3, :3] @ self.axes[i] for i in range(AXES)], axis=1)
+        """Directions of all axes in the base frame, (n, axes, 3)."""
+        return np.stack([frames[i][:, :3, :3] @ self.axes[i] for i in range(self.count)], axis=1)
 
     def _points(self) -> tuple[Array, Array, Array]:
         """At zero: points on axes 2 and 3, and where axes 4 and 5 meet (least squares)."""
@@ -102,6 +121,8 @@ def derive(chain: Chain) -> tuple[Any, Array] | str:
     theta = (+-q) - offset. Angles of the URDF's zero against that give the offsets. The result is
     then compared with the URDF's forward kinematics, so a mistake here cannot go unnoticed.
     """
+    if not chain.is_six:
+        return "it does not have six axes that turn"
     zero = [f[None] for f in chain.zero]
     h = [chain.axis(i, zero)[0] for i in range(AXES)]
     tool = chain.zero[6]

@@ -17,15 +17,16 @@ ROBOT_TOOL = register(
 ROBOT_URDF = register(
     "robot-urdf",
     "a URDF file cannot be used",
-    "The file is missing, not XML, or its links and joints are not one tree with six revolute joints with limits from "
+    "The file is missing, not XML, or its links and joints are not one tree with four, six or seven joints with limits from "
     "the base to the flange. The flange is the link named `flange` or `tool0`, or the end of the chain.",
 )
 UNSUPPORTED_KINEMATICS = register(
     "unsupported-robot-kinematics",
     "there is no closed-form inverse kinematics for this arm",
     "Supported are six-axis arms with parallel axes 2 and 3, an axis 1 that is the base's z axis, and a spherical "
-    "wrist: nearly every large industrial robot. The parameters are derived from the URDF's axes and then checked "
-    "against its forward kinematics.",
+    "wrist: nearly every large industrial robot; collaborative robots with parallel axes 2, 3 and 4; arms with seven "
+    "axes, SCARA and gantries. The parameters are derived from the URDF's axes and then checked against its forward "
+    "kinematics.",
 )
 ROBOT_KEY = register(
     "robot-key",

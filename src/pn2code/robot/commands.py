@@ -45,6 +45,8 @@ class MoveJoint:
         acceleration: the fraction (0..1] of the configured acceleration, as of all moves.
         along: external axes that move together with the arm, as of all moves but HOME; others stand still.
         tcp: which comes to the pose, a name of `[robots.NAME.tcps]`, as of all moves to poses; "": that of the tool.
+        arm_angle: rad, where the elbow of an arm with seven axes is at the end, as of all moves to poses; None: where
+            the robot has it.
     """
 
     target: Pose
@@ -53,11 +55,12 @@ class MoveJoint:
     acceleration: float = 1.0
     along: tuple[Along, ...] = ()
     tcp: str = ""
+    arm_angle: float | None = None
 
 
 @frozen
 class MoveAxes:
-    """PTP to a joint position, rad; the rest as of `MoveJoint`."""
+    """PTP to a joint position, rad (of axes that slide mm as if they were degrees); the rest as of `MoveJoint`."""
 
     axes: tuple[float, ...]
     speed: float = 1.0
@@ -97,6 +100,7 @@ class MoveLinear:
     acceleration: float = 1.0
     along: tuple[Along, ...] = ()
     tcp: str = ""
+    arm_angle: float | None = None
 
 
 @frozen
@@ -115,6 +119,7 @@ class MoveCircular:
     acceleration: float = 1.0
     along: tuple[Along, ...] = ()
     tcp: str = ""
+    arm_angle: float | None = None
 
 
 @frozen

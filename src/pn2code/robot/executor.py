@@ -43,12 +43,14 @@ from pn2code.robot.motion import (
     MotionFault,
     MotionLimits,
     Still,
+    Swivel,
     Trajectory,
     check_axes,
     other_branches,
     plan_circ,
     plan_lin,
     plan_ptp,
+    swivel_of,
 )
 from pn2code.robot.robot_cell import CellRobot, MotionConfig
 from pn2code.robot.transforms import Array, describe, difference, inverse, matrix_of, pose_of
@@ -205,7 +207,9 @@ class RobotExecutor:
         """
         told: Command = command
         if isinstance(command, MoveLinear | MoveCircular):
-            told = MoveJoint(command.target, frame=command.frame, tcp=command.tcp)
+            told = MoveJoint(
+                command.target, frame=command.frame, tcp=command.tcp, arm_angle=command.arm_angle
+            )
         try:
             match command:
                 case MoveAxes():
@@ -249,10 +253,28 @@ class RobotExecutor:
     ) -> tuple[Array, Array]:
         """The joint position nearest to `q`, with the external axes as there, and where the tool's TCP is then."""
         target = self._of_tool(self._in_base(command.target, command, q), command)
-        found = self.robot.kinematics.nearest(target, q, self.robot.branch)
+        angle = self._arm_angle(command)
+        found = self.robot.kinematics.nearest(target, q, self.robot.branch, angle)
         if found is None:
-            raise self._unreachable(target, q)
+            raise self._unreachable(target, q, angle)
         return found.q, target
+
+    def _arm_angle(self, command: MoveJoint | MoveLinear | MoveCircular) -> float | None:
+        """What a move says of the arm angle; None: nothing."""
+        if command.arm_angle is None:
+            return None
+        if self.robot.kinematics.alone.arm_angle is None:
+            raise MotionFault(
+                "bad-command", "it has no arm angle: its arm does not have seven axes"
+            )
+        if not math.isfinite(command.arm_angle):
+            raise MotionFault("bad-command", f"an arm angle of {command.arm_angle} is not possible")
+        return command.arm_angle
+
+    def _swivel(self, command: MoveLinear | MoveCircular) -> Swivel | None:
+        """How the arm angle goes on a line: increments of the tool keep it where nothing is said."""
+        angle = self._arm_angle(command)
+        return swivel_of(self.robot.kinematics, self.q, angle, command.frame == "tool")
 
     def _tcp(self, command: MoveJoint | MoveLinear | MoveCircular) -> tuple[Kinematics, Array]:
         """The kinematics to the TCP that a move refers to, and where that is in the frame of the tool's own."""
@@ -311,10 +333,14 @@ class RobotExecutor:
         if own.shape != k.alone.arm.lower.shape or not np.isfinite(own).all():
             count = len(k.alone.arm.lower)
             raise MotionFault(
-                "bad-command", f"a joint position has {count} finite angles, not {command.axes}"
+                "bad-command",
+                f"a joint position has {count} finite {'numbers' if k.alone.slides.any() else 'angles'}, not "
+                f"{command.axes}",
             )
+        # Of what slides, scripts give mm where they give degrees of what turns.
+        own[k.alone.slides] = np.degrees(own[k.alone.slides]) / 1000.0
         q = self._towards(command.along)
-        q[k.joints] = own
+        q[k.joints] = k.alone.arm.meant(own)
         check_axes(k, q)
         return q
 
@@ -383,6 +409,7 @@ class RobotExecutor:
             target,
             self._limited(command),
             command.speed,
+            self._swivel(command),
         )
         end = self._of_tool(target, command)
         return self._moving(command, "lin", now, path, path.q(path.duration), end)
@@ -396,7 +423,8 @@ class RobotExecutor:
         via = None
         if isinstance(command, MoveCircular):
             _, via = self._given(command.via, command)
-        wanted = Led(self.q, end, self._begins(command), plate, target, via)
+        begins = self._begins(command)
+        wanted = Led(self.q, end, begins, plate, target, via, self._swivel(command))
         path = plan_led(k, wanted, self._limited(command), command.speed)
         last = path.q(path.duration)
         if plate is not None:
@@ -416,6 +444,7 @@ class RobotExecutor:
             target,
             self._limited(command),
             command.speed,
+            self._swivel(command),
         )
         end = self._of_tool(target, command)
         return self._moving(command, "circ", now, path, path.q(path.duration), end)
@@ -426,11 +455,13 @@ class RobotExecutor:
             raise MotionFault("bad-command", f"the pose has a number that is not finite: {values}")
         return matrix_of(pose)
 
-    def _unreachable(self, target: Array, q: Array) -> MotionFault:
+    def _unreachable(self, target: Array, q: Array, arm_angle: float | None) -> MotionFault:
         alone = self.robot.kinematics.alone
         if isinstance(self.robot.kinematics, WithAxes):
             target = inverse(self.robot.kinematics.T_base_arm(q)) @ target
-        rows = alone.all_branches(target[None])[0]
+        if refused := alone.refused(target):
+            return MotionFault("unreachable", refused)
+        rows = alone.all_branches(target[None], arm_angle)[0]
         there = rows[~np.isnan(rows[:, 0])]
         if not len(there):
             centre = float(np.linalg.norm(target[:3, 3]))
@@ -441,14 +472,16 @@ class RobotExecutor:
             return MotionFault(
                 "unreachable",
                 f"branch {self.robot.branch} does not reach the pose inside the joint limits"
-                + other_branches(alone, target, self.robot.branch),
+                + other_branches(alone, target, self.robot.branch, arm_angle),
             )
         margins = [alone.limit_margin(row) for row in there]
         margin, axis = max(margins)
+        other = alone.arm_angle is not None and arm_angle is None
         return MotionFault(
             "joint-limit",
             "every branch that reaches the pose leaves the joint limits; the nearest puts axis "
-            f"{axis + 1} {math.degrees(-margin):.2f} deg outside",
+            f"{axis + 1} {alone.arm.shown(axis, -margin)} {alone.arm.unit(axis)} outside"
+            + ("; another `arm_angle` may do" if other else ""),
         )
 
     def _named(self, fault: MotionFault, command: Command) -> MotionFault:

@@ -6,7 +6,8 @@
     k.conditioning(q).condition          # of the TCP Jacobian, lengths in m
 
 The inverse is `py-opw-kinematics` (docs/adr/006): all eight branches of an arm with parallel axes 2
-and 3 and a spherical wrist; for arms with parallel axes 2, 3 and 4 it is `eaik` (`parallel`). Their
+and 3 and a spherical wrist; for arms with parallel axes 2, 3 and 4 it is `eaik` (`parallel`). Arms with
+seven axes (`seven`), SCARA and gantries (`vertical`) have forms of their own. Their
 parameters are derived from the URDF's axes and compared with the URDF's forward kinematics, which is
 the truth here; answers are verified against it as well.
 """
@@ -15,59 +16,29 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from copy import copy
 from functools import lru_cache
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Origin
-from pn2code.robot import codes, parallel
+from pn2code.robot import codes, parallel, seven, vertical
+from pn2code.robot.branches import BRANCH_NAMES, BRANCHES, Branch
 from pn2code.robot.chain import Chain, cross, derive
-from pn2code.robot.model import AXES, Arm, Tool
+from pn2code.robot.closed_form import ClosedForm
+from pn2code.robot.model import Arm, Tool
 from pn2code.robot.opw import Robot
 from pn2code.robot.transforms import Array, inverse
 
+__all__ = ["BRANCHES", "BRANCH_NAMES", "TURN", "Branch", "Conditioning", "Kinematics", "Solution"]
 TURN = 2.0 * math.pi
 CHARACTERISTIC_LENGTH = 1.0  # m: lengths in the Jacobian are divided by it, so that it has no units
 POSITION_TOLERANCE = 1e-11  # m and rad: an answer of the inverse further off is refined
 ACCEPTED_ERROR = 1e-9  # m and rad: an answer further off after refinement is not an answer
 _LIMIT_SLACK = 1e-9  # rad: a target exactly at a limit counts as inside
-
-
-@dataclass(frozen=True, slots=True, order=True)
-class Branch:
-    """One of the eight ways to reach a pose.
-
-    Args:
-        index: 4 * wrist + 2 * shoulder + elbow.
-    """
-
-    index: int
-
-    @property
-    def shoulder(self) -> str:
-        """`front`: the arm reaches forward over the column; `back`: over its shoulder."""
-        return "back" if self.index & 2 else "front"
-
-    @property
-    def elbow(self) -> str:
-        """`up` or `down`: on which side of the line from axis 2 to the wrist the elbow is."""
-        return "down" if self.index & 1 else "up"
-
-    @property
-    def wrist(self) -> str:
-        """The sign of axis 5, as `plus` or `minus`."""
-        return "minus" if self.index & 4 else "plus"
-
-    def __str__(self) -> str:
-        return f"{self.shoulder}/{self.elbow}/{self.wrist}"
-
-
-BRANCHES = tuple(Branch(i) for i in range(8))
-BRANCH_NAMES = {str(b): b for b in BRANCHES}
 
 
 @frozen(eq=False)
@@ -106,24 +77,28 @@ def condition_text(condition: float, digits: int = 0) -> str:
     return f"{condition:.{digits}f}"
 
 
-class ClosedForm(Protocol):
-    """All joint positions of poses, by branch."""
-
-    def branches(self, T_base_tcp: Array) -> Array:
-        """Of n poses (n, 4, 4): (n, 8, 6), NaN where a branch does not exist."""
-
-
-class SphericalWrist:
+class SphericalWrist(ClosedForm):
     """The inverse of arms with parallel axes 2 and 3 and a spherical wrist."""
 
-    def __init__(self, model: Any, correction: Array, T_flange_tcp: Array) -> None:
+    def __init__(self, chain: Chain, model: Any, correction: Array, T_flange_tcp: Array) -> None:
+        super().__init__(chain)
         self._robot = Robot(model)
         # The library's flange may be turned against the URDF's by a constant rotation.
         self._T_tcp_library = inverse(correction @ T_flange_tcp)
 
-    def branches(self, T_base_tcp: Array) -> Array:
+    def branches(self, T_base_tcp: Array, arm_angle: Array | None = None) -> Array:
         """Of n poses (n, 4, 4): (n, 8, 6)."""
         return self._robot.branches(T_base_tcp @ self._T_tcp_library)
+
+
+_SEVEN = (
+    "of arms with seven axes those are known whose axes 1, 2 and 3 meet in the shoulder and 5, 6 and 7 in the wrist, "
+    "with axis 4 between them"
+)
+_VERTICAL = (
+    "of arms with four axes SCARA are known (three axes turn and one slides, all along the base's z) and gantries "
+    "(three slide, one turns about the base's z)"
+)
 
 
 @lru_cache(maxsize=16)
@@ -141,6 +116,11 @@ class Kinematics:
         self.T_flange_tcp = T_flange_tcp
         self._chain = chain
         self._form = form
+        self.slides = chain.slides
+        """Which axes of the arm slide."""
+        self._sliding = np.flatnonzero(chain.slides)
+        self.branches = form.known
+        """In which it may reach a pose."""
         self.alone: Kinematics = self
         """Of the arm without its external axes, from its own base."""
         self.joints = slice(0, len(arm.lower))
@@ -156,7 +136,28 @@ class Kinematics:
         """The same of a TCP that is given in the frame of the flange."""
         chain, derived = _chain(arm)
         if not isinstance(derived, str):
-            return cls(arm, frame, chain, SphericalWrist(*derived, frame))
+            return cls(arm, frame, chain, SphericalWrist(chain, *derived, frame))
+        if chain.is_six:
+            return cls._six(arm, frame, chain, derived, at, d)
+        form: ClosedForm | str
+        if chain.count == seven.AXES:
+            form, hint = seven.derive(chain, frame), _SEVEN
+        else:
+            form, hint = vertical.derive(chain, frame), _VERTICAL
+        if not isinstance(form, str):
+            return cls(arm, frame, chain, form)
+        d.error(
+            codes.UNSUPPORTED_KINEMATICS,
+            f"robot model `{arm.name}` has no closed-form inverse kinematics: {form}",
+            at,
+            hint=hint,
+        )
+        return None
+
+    @classmethod
+    def _six(
+        cls, arm: Arm, frame: Array, chain: Chain, derived: str, at: Origin, d: Diagnostics
+    ) -> Kinematics | None:
         form = parallel.derive(chain, frame)
         if not isinstance(form, str):
             return cls(arm, frame, chain, form)
@@ -173,6 +174,30 @@ class Kinematics:
         )
         return None
 
+    # Arm angle
+
+    @property
+    def arm_angle(self) -> float | None:
+        """rad: of an arm with seven axes, where its elbow is when nothing is said; None: it is decided by the pose."""
+        return self._form.arm_angle
+
+    def with_arm_angle(self, angle: float) -> Kinematics:
+        """The same with another arm angle where nothing is said."""
+        assert isinstance(self._form, seven.SevenAxes), "it has an arm angle"
+        form = copy(self._form)
+        form.arm_angle = angle
+        return Kinematics(self.arm, self.T_flange_tcp, self._chain, form)
+
+    def arm_angle_of(self, q: ArrayLike) -> float | None:
+        """That of a joint position; None: the arm has none."""
+        if self._form.arm_angle is None:
+            return None
+        return float(self._form.angle_of(self._chain.frames(np.asarray(q, float)[None]))[0])
+
+    def refused(self, T_base_tcp: Array) -> str:
+        """Why an arm of this kind cannot have a pose, wherever it is; "": it can."""
+        return self._form.refused(T_base_tcp)
+
     # Forward
 
     def forward(self, q: ArrayLike) -> Array:
@@ -180,19 +205,19 @@ class Kinematics:
         return np.asarray(self.forward_many(np.asarray(q, float)[None])[0])
 
     def forward_many(self, q: Array) -> Array:
-        """`T_base_tcp` of n joint positions (n, 6): (n, 4, 4)."""
+        """`T_base_tcp` of n joint positions (n, axes): (n, 4, 4)."""
         return np.asarray(self._chain.frames(q)[-1] @ self.T_flange_tcp)
 
     def joint_frames(self, q: ArrayLike) -> Array:
-        """`T_base_joint` of the six axes, after their own rotation, and of the flange: (7, 4, 4)."""
+        """`T_base_joint` of all axes, after their own motion, and of the flange: (axes + 1, 4, 4)."""
         return np.stack([f[0] for f in self._chain.frames(np.asarray(q, float)[None])])
 
     def link_frames(self, q: Array) -> list[Array]:
-        """The same of n joint positions (n, 6): seven arrays (n, 4, 4)."""
+        """The same of n joint positions (n, axes): arrays (n, 4, 4), one more than axes."""
         return self._chain.frames(q)
 
     def axes_of(self, frames: Sequence[Array]) -> Array:
-        """Directions of the six axes in the base frame, (n, 6, 3)."""
+        """Directions of all axes in the base frame, (n, axes, 3)."""
         return self._chain.all_axes(frames)
 
     @property
@@ -204,26 +229,47 @@ class Kinematics:
     def longest(self) -> float:
         """m: the TCP is never further from any axis than all lengths between them together."""
         lengths = np.linalg.norm(self._chain.before[1:, :3, 3], axis=1).sum()
+        lengths += np.maximum(-self.arm.lower, self.arm.upper)[self._sliding].sum()
         return float(lengths + np.linalg.norm((self._chain.end @ self.T_flange_tcp)[:3, 3]))
 
     # Differential
 
     def jacobian(self, q: ArrayLike) -> Array:
-        """The 6x6 Jacobian at the TCP in the base frame: rows 0-2 m/rad, rows 3-5 rad/rad."""
+        """The Jacobian at the TCP in the base frame, (6, axes): rows 0-2 m/rad, rows 3-5 rad/rad (m/m, 0 of slides)."""
         return np.asarray(self.jacobian_many(np.asarray(q, float)[None])[0])
 
     def jacobian_many(self, q: Array) -> Array:
-        """Jacobians of n joint positions (n, 6): (n, 6, 6)."""
+        """Jacobians of n joint positions (n, axes): (n, 6, axes)."""
         return self._jacobian(self._chain.frames(q))
 
     def _jacobian(self, frames: Sequence[Array]) -> Array:
         tcp = frames[-1][:, :3, :3] @ self.T_flange_tcp[:3, 3] + frames[-1][:, :3, 3]
         axes = self._chain.all_axes(frames)
-        out = np.empty((len(tcp), 6, AXES))
+        count = self._chain.count
+        out = np.empty((len(tcp), 6, count))
         out[:, 3:] = axes.transpose(0, 2, 1)
-        arms = tcp[:, None] - np.stack([f[:, :3, 3] for f in frames[:AXES]], axis=1)
+        arms = tcp[:, None] - np.stack([f[:, :3, 3] for f in frames[:count]], axis=1)
         out[:, :3] = cross(axes, arms).transpose(0, 2, 1)
+        for i in self._sliding:
+            out[:, :3, i], out[:, 3:, i] = axes[:, i], 0.0
         return out
+
+    def led_jacobian(self, q: Array) -> Array:
+        """Square matrices that take axis speeds to what a line is about, (n, axes, axes): see `led_twist`.
+
+        With six axes that is the Jacobian. A seventh row is how the arm angle changes; with four axes there are rows
+        for the place and the turn about the vertical only.
+        """
+        frames = self._chain.frames(q)
+        return self._form.square(self._jacobian(frames), frames)
+
+    def led_twist(self, twist: Array, swivel: float | Array = 0.0) -> Array:
+        """Of twists of the TCP (..., 6) what a line is about; `swivel`: how fast the arm angle changes."""
+        return self._form.wanted(twist, swivel)
+
+    def led_steepness(self, q: Array) -> tuple[Array, Array]:
+        """How fast `led_jacobian` changes beside the Jacobian, at most, and how far from q (rad) that holds: (n,)."""
+        return self._form.steep(self._chain.frames(q))
 
     def conditioning(self, q: ArrayLike) -> Conditioning:
         """Condition number, smallest singular value, elbow and wrist angle at a joint position."""
@@ -242,7 +288,7 @@ class Kinematics:
         scaled = self._jacobian(frames)
         scaled[:, :3] /= CHARACTERISTIC_LENGTH
         sigma = np.linalg.svd(scaled, compute_uv=False)
-        elbow, wrist = self._chain.elbow(frames), self._chain.wrist(frames)
+        elbow, wrist = self._form.elbow(frames), self._form.wrist(frames)
         return [
             Conditioning(
                 float(s[0] / s[-1]) if s[-1] > 0.0 else math.inf, float(s[-1]), float(e), float(w)
@@ -252,24 +298,27 @@ class Kinematics:
 
     # Inverse
 
-    def all_branches(self, T_base_tcp: Array) -> Array:
-        """Of n poses (n, 4, 4): joint positions (n, 8, 6) by branch index, axes in (-pi, pi].
+    def all_branches(self, T_base_tcp: Array, arm_angle: float | Array | None = None) -> Array:
+        """Of n poses (n, 4, 4): joint positions (n, branches, axes) by branch index, axes that turn in (-pi, pi].
 
         Where a branch does not exist the row is NaN. Limits are not looked at. Rows are exact: each
         was compared with the forward kinematics (and refined by Newton steps near singularities).
+        `arm_angle`: rad, of all or of each; None: that of the arm.
         """
-        found = self._closed_form(T_base_tcp)
-        self._refine(found.reshape(-1, AXES), np.repeat(T_base_tcp, len(BRANCHES), axis=0))
+        angles = None if arm_angle is None else np.full(len(T_base_tcp), arm_angle)
+        found = self._closed_form(T_base_tcp, angles)
+        count = len(self.branches)
+        self._refine(found.reshape(-1, found.shape[2]), np.repeat(T_base_tcp, count, axis=0))
         return found
 
-    def on_branch(self, T_base_tcp: Array, branch: Branch) -> Array:
-        """The same on one branch only: (n, 6)."""
-        found = np.ascontiguousarray(self._closed_form(T_base_tcp)[:, branch.index])
+    def on_branch(self, T_base_tcp: Array, branch: Branch, swivel: Array | None = None) -> Array:
+        """The same on one branch only, (n, axes); `swivel`: the arm angle at each pose, (n,)."""
+        found = np.ascontiguousarray(self._closed_form(T_base_tcp, swivel)[:, branch.index])
         self._refine(found, T_base_tcp)
         return found
 
-    def _closed_form(self, T_base_tcp: Array) -> Array:
-        return self._form.branches(T_base_tcp)
+    def _closed_form(self, T_base_tcp: Array, arm_angle: Array | None = None) -> Array:
+        return self._form.branches(T_base_tcp, arm_angle)
 
     def _refine(self, rows: Array, targets: Array) -> None:
         there = np.flatnonzero(~np.isnan(rows[:, 0]))
@@ -301,11 +350,14 @@ class Kinematics:
         )
         return np.concatenate([targets[:, :3, 3] - now[:, :3, 3], w], axis=1)
 
-    def inverse(self, T_base_tcp: Array, near: ArrayLike | None = None) -> tuple[Solution, ...]:
+    def inverse(
+        self, T_base_tcp: Array, near: ArrayLike | None = None, arm_angle: float | None = None
+    ) -> tuple[Solution, ...]:
         """All branches that have a turn inside the limits; full turns are chosen nearest to `near`."""
-        reference = np.zeros(AXES) if near is None else np.asarray(near, float)
+        reference = np.zeros(self._chain.count) if near is None else np.asarray(near, float)
         out = []
-        for branch, row in zip(BRANCHES, self.all_branches(T_base_tcp[None])[0], strict=True):
+        rows = self.all_branches(T_base_tcp[None], arm_angle)[0]
+        for branch, row in zip(self.branches, rows, strict=True):
             q = None if np.isnan(row[0]) else self.turn_near(row, reference)
             if q is not None:
                 out.append(Solution(branch, q))
@@ -317,12 +369,30 @@ class Kinematics:
         wish = np.round((reference - q) / TURN)
         least = np.ceil((lower - q) / TURN)
         most = np.floor((upper - q) / TURN)
+        slides = self._sliding
+        if len(slides):
+            if (q < lower)[slides].any() or (q > upper)[slides].any():
+                return None
+            wish[slides] = least[slides] = most[slides] = 0.0
         if (least > most).any():
             return None
-        return np.asarray(q + TURN * np.clip(wish, least, most))
+        out = np.asarray(q + TURN * np.clip(wish, least, most))
+        if self.arm.urdf.couplings and self.arm.margins(out).min() < -_LIMIT_SLACK:
+            return None
+        return out
+
+    def unwound(self, rows: Array, near: Array) -> Array:
+        """Joint positions (n, axes) with full turns added, nearest to others."""
+        turns = np.round((near - rows) / TURN)
+        turns[..., self._sliding] = 0.0
+        return np.asarray(rows + TURN * turns)
 
     def nearest(
-        self, T_base_tcp: Array, reference: ArrayLike, branch: Branch | None = None
+        self,
+        T_base_tcp: Array,
+        reference: ArrayLike,
+        branch: Branch | None = None,
+        arm_angle: float | None = None,
     ) -> Solution | None:
         """The branch for a joint move from `reference`: the one the robot reaches first.
 
@@ -335,31 +405,53 @@ class Kinematics:
             times = np.abs(s.q - start) / self.arm.velocity
             return round(float(times.max()), 9), round(float(times.sum()), 9), s.branch
 
-        found = [s for s in self.inverse(T_base_tcp, start) if branch in (None, s.branch)]
+        found = [
+            s for s in self.inverse(T_base_tcp, start, arm_angle) if branch in (None, s.branch)
+        ]
         return min(found, key=cost, default=None)
 
     def branch_of(self, q: ArrayLike) -> Branch:
         """The branch of a joint position: the one whose answer for its TCP pose is nearest to it."""
         q = np.asarray(q, float)
-        rows = self.all_branches(self.forward(q)[None])[0]
-        away = np.abs((rows - q + math.pi) % TURN - math.pi).max(axis=1)
+        rows = self.all_branches(self.forward(q)[None], self.arm_angle_of(q))[0]
+        off = np.abs((rows - q + math.pi) % TURN - math.pi)
+        off[:, self._sliding] = np.abs(rows - q)[:, self._sliding]
+        away = off.max(axis=1)
         away[np.isnan(away)] = np.inf
-        return BRANCHES[int(np.argmin(away))]
+        return self.branches[int(np.argmin(away))]
 
-    def follow(self, T_base_tcp: Array, branch: Branch, start: ArrayLike) -> Array:
-        """A path (n, 4, 4) on one branch, each position nearest in turns to the one before: (n, 6).
+    def follow(
+        self, T_base_tcp: Array, branch: Branch, start: ArrayLike, swivel: Array | None = None
+    ) -> Array:
+        """A path (n, 4, 4) on one branch, each position nearest in turns to the one before: (n, axes).
 
         Rows are NaN where the branch does not exist. Limits are not looked at.
         """
-        rows = self.on_branch(T_base_tcp, branch)
+        rows = self.on_branch(T_base_tcp, branch, swivel)
         path = np.vstack([np.asarray(start, float), rows])
         known = np.flatnonzero(~np.isnan(path[:, 0]))
+        slid = path[:, self._sliding]
         path[known] = np.unwrap(path[known], axis=0)
+        path[:, self._sliding] = slid
         return path[1:]
 
+    def turning_margins(self, q: Array) -> Array:
+        """How far the axes of the arm that turn are from their limits, rad, (n, axes); of those that slide inf."""
+        margins = np.array(self.arm.margins(q)[:, self.joints])
+        margins[:, self._sliding] = np.inf
+        return margins
+
     def limit_margin(self, q: ArrayLike) -> tuple[float, int]:
-        """Least distance of an axis to its limits (rad, negative outside), and which axis (0..5)."""
+        """Least distance of an axis to its limits (rad, negative outside), and which axis (from 0).
+
+        Of an axis that slides (m) only where it is outside.
+        """
         q = np.asarray(q, float)
-        margins = np.minimum(q - self.arm.lower, self.arm.upper - q)
+        margins = self.arm.margins(q)
+        if len(self._sliding):
+            slid = margins[self._sliding]
+            if slid.min() < -_LIMIT_SLACK:
+                return float(slid.min()), int(self._sliding[np.argmin(slid)])
+            margins[self._sliding] = np.inf
         axis = int(np.argmin(margins))
         return float(margins[axis]), axis

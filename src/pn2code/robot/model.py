@@ -10,6 +10,7 @@ the cell's folder. The URDF is the only description: axes, limits and speeds are
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import lru_cache
 from pathlib import Path
 
@@ -20,23 +21,26 @@ from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes, urdf
 from pn2code.robot.transforms import Array
-from pn2code.robot.urdf import Joint, Urdf
+from pn2code.robot.urdf import Coupling, Joint, Urdf
 
 MODELS = Path(__file__).parent / "models"
 AXES = 6
+"""Of most arms."""
+COUNTS = (4, 6, 7)
+"""How many axes an arm may have."""
 
 
 @frozen(eq=False)
 class Arm:
-    """A six-axis arm.
+    """An arm: a chain of axes that turn or slide.
 
     Args:
         name: as in cell.toml.
         urdf: its tree.
         flange: the link that carries the tool.
-        chain: all joints from the base to the flange; six of them move.
-        lower: limits, rad; upper likewise.
-        velocity: greatest axis speeds, rad/s.
+        chain: all joints from the base to the flange; tracks and the axes of the arm move.
+        lower: limits, rad, of what slides m; upper likewise.
+        velocity: greatest axis speeds, rad/s or m/s.
         tables: turntables, which are external axes beside the chain; of tracks, which are in it, `tracks` is how many.
     """
 
@@ -55,14 +59,58 @@ class Arm:
         """Names of the moving joints, from the base; turntables last."""
         return (*(j.name for j in self.chain if j.type != "fixed"), *self.tables)
 
+    def coupled(self) -> Iterator[tuple[int, int, Coupling]]:
+        """Axes that are counted together with another one, both by their index."""
+        names = self.axes
+        for c in self.urdf.couplings:
+            yield names.index(c.joint), names.index(c.other), c
+
+    def margins(self, q: Array) -> Array:
+        """How far each axis is from its limits, (..., axes): rad, m of what slides; negative outside."""
+        out = np.minimum(q - self.lower, self.upper - q)
+        for i, j, c in self.coupled():
+            value = q[..., i] + c.factor * q[..., j]
+            out[..., i] = np.minimum(out[..., i], np.minimum(value - c.lower, c.upper - value))
+        return np.asarray(out)
+
+    def counted(self, q: Array) -> Array:
+        """A joint position as the maker counts it; rad, m of what slides."""
+        out = np.array(q)
+        for i, j, c in self.coupled():
+            out[i] = q[i] + c.factor * q[j]
+        return out
+
+    def meant(self, counted: Array) -> Array:
+        """The joint position that the maker counts so."""
+        out = np.array(counted)
+        for i, j, c in self.coupled():
+            out[i] = counted[i] - c.factor * counted[j]
+        return out
+
+    def outside(self, axis: int, q: Array) -> str:
+        """For people: where an axis is that is outside its limits, and what these are."""
+        shown = [self.shown(axis, v) for v in (q[axis], self.lower[axis], self.upper[axis])]
+        unit = self.unit(axis)
+        for i, j, c in self.coupled():
+            value = q[i] + c.factor * q[j]
+            if i == axis and not c.lower - 1e-9 <= value <= c.upper + 1e-9:
+                shown = [self.shown(axis, v) for v in (value, c.lower, c.upper)]
+                unit += f" (counted with axis {j - self.tracks + 1})"
+        return f"{shown[0]} {unit}, outside {shown[1]} .. {shown[2]}"
+
+    def slides(self, axis: int) -> bool:
+        """Whether an axis slides: a track, or an axis of the arm itself."""
+        moving = [j for j in self.chain if j.type != "fixed"]
+        return axis < len(moving) and moving[axis].type == "prismatic"
+
     def shown(self, axis: int, value: float, digits: int = 2) -> str:
-        """A position of an axis for people, without its unit: degrees, or mm of a track."""
-        factor = 1000.0 if axis < self.tracks else math.degrees(1.0)
+        """A position of an axis for people, without its unit: degrees, or mm of what slides."""
+        factor = 1000.0 if self.slides(axis) else math.degrees(1.0)
         return f"{value * factor:.{digits}f}"
 
     def unit(self, axis: int) -> str:
-        """`deg`, or `mm` of a track."""
-        return "mm" if axis < self.tracks else "deg"
+        """`deg`, or `mm` of what slides."""
+        return "mm" if self.slides(axis) else "deg"
 
     def called(self, axis: int) -> str:
         """An axis in messages: its number and name, as the maker counts; external axes have a name alone."""
@@ -132,11 +180,20 @@ def find_arm(name: str, folder: Path, at: Origin, d: Diagnostics) -> Arm | None:
         return None
     chain = tree.chain(flange)
     moving = [j for j in chain if j.type != "fixed"]
-    if len(moving) != AXES or any(j.type == "prismatic" for j in moving):
+    if len(moving) not in COUNTS:
         d.error(
             codes.ROBOT_URDF,
             f"`{tree.path}` has {len(moving)} moving joints between `{tree.root}` and `{flange}`, "
-            "but six revolute ones are expected",
+            "but an arm has four, six or seven",
+            Origin(str(tree.path)),
+        )
+        return None
+    axes = {j.name for j in moving}
+    stray = [n for c in tree.couplings for n in (c.joint, c.other) if n not in axes]
+    if stray:
+        d.error(
+            codes.ROBOT_URDF,
+            f"`coupled` names `{stray[0]}`, which is no axis of the arm",
             Origin(str(tree.path)),
         )
         return None

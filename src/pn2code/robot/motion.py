@@ -362,9 +362,18 @@ class LinearTrajectory:
     """LIN and CIRC: the TCP on a line or an arc, joints by the closed-form inverse on one branch."""
 
     def __init__(
-        self, kinematics: Kinematics, line: Way, branch: Branch, law: Law, start: Array
+        self,
+        kinematics: Kinematics,
+        line: Way,
+        branch: Branch,
+        law: Law,
+        start: Array,
+        swivel: Swivel | None = None,
     ) -> None:
         self._k, self.line, self.branch, self._law = kinematics, line, branch, law
+        self._swivel = swivel
+        self.swivel = 0.0 if swivel is None else swivel[1]
+        """rad: how far the arm angle goes on the way."""
         self.kinematics = kinematics
         self.duration = law.duration
         count = max(
@@ -375,7 +384,20 @@ class LinearTrajectory:
         )
         # Unwrapped positions close enough that the turns of any instant between are those nearby.
         self.times = np.linspace(0.0, law.duration, count + 1)
-        self.grid = self._k.follow(self.line.at(self.way(self.times)), branch, start)
+        s = self.way(self.times)
+        self.grid = self._k.follow(self.line.at(s), branch, start, self._angles(s))
+
+    def _angles(self, s: Array) -> Array | None:
+        """The arm angle at fractions of the way; None: the arm has none."""
+        return None if self._swivel is None else self._swivel[0] + s * self._swivel[1]
+
+    def arm_angle_at(self, s: float) -> float | None:
+        """The arm angle (rad) at a fraction of the way; None: the arm has none."""
+        return None if self._swivel is None else self._swivel[0] + s * self._swivel[1]
+
+    def rows(self, s: Array) -> Array:
+        """Joint positions on the branch at fractions of the way, axes that turn in (-pi, pi]."""
+        return self._k.on_branch(self.line.at(s), self.branch, self._angles(s))
 
     def way(self, times: Array) -> Array:
         """Fraction of the way at each time, 0 to 1."""
@@ -403,19 +425,19 @@ class LinearTrajectory:
         now = self._k.forward_many(q)
         spins = self.line.spins(now[:, :3, :3])
         twist = np.concatenate([self.line.shifts(s), spins], axis=1) * rate[:, None]
-        return np.asarray((np.linalg.pinv(self._k.jacobian_many(q)) @ twist[..., None])[..., 0])
+        wanted = self._k.led_twist(twist, self.swivel * rate)
+        return np.asarray((np.linalg.pinv(self._k.led_jacobian(q)) @ wanted[..., None])[..., 0])
 
     def sample(self, times: Array) -> Array:
         """Joint positions at many times."""
         times = np.clip(times, 0.0, self.duration)
-        rows = self._k.on_branch(self.line.at(self.way(times)), self.branch)
+        rows = self.rows(self.way(times))
         near = self.grid[np.searchsorted(self.times, times).clip(0, len(self.times) - 1)]
-        turn = 2.0 * math.pi
-        return np.asarray(rows + turn * np.round((near - rows) / turn))
+        return self._k.unwound(rows, near)
 
     def on_way(self, s: Array) -> Array:
         """Joint positions at fractions of the way, in order, whenever the arm is there; NaN out of reach."""
-        return self._k.follow(self.line.at(s), self.branch, self.grid[0])
+        return self._k.follow(self.line.at(s), self.branch, self.grid[0], self._angles(s))
 
 
 def plan_ptp(
@@ -436,6 +458,30 @@ def plan_ptp(
     return JointTrajectory(start, target, law)
 
 
+Swivel = tuple[float, float]
+"""Of a way: the arm angle where it begins, and how far that goes until its end, rad."""
+
+
+def swivel_of(
+    kinematics: Kinematics, start: Array, arm_angle: float | None, keeps: bool
+) -> Swivel | None:
+    """From the arm angle of a joint position to another one, the shorter way; None: the arm has no arm angle.
+
+    Args:
+        arm_angle: None: that of the arm, or, if it `keeps` what it has, the same.
+    """
+    here = kinematics.arm_angle_of(start)
+    if here is None:
+        return None
+    if arm_angle is None:
+        arm_angle = here if keeps else kinematics.arm_angle
+    assert arm_angle is not None, "the arm has one"
+    turn = 2.0 * math.pi
+    away = arm_angle - here
+    away -= turn * round(away / turn)
+    return here, away if abs(away) > _SAME else 0.0
+
+
 def plan_lin(
     kinematics: Kinematics,
     start: Array,
@@ -443,6 +489,7 @@ def plan_lin(
     T_target: Array,
     limits: MotionLimits,
     speed: float | None = None,
+    swivel: Swivel | None = None,
 ) -> LinearTrajectory | Still:
     """A linear move from `T_start` (the TCP in the base frame, where `start` puts it) to `T_target`.
 
@@ -453,26 +500,32 @@ def plan_lin(
     turn faster than it can (a singularity, where the conditioning says so).
     """
     line = Line(T_start, T_target)
-    pace = line_pace(line, limits, speed)
-    return Still(start, 0.0) if pace is None else led(kinematics, line, Law(*pace), start, limits)
+    pace = line_pace(line, limits, speed, swivel)
+    if pace is None:
+        return Still(start, 0.0)
+    return led(kinematics, line, Law(*pace), start, limits, swivel)
 
 
 Pace = tuple[float, float, float]
 """Greatest speed, acceleration and jerk of the fraction of a way, 1/s, 1/s2, 1/s3."""
 
 
-def line_pace(line: Line, limits: MotionLimits, speed: float | None) -> Pace | None:
-    """Of a line; None: it has no length, and turns nothing."""
+def line_pace(
+    line: Line, limits: MotionLimits, speed: float | None, swivel: Swivel | None = None
+) -> Pace | None:
+    """Of a line; None: it has no length, and turns nothing. The elbow turns no faster than the tool may."""
     wanted = limits.linear_velocity if speed is None else speed
     _check_speed(wanted, math.inf, "linear speed must be above 0")
-    if line.length < _SAME and line.angle < _SAME:
+    elbow = 0.0 if swivel is None else abs(swivel[1])
+    if line.length < _SAME and line.angle < _SAME and elbow < _SAME:
         return None
     # One unit of the law is the whole way; pure turns are limited by the angular speed alone.
     fast = min(
         wanted / line.length if line.length > _SAME else math.inf,
         limits.angular_velocity / line.angle if line.angle > _SAME else math.inf,
+        limits.angular_velocity / elbow if elbow > _SAME else math.inf,
     )
-    size = max(line.length, line.angle)
+    size = max(line.length, line.angle, elbow)
     return fast, limits.linear_acceleration / size, limits.linear_jerk / size
 
 
@@ -484,6 +537,7 @@ def plan_circ(
     T_target: Array,
     limits: MotionLimits,
     speed: float | None = None,
+    swivel: Swivel | None = None,
 ) -> LinearTrajectory:
     """A circular move from `T_start`, where `start` puts the TCP, through the place of `T_via` to `T_target`.
 
@@ -496,28 +550,37 @@ def plan_circ(
     Raises MotionFault as `plan_lin` does, and where there is no arc.
     """
     arc = Arc(T_start, T_via, T_target)
-    return led(kinematics, arc, Law(*arc_pace(arc, limits, speed)), start, limits)
+    return led(kinematics, arc, Law(*arc_pace(arc, limits, speed, swivel)), start, limits, swivel)
 
 
-def arc_pace(arc: Arc, limits: MotionLimits, speed: float | None) -> Pace:
+def arc_pace(
+    arc: Arc, limits: MotionLimits, speed: float | None, swivel: Swivel | None = None
+) -> Pace:
     """Of an arc, as `plan_circ` says."""
+    elbow = 0.0 if swivel is None else abs(swivel[1])
     wanted = limits.linear_velocity if speed is None else speed
     _check_speed(wanted, math.inf, "linear speed must be above 0")
     most, jerk, r = limits.linear_acceleration, limits.linear_jerk, arc.radius
     v = min(wanted, math.sqrt(most * r / math.sqrt(2.0)), (jerk * r * r / 4.0) ** (1.0 / 3.0))
-    turning = limits.angular_velocity / arc.angle if arc.angle > _SAME else math.inf
+    turned = max(arc.angle, elbow)
+    turning = limits.angular_velocity / turned if turned > _SAME else math.inf
     fast = min(v / arc.length, turning)
     v = fast * arc.length
     a = min(most / math.sqrt(2.0), jerk * r / (6.0 * v))
-    size = max(arc.length, arc.angle)
+    size = max(arc.length, turned)
     return fast, a / size, 0.5 * jerk / size
 
 
 def led(
-    kinematics: Kinematics, way: Way, law: Law, start: Array, limits: MotionLimits
+    kinematics: Kinematics,
+    way: Way,
+    law: Law,
+    start: Array,
+    limits: MotionLimits,
+    swivel: Swivel | None = None,
 ) -> LinearTrajectory:
-    """The joint positions along a way, checked."""
-    out = LinearTrajectory(kinematics, way, kinematics.branch_of(start), law, start)
+    """The joint positions along a way, checked; `swivel`: of the arm angle, where the arm has one."""
+    out = LinearTrajectory(kinematics, way, kinematics.branch_of(start), law, start, swivel)
     _check_line(kinematics, out, limits)
     return out
 
@@ -534,18 +597,15 @@ def _check_speed(value: float, most: float, message: str) -> None:
 
 def _check_limits(kinematics: Kinematics, path: Array, times: Array | None = None) -> None:
     arm = kinematics.arm
-    margins = np.minimum(path - arm.lower, arm.upper - path)
+    margins = arm.margins(path)
     low = margins.min(axis=1)
     if (low >= -1e-9).all():
         return
     first = int(np.argmax(low < -1e-9))
     axis = int(np.argmin(margins[first]))
-    value, lower, upper = (
-        arm.shown(axis, v) for v in (path[first, axis], arm.lower[axis], arm.upper[axis])
-    )
     raise MotionFault(
         "joint-limit",
-        f"{arm.called(axis)} would be at {value} {arm.unit(axis)}, outside {lower} .. {upper}",
+        f"{arm.called(axis)} would be at {arm.outside(axis, path[first])}",
         pose=pose_of(kinematics.forward(path[first])),
         q=tuple(path[first].tolist()),
         time=None if times is None else float(times[first]),
@@ -557,7 +617,10 @@ def _check_line(kinematics: Kinematics, lin: LinearTrajectory, limits: MotionLim
     missing = np.isnan(path[:, 0])
     if missing.any():
         first = int(np.argmax(missing))
-        where = pose_of(lin.line.at(lin.way(times[first : first + 1]))[0])
+        there = lin.line.at(lin.way(times[first : first + 1]))[0]
+        where = pose_of(there)
+        if refused := kinematics.refused(there):
+            raise MotionFault("unreachable", refused, pose=where, time=float(times[first]))
         others = _other_branches(kinematics, lin, first)
         raise MotionFault(
             "unreachable",
@@ -599,11 +662,12 @@ def _check_line(kinematics: Kinematics, lin: LinearTrajectory, limits: MotionLim
         if singular
         else ""
     )
-    needed = math.degrees(load[first, axis] * limits.axis_velocity[axis])
+    arm, most = kinematics.arm, limits.axis_velocity[axis]
+    word = "slide" if arm.slides(axis) else "turn"
     raise MotionFault(
         "singularity" if singular else "axis-speed",
-        f"{what}{kinematics.arm.called(axis)} would have to turn at {needed:.0f} deg/s, but can do "
-        f"{math.degrees(limits.axis_velocity[axis]):.0f}",
+        f"{what}{arm.called(axis)} would have to {word} at {arm.shown(axis, load[first, axis] * most, 0)} "
+        f"{arm.unit(axis)}/s, but can do {arm.shown(axis, most, 0)}",
         pose=pose_of(kinematics.forward(path[first])),
         q=tuple(path[first].tolist()),
         time=float(times[first]),
@@ -612,12 +676,15 @@ def _check_line(kinematics: Kinematics, lin: LinearTrajectory, limits: MotionLim
 
 def _other_branches(kinematics: Kinematics, lin: LinearTrajectory, index: int) -> str:
     pose = lin.line.at(lin.way(lin.times[index : index + 1]))
-    return other_branches(kinematics, pose[0], lin.branch)
+    angle = lin.arm_angle_at(float(lin.way(lin.times[index : index + 1])[0]))
+    return other_branches(kinematics, pose[0], lin.branch, angle)
 
 
-def other_branches(kinematics: Kinematics, target: Array, but: Branch) -> str:
+def other_branches(
+    kinematics: Kinematics, target: Array, but: Branch, arm_angle: float | None = None
+) -> str:
     """Which other branches reach a pose inside the joint limits, and how to choose one; "" if none does."""
-    found = kinematics.inverse(target)
+    found = kinematics.inverse(target, arm_angle=arm_angle)
     there = [str(s.branch) for s in found if s.branch != but]
     if not there:
         return "; no other branch reaches the pose inside the joint limits"

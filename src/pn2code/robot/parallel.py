@@ -18,6 +18,7 @@ from typing import Any
 import numpy as np
 
 from pn2code.robot.chain import Chain, cross
+from pn2code.robot.closed_form import ClosedForm
 from pn2code.robot.model import AXES
 from pn2code.robot.transforms import Array, inverse
 
@@ -30,11 +31,11 @@ _TESTED = 24
 _MEET = 1e-6  # m: as far apart, two axes still meet
 
 
-class ParallelAxes:
+class ParallelAxes(ClosedForm):
     """The inverse of one arm with one tool; `solver` is the robot of `eaik`."""
 
     def __init__(self, chain: Chain, solver: Any, T_flange_tcp: Array) -> None:
-        self._chain = chain
+        super().__init__(chain)
         self._solver = solver
         self._T_tcp_flange = inverse(T_flange_tcp)
         end = chain.zero[6]
@@ -42,7 +43,7 @@ class ParallelAxes:
         self._wrist_in_5 = _in_frame(chain, 4, _meeting(chain, 4, 5))
         self._knee_in_4 = _in_frame(chain, 3, _meeting(chain, 3, 4))
 
-    def branches(self, T_base_tcp: Array) -> Array:
+    def branches(self, T_base_tcp: Array, arm_angle: Array | None = None) -> Array:
         """Joint positions (n, 8, 6) by branch, axes in (-pi, pi]; NaN where a branch does not exist."""
         poses = T_base_tcp @ self._T_tcp_flange
         found = np.full((len(poses), _BRANCHES, AXES), np.nan)
@@ -61,7 +62,7 @@ class ParallelAxes:
 
     def slots(self, q: Array) -> Array:
         """The indices of the branches of joint positions (n, 6), as `kinematics.Branch` counts them."""
-        chain = self._chain
+        chain = self.chain
         frames = chain.frames(q)
         h1, h2 = chain.axis(0, frames), chain.axis(1, frames)
         h4, h5, h6 = (chain.axis(i, frames) for i in (3, 4, 5))
@@ -77,6 +78,8 @@ class ParallelAxes:
 
 def derive(chain: Chain, T_flange_tcp: Array) -> ParallelAxes | str:
     """The inverse of an arm with parallel axes 2, 3 and 4, or in words why it is none (or has none here)."""
+    if not chain.is_six:
+        return "it does not have six axes that turn"
     zero = [f[None] for f in chain.zero]
     h = [chain.axis(i, zero)[0] for i in range(AXES)]
     if max(np.linalg.norm(np.cross(h[1], h[i])) for i in (2, 3)) > 1e-9:

@@ -30,6 +30,7 @@ class MotionConfig:
     Args:
         joint_speed: fraction (0..1] of the axis speeds.
         joint_acceleration: rad/s2; joint_jerk rad/s3.
+        slide_acceleration: of axes of an arm that slide, m/s2; slide_jerk m/s3.
         linear_speed: m/s; linear_acceleration m/s2; linear_jerk m/s3.
         angular_speed: of the tool's turning on linear moves, rad/s.
         measure_duration: how long a measurement takes, s.
@@ -39,6 +40,8 @@ class MotionConfig:
     joint_speed: float = 0.5
     joint_acceleration: float = math.radians(200.0)
     joint_jerk: float = math.radians(1000.0)
+    slide_acceleration: float = 2.0
+    slide_jerk: float = 20.0
     linear_speed: float = 0.05
     linear_acceleration: float = 0.5
     linear_jerk: float = 5.0
@@ -94,7 +97,7 @@ class CellRobot:
 
     Args:
         base: of its base frame in the world.
-        home: joint position, rad (m of tracks).
+        home: joint position, rad (m of what slides).
         branch: the only one joint moves may end in; None: the fastest to reach.
         axes: its external ones; `home` has all.
         tcps: kinematics to further tool frames, by name.
@@ -134,6 +137,8 @@ class CellRobot:
         ones = np.ones(len(self.arm.velocity))
         velocity = self.arm.velocity * motion.joint_speed
         acceleration, jerk = ones * motion.joint_acceleration, ones * motion.joint_jerk
+        sliding = self.kinematics.joints.start + np.flatnonzero(self.kinematics.alone.slides)
+        acceleration[sliding], jerk[sliding] = motion.slide_acceleration, motion.slide_jerk
         for axis in self.axes:
             i = self.index(axis.name)
             velocity[i], acceleration[i], jerk[i] = axis.velocity, axis.acceleration, axis.jerk

@@ -16,6 +16,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from pn2code.cell_file.geometry import MOTION, ROBOT, SCENE
 from pn2code.cell_file.keys import Section
 from pn2code.diagnostics import Diagnostics
@@ -24,8 +26,8 @@ from pn2code.robot import codes
 from pn2code.robot.carried import WithAxes, with_axes
 from pn2code.robot.external import read_axes
 from pn2code.robot.frames import Frames, read_frames
-from pn2code.robot.kinematics import BRANCH_NAMES, Kinematics
-from pn2code.robot.model import find_arm, find_tool
+from pn2code.robot.kinematics import Kinematics
+from pn2code.robot.model import Arm, find_arm, find_tool
 from pn2code.robot.parts_table import PartKind, read_kinds, read_places
 from pn2code.robot.robot_cell import (
     PART_CONTACT,
@@ -39,7 +41,7 @@ from pn2code.robot.robot_cell import (
 from pn2code.robot.scene_objects import SceneObject, read_object
 from pn2code.robot.table import Locate, Table, is_number
 from pn2code.robot.table_poses import read_own_pose, read_pose
-from pn2code.robot.transforms import matrix_of
+from pn2code.robot.transforms import Array, matrix_of
 
 RADIANS = "angles in cell.toml are in degrees; if these are radians, multiply them by 57.2958"
 FEW_RADIANS = 3.2
@@ -105,6 +107,8 @@ def _motion(t: Table) -> MotionConfig:
         joint_speed=t.number("joint_speed"),
         joint_acceleration=math.radians(t.number("joint_acceleration_deg_s2")),
         joint_jerk=math.radians(t.number("joint_jerk_deg_s3")),
+        slide_acceleration=t.number("slide_acceleration"),
+        slide_jerk=t.number("slide_jerk"),
         linear_speed=t.number("linear_speed"),
         linear_acceleration=t.number("linear_acceleration"),
         linear_jerk=t.number("linear_jerk"),
@@ -124,32 +128,37 @@ def _robot(t: Table, name: str, folder: Path) -> CellRobot | None:
     base = read_pose(t, "base")
     home_deg = t.numbers("home")
     branch_name = t.text("branch")
+    arm_angle = t.number("arm_angle")
     axes = read_axes(t, name, base, folder)
     frames = t.table("tcps").named(t.inner("tcps")) if t.has("tcps") else ()
     further = {key: read_own_pose(p) for key, p in frames}
     t.done()
     if arm is None or (tool is None and tool_name != "none"):
         return None
-    home = tuple(math.radians(v) for v in home_deg)
-    for i, value in enumerate(home):
-        low, high = arm.lower[i], arm.upper[i]
-        if not low - 1e-9 <= value <= high + 1e-9:
-            t.d.error(
-                codes.ROBOT_VALUE,
-                f"HOME of `{name}` puts axis {i + 1} at {home_deg[i]:g} degrees, outside "
-                f"{math.degrees(low):g} .. {math.degrees(high):g}",
-                t.at("home"),
-                hint=RADIANS if in_radians(home_deg) else "",
-            )
+    home = _home(t, name, arm, home_deg)
     kinematics = Kinematics.of(arm, tool, t.at("model"), t.d)
-    if kinematics is None:
+    if kinematics is None or home is None:
         return None
-    branch = BRANCH_NAMES.get(branch_name)
+    branch = {str(b): b for b in kinematics.branches}.get(branch_name)
+    if branch is None and branch_name != "any":
+        own_names = ", ".join(f"`{b}`" for b in kinematics.branches)
+        t.wrong("branch", f"a branch of `{model}` ({own_names}) or `any`")
     tcps = {
         key: own
         for key, pose in further.items()
         if (own := Kinematics.to(arm, matrix_of(pose), t.at("model"), t.d)) is not None
     }
+    if kinematics.arm_angle is not None:
+        angle = math.radians(arm_angle)
+        kinematics = kinematics.with_arm_angle(angle)
+        tcps = {key: own.with_arm_angle(angle) for key, own in tcps.items()}
+    elif "arm_angle" in t.data:
+        t.d.error(
+            codes.ROBOT_VALUE,
+            f"robot `{name}` has an `arm_angle`, but its arm `{model}` has {len(arm.lower)} axes",
+            t.at("arm_angle"),
+            hint="only arms with seven axes have one; leave the key out",
+        )
     if not axes:
         return CellRobot(name, arm, tool, kinematics, base, home, branch, tcps=tcps)
     whole = with_axes(arm, axes, name, t.at("axes"), t.d)
@@ -159,6 +168,43 @@ def _robot(t: Table, name: str, folder: Path) -> CellRobot | None:
     carried = WithAxes(kinematics, axes, whole)
     tcps = {key: WithAxes(own, axes, whole) for key, own in tcps.items()}
     return CellRobot(name, whole, tool, carried, base, home, branch, axes, tcps=tcps)
+
+
+def _home(t: Table, name: str, arm: Arm, numbers: tuple[float, ...]) -> tuple[float, ...] | None:
+    """HOME of an arm: degrees, and m of axes that slide; None: it has not as many numbers as the arm has axes."""
+    count = len(arm.lower)
+    if len(numbers) != count:
+        said = "" if "home" in t.data else ", where nothing is said,"
+        t.d.error(
+            codes.ROBOT_VALUE,
+            f"HOME of `{name}`{said} has {len(numbers)} numbers, but its arm `{arm.name}` has {count} axes",
+            t.at("home") if "home" in t.data else t.at(),
+            hint=f"`home` has a number for each of {', '.join(arm.axes)}, in degrees"
+            + (", of what slides in m" if any(map(arm.slides, range(count))) else ""),
+        )
+        return None
+    counted = [v if arm.slides(i) else math.radians(v) for i, v in enumerate(numbers)]
+    home = arm.meant(np.array(counted))
+    for i, margin in enumerate(arm.margins(home)):
+        if margin < -1e-9:
+            t.d.error(
+                codes.ROBOT_VALUE,
+                f"HOME of `{name}` puts axis {i + 1} at {_outside(arm, i, home, numbers[i])}",
+                t.at("home"),
+                hint=RADIANS if in_radians(numbers) else "",
+            )
+    return tuple(home.tolist())
+
+
+def _outside(arm: Arm, axis: int, home: Array, said: float) -> str:
+    """In the units of the file."""
+    if arm.slides(axis):
+        return f"{said:g} m, outside {arm.lower[axis]:g} .. {arm.upper[axis]:g}"
+    low, high, how = arm.lower[axis], arm.upper[axis], ""
+    if low - 1e-9 <= home[axis] <= high + 1e-9:
+        coupled = next(c for i, _, c in arm.coupled() if i == axis)
+        low, high, how = coupled.lower, coupled.upper, f" (counted with `{coupled.other}`)"
+    return f"{said:g} degrees{how}, outside {math.degrees(low):g} .. {math.degrees(high):g}"
 
 
 def _scene(

@@ -187,13 +187,14 @@ def _expected(key: Key) -> str:
     if key.words:
         return f"one of {', '.join(key.words)}"
     if key.kind == "numbers":
-        count = " or ".join(_COUNTS[n] for n in key.counts)
+        *some, last = (_COUNTS[n] for n in key.counts) if key.counts else ("",)
+        count = f"{', '.join(some)} or {last}" if some else last
         bounds = _bounds(key)
         return f"a list of {count} numbers{bounds}" if count else f"a list of numbers{bounds}"
     return f"a number{_bounds(key)}" if key.kind == "number" else "a name"
 
 
-_COUNTS = {3: "three", 4: "four", 6: "6"}
+_COUNTS = {3: "three", 4: "four", 6: "six", 7: "seven"}
 
 
 def _bounds(key: Key) -> str:

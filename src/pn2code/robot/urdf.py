@@ -38,6 +38,22 @@ class Joint:
     velocity: float
 
 
+@frozen
+class Coupling:
+    """An axis that its maker counts together with another one: its position is q + factor * (q of the other).
+
+    Args:
+        joint: the axis; other: the one with which it is coupled.
+        lower, upper: limits of the position as the maker counts it, rad.
+    """
+
+    joint: str
+    other: str
+    factor: float
+    lower: float
+    upper: float
+
+
 @frozen(eq=False)
 class Urdf:
     """The tree of a URDF file.
@@ -49,6 +65,7 @@ class Urdf:
         joints: in order of the file.
         contact_links: links that may touch what the tool works on (`<pn2code contact="nose"/>`).
         self_ignore: pairs of links never checked against each other.
+        couplings: axes whose limits and positions depend on another one (`<pn2code coupled="joint_3" .../>`).
         root: the link that is no joint's child.
         xml: the parsed file.
     """
@@ -59,6 +76,7 @@ class Urdf:
     joints: tuple[Joint, ...]
     contact_links: tuple[str, ...]
     self_ignore: frozenset[frozenset[str]]
+    couplings: tuple[Coupling, ...]
     root: str
     xml: Any
 
@@ -146,6 +164,9 @@ def _tree(path: Path, root: Any) -> Urdf:
             for e in root.findall("pn2code")
             for pair in e.get("ignore", "").split()
         ),
+        couplings=tuple(
+            _coupling(e, joints) for e in root.findall("pn2code") if e.get("coupled") is not None
+        ),
         root=roots[0],
         xml=root,
     )
@@ -168,6 +189,29 @@ def _numbers(element: Any, name: str, count: int, default: str) -> tuple[float, 
         line = 0 if element is None else element.sourceline
         raise _BadError(f"`{name}` is `{text}`, but {count} numbers are expected", line)
     return values
+
+
+def _coupling(element: Any, joints: tuple[Joint, ...]) -> Coupling:
+    names = (_attribute(element, "coupled"), _attribute(element, "with"))
+    turning = [j.name for j in joints if j.type == "revolute"]
+    for name in names:
+        if name not in turning:
+            raise _BadError(
+                f"`coupled` names `{name}`, which is no revolute joint", element.sourceline
+            )
+    if turning.index(names[0]) <= turning.index(names[1]):
+        raise _BadError(
+            f"`{names[0]}` is coupled with `{names[1]}`, which is not before it", element.sourceline
+        )
+    factor, lower, upper = (
+        _numbers(element, key, 1, default)[0]
+        for key, default in (("factor", "1"), ("lower", ""), ("upper", ""))
+    )
+    if not lower < upper:
+        raise _BadError(
+            f"`coupled` of `{names[0]}` needs `lower` below `upper`", element.sourceline
+        )
+    return Coupling(names[0], names[1], factor, lower, upper)
 
 
 def _joint(element: Any, links: tuple[str, ...]) -> Joint:

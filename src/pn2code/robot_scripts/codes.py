@@ -36,7 +36,7 @@ UNSUPPORTED_EXPRESSION = register(
 UNSUPPORTED_COLSET = register(
     "unsupported-robot-colset",
     "a robot page uses a colour set that scripts do not have",
-    "Places of a robot may hold units, booleans, integers, reals, strings, enumerations, and "
+    "Places of a robot may hold units, booleans, integers, times, reals, strings, enumerations, and "
     "records and products of these. A record of six reals named x y z rx ry rz is a pose.",
 )
 CHOICE = register(

@@ -34,6 +34,7 @@ from pn2code.robot_scripts.values import (
     select,
     shape_of_type,
 )
+from pn2code.robot_scripts.values import literal as literal_of
 from pn2code.tdl import tree as t
 from pn2code.tdl import types as tdl
 
@@ -98,12 +99,7 @@ class Evaluator:
     def _evaluate(self, e: core.Exp, env: Env) -> Value:
         match e:
             case core.Lit(value, type_):
-                shape = shape_of_type(type_, self.program)
-                if not isinstance(shape, ScalarShape):
-                    raise UnsupportedError(
-                        f"values of type `{type_}` cannot be used in a robot script", e.span
-                    )
-                return Scalar(t.Value(value), shape.type)
+                return literal_of(value, type_, self.program, e.span)
             case core.Var(symbol):
                 return self._variable(symbol, env, e.span)
             case core.Con(constructor, type_):
@@ -306,12 +302,8 @@ class Evaluator:
                 env[symbol.uid] = value
                 return []
             case core.PLit(literal, type_):
-                shape = shape_of_type(type_, self.program)
-                if not isinstance(shape, ScalarShape):
-                    raise UnsupportedError(
-                        f"values of type `{type_}` cannot be used in a robot script", pattern.span
-                    )
-                return [equal(value, Scalar(t.Value(literal), shape.type), pattern.span)]
+                number = literal_of(literal, type_, self.program, pattern.span)
+                return [equal(value, number, pattern.span)]
             case core.PEqual(named):
                 return [equal(self.evaluate(named, env), value, pattern.span)]
             case core.PRecord(fields):

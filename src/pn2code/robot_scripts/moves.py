@@ -51,6 +51,7 @@ def of(
     ramp = None if primitive.acceleration is None else t.Quantity(primitive.acceleration, "%")
     along = tuple(_external(primitive, positions, span))
     tcp = primitive.tcp
+    elbow = None if primitive.arm_angle is None else t.Quantity(primitive.arm_angle, "deg")
     out: list[t.Move] = []
     if primitive.depart:
         speed = at if primitive.is_linear else None
@@ -62,12 +63,14 @@ def of(
             if primitive.approach:
                 distance = t.Quantity(primitive.approach, "mm")
                 before = t.CallExpression("before", (goal, distance))
-                out.append(t.Move(t.Motion.JOINT, before, frame, _ALL, None, ramp, along, tcp))
-            out.append(t.Move(t.Motion.LINEAR, goal, frame, at, None, ramp, along, tcp))
+                out.append(
+                    t.Move(t.Motion.JOINT, before, frame, _ALL, None, ramp, along, tcp, elbow)
+                )
+            out.append(t.Move(t.Motion.LINEAR, goal, frame, at, None, ramp, along, tcp, elbow))
         case "move_circular":
             assert isinstance(argument, Rec), "the cell has been checked"
             via, goal = (pose(argument.get(label), name, span) for label in ("1", "2"))
-            out.append(t.Move(t.Motion.CIRCULAR, goal, frame, at, via, ramp, along, tcp))
+            out.append(t.Move(t.Motion.CIRCULAR, goal, frame, at, via, ramp, along, tcp, elbow))
         case "move_axes":
             axes = _axes(argument, name, span)
             out.append(t.Move(t.Motion.JOINT, axes, None, at, None, ramp, along))
@@ -75,7 +78,7 @@ def of(
             out.append(t.Move(t.Motion.EXTERNAL, None, None, at, None, ramp, along))
         case "move_joint":
             goal = pose(argument, name, span)
-            out.append(t.Move(t.Motion.JOINT, goal, frame, at, None, ramp, along, tcp))
+            out.append(t.Move(t.Motion.JOINT, goal, frame, at, None, ramp, along, tcp, elbow))
         case _:
             out.append(t.Move(t.Motion.JOINT, None, None, at, None, ramp))
     return out
@@ -111,7 +114,7 @@ def _axes(argument: Value, name: str, span: Span) -> t.Axes:
                 angles.append(as_quantity(value, tdl.Type.ANGLE).exp)
     if len(angles) != len(getattr(argument, "fields", ())) or not angles:
         raise UnsupportedError(
-            f"`{name}` takes a joint position: a record of six reals a1 .. a6 or j1 .. j6",
+            f"`{name}` takes a joint position: a record of reals a1 .. a6 or j1 .. j6, one for each axis",
             span,
             codes.PRIMITIVE,
         )

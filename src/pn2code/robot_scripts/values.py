@@ -15,7 +15,7 @@ from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Span
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset, Kind
-from pn2code.ml.core.types import BOOL, INT, REAL, STRING, TCon, TRecord, Type
+from pn2code.ml.core.types import BOOL, INT, INTINF, REAL, STRING, TCon, TRecord, Type
 from pn2code.robot_scripts import codes as codes
 from pn2code.tdl import tree as t
 from pn2code.tdl import types as tdl
@@ -69,6 +69,7 @@ def shape_of_type(ml: Type, program: core.Program) -> Shape | None:
         case TCon():
             simple = {
                 INT: tdl.Type.INT,
+                INTINF: tdl.Type.INT,  # times of an integer clock, of which messages carry 31 bits
                 REAL: tdl.Type.REAL,
                 BOOL: tdl.Type.BOOL,
                 STRING: tdl.Type.STRING,
@@ -89,6 +90,20 @@ def shape_of_type(ml: Type, program: core.Program) -> Shape | None:
 def _fields(inner: list[tuple[str, Shape | None]]) -> Fields | None:
     known = tuple((label, x) for label, x in inner if x is not None)
     return Fields(known) if len(known) == len(inner) else None
+
+
+def literal(value: int | float | str, ml: Type, program: core.Program, span: Span) -> Scalar:
+    """A literal of the net.
+
+    Raises:
+        UnsupportedError: scripts have nothing for its type, or it is too large for their integers.
+    """
+    shape = shape_of_type(ml, program)
+    if not isinstance(shape, ScalarShape):
+        raise UnsupportedError(f"values of type `{ml}` cannot be used in a robot script", span)
+    if shape.type is tdl.Type.INT and not tdl.MIN_INT <= int(value) <= tdl.MAX_INT:
+        raise UnsupportedError("integers of robot scripts have 31 bits", span)
+    return Scalar(t.Value(value), shape.type)
 
 
 def is_enumeration(ml: Type, program: core.Program) -> bool:
@@ -131,7 +146,7 @@ def shape_of_colset(
             assert isinstance(only, ScalarShape)
             return ScalarShape(tdl.Type.POSE, only.single)
         return _fields(inner)
-    if c.kind in (Kind.UNIT, Kind.BOOL, Kind.INT, Kind.STRING, Kind.ENUM):
+    if c.kind in (Kind.UNIT, Kind.BOOL, Kind.INT, Kind.TIME, Kind.STRING, Kind.ENUM):
         return shape_of_type(c.type, program)
     return None
 
@@ -390,7 +405,7 @@ _SIMPLE: dict[str, tuple[t.Operator, tdl.Type]] = {
     "Int.mod": ("mod", _INT), "String.^": ("&", tdl.Type.STRING),
     **{
         f"{s}.{op}": (op, _BOOL)
-        for s in ("Int", "String") for op in ("<", "<=", ">", ">=")
+        for s in ("Int", "IntInf", "String") for op in ("<", "<=", ">", ">=")
     },
 }  # fmt: skip
 _FUNCTIONS: dict[str, tuple[str, tdl.Type]] = {
@@ -401,6 +416,10 @@ _FUNCTIONS: dict[str, tuple[str, tdl.Type]] = {
 _COMPARISONS: dict[str, t.Operator] = {
     "Real.<": "<", "Real.<=": "<=", "Real.>": ">", "Real.>=": ">=", "Real.==": "=", "Real.!=": "<>",
 }  # fmt: skip
+
+
+_SAME = frozenset({"IntInf.fromInt", "IntInf.toInt", "Int.toLarge", "Int.fromLarge"})
+"""Functions that change the type of a number: what scripts have of `IntInf.int` fits into an integer."""
 
 
 def builtin(name: str, argument: Value, span: Span) -> Value:
@@ -423,6 +442,8 @@ def builtin(name: str, argument: Value, span: Span) -> Value:
         function, result = _FUNCTIONS[name]
         plain = tuple(as_real(s).exp for s in scalars)
         return Scalar(t.CallExpression(function, plain), result)
+    if name in _SAME:
+        return scalars[0]
     if name == "Bool.not":
         return Scalar(logical_not(scalars[0].exp), _BOOL)
     if name in ("Int.~", "Real.~"):

@@ -17,6 +17,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import field
+from functools import partial
 from pathlib import Path, PurePath
 from typing import Any
 
@@ -47,7 +48,9 @@ from pn2code.robot.robot_cell import RobotCell
 from pn2code.run.device import DeviceExecutor
 from pn2code.run.engine import Engine, Observer
 from pn2code.run.files import RobotFiles
+from pn2code.run.hand import Hand
 from pn2code.run.journals import ROBOTS, SUPERVISOR, RunJournal, say_where
+from pn2code.run.late_files import LateFiles
 from pn2code.run.punctuality import Punctuality
 from pn2code.run.realtime import RealtimeEngine
 from pn2code.run.record import RunRecord, RunWarning
@@ -196,6 +199,7 @@ def run_cell(
     *,
     ready: Callable[[Prepared], None] | None = None,
     interrupted: Callable[[], str] | None = None,
+    hand_of: Callable[[Prepared], Hand] | None = None,
 ) -> RunResult | None:
     """Runs a cell and writes trace, rows and summary; None when it could not start.
 
@@ -203,12 +207,14 @@ def run_cell(
         observers: who watches.
         ready: is called with what will run, before anything runs.
         interrupted: see `Engine`.
+        hand_of: makes the hand of a person who may decide what sensors say and what fails, on the wall clock.
     """
     started = time.perf_counter()
     expect_writable(options.out)
     prepared = prepare(path, options, d)
     if prepared is None:
         return None
+    hand = hand_of(prepared) if hand_of is not None else None
     if ready is not None:
         ready(prepared)
     with ExitStack() as stack:
@@ -217,7 +223,14 @@ def run_cell(
         if sensors is None:
             return None
         record = run_once(
-            prepared, options, inputs, sensors, d, observers or [], interrupted=interrupted
+            prepared,
+            options,
+            inputs,
+            sensors,
+            d,
+            observers or [],
+            interrupted=interrupted,
+            hand=hand,
         )
         if record is None:
             return None
@@ -252,6 +265,7 @@ def run_once(
     observers: list[Observer],
     stops: Stops | None = None,
     interrupted: Callable[[], str] | None = None,
+    hand: Hand | None = None,
 ) -> RunRecord | None:
     """One run of programs that are built; None when it could not start.
 
@@ -264,9 +278,10 @@ def run_once(
         observers: who watches.
         stops: whose commands are held up, and when; None: nobody's.
         interrupted: see `Engine`.
+        hand: see `RealtimeEngine`.
     """
     with ExitStack() as stack:
-        engine = _start(prepared, options, inputs, stack, d, observers)
+        engine = _start(prepared, options, inputs, stack, d, observers, hand)
         if engine is None:
             return None
         engine.sensors, engine.stops = sensors, stops
@@ -287,6 +302,7 @@ def _start(
     stack: ExitStack,
     d: Diagnostics,
     observers: list[Observer],
+    hand: Hand | None,
 ) -> Engine | None:
     partition = prepared.generated.partition
     shared = stack.enter_context(shared_directory(partition.net.name))
@@ -324,6 +340,8 @@ def _start(
     trace = GrowingTrace(trace_path)
     stack.callback(trace.close)
     engine = _engine(prepared, options, supervisor, trace, backend, observers)
+    if isinstance(engine, RealtimeEngine):
+        engine.hand = hand
     arms = {robot.name for robot in prepared.config.robots}
     for name in late:
         text = "has found no supervisor: it had come to its end before"
@@ -337,7 +355,7 @@ def _start(
             if name in arms
             else DeviceExecutor(name)
         )
-        files = RobotFiles(side, GRACE_S if options.realtime else 0.0)
+        files = _files(engine, side)
         engine.add_robot(name, script, program, files, executor)
     if options.realtime:
         say_where(options.out, prepared.config, options.values, shared)
@@ -345,6 +363,15 @@ def _start(
         session, began = (first.session or "", first.began) if first else ("", time.time())
         engine.observers.append(RunJournal(options.out / ROBOTS, session, began))
     return engine
+
+
+def _files(engine: Engine, side: SharedDirectory) -> RobotFiles:
+    """The shared files of a robot or device; in the hand of a person, if there is one."""
+    if not isinstance(engine, RealtimeEngine):
+        return RobotFiles(side)
+    if engine.hand is None:
+        return RobotFiles(side, GRACE_S)
+    return LateFiles(side, GRACE_S, lambda: engine.now, partial(engine.heard_of, side.side))
 
 
 def _report_start(ended: Exit, inputs: Path, options: RunOptions, d: Diagnostics) -> None:

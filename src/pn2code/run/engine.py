@@ -53,6 +53,7 @@ from pn2code.robot.transforms import Array, matrix_of, pose_of
 from pn2code.run.accuracy import distance, distance_to_line
 from pn2code.run.device import DeviceExecutor
 from pn2code.run.files import RobotFiles
+from pn2code.run.hand import Said
 from pn2code.run.handling import PartKeeper
 from pn2code.run.record import (
     ActionRecord,
@@ -62,7 +63,7 @@ from pn2code.run.record import (
     RunRecord,
 )
 from pn2code.run.sensors import Sensors
-from pn2code.run.stops import Stops
+from pn2code.run.stops import Paused, Stops
 from pn2code.run.supervisor import SupervisorProcess
 from pn2code.tdl.check import CheckedProgram
 from pn2code.tdl.interpret import MOST_AT_ONCE, Interpreter
@@ -76,6 +77,7 @@ from pn2code.tdl.requests import (
     Marked,
     MessageConsumed,
     MessageWritten,
+    Request,
     Scalar,
     Sense,
 )
@@ -117,6 +119,7 @@ class RobotRunner:
     line: int = 0
     activity: str = ""
     waiting: AwaitFile | None = None
+    asking: Sense | None = None
     finished: bool = False
 
     def element_at(self, line: int) -> str:
@@ -370,9 +373,16 @@ class Engine:
     def _follow(self, robot: RobotRunner, result: Pose | None) -> None:
         """Resumes the interpreter and acts on what it asks for."""
         robot.waiting = None
-        request = robot.interpreter.resume(result)
+        self._heed_request(robot, robot.interpreter.resume(result))
+
+    def _heed_request(self, robot: RobotRunner, request: Request) -> None:
+        robot.asking = None
         while isinstance(request, Sense):
-            request = robot.interpreter.resume(self._sense(robot, request))
+            said = self._sense(robot, request)
+            if said is None:
+                robot.asking = request
+                return
+            request = self._told(robot, request, said)
         match request:
             case AwaitFile():
                 robot.waiting = request
@@ -387,23 +397,27 @@ class Engine:
             case Fault(message=message, line=line):
                 raise CellStoppedError(f"{robot.script}:{line}: {robot.name}: {message}")
 
-    def _sense(self, robot: RobotRunner, request: Sense) -> Scalar | None:
+    def _sense(self, robot: RobotRunner, request: Sense) -> Said | None:
+        """What a sensor says; None: that is not known yet."""
+        return Said(self._sensor_says(robot, request))
+
+    def _sensor_says(self, robot: RobotRunner, request: Sense) -> Scalar | None:
         looks = self.sensors.seen.get(request.sensor)
-        value: Scalar | None = (
-            self.sensors.ask(robot.name, request.sensor)
-            if looks is None
-            else self.parts.parts.is_seen(*looks)
-        )
-        self.record.events.append(
-            {
-                "t": self.now,
-                "event": "sense",
-                "robot": robot.name,
-                "sensor": request.sensor,
-                "value": value,
-            }
-        )
-        return value
+        if looks is not None:
+            return self.parts.parts.is_seen(*looks)
+        return self.sensors.ask(robot.name, request.sensor)
+
+    def _told(self, robot: RobotRunner, request: Sense, said: Said) -> Request:
+        """A sensor has said something: what the script wants next."""
+        note = {
+            "t": self.now,
+            "event": "sense",
+            "robot": robot.name,
+            "sensor": request.sensor,
+            "value": said.value,
+        }
+        self.record.events.append({**note, "by": said.by} if said.by else note)
+        return robot.interpreter.resume(said.value)
 
     def _begin_command(self, robot: RobotRunner, command: Command, line: int) -> None:
         try:
@@ -627,6 +641,8 @@ def kind_and_label(command: Command) -> tuple[str, str]:
 def _off_line(motion: Motion, seen: Sample) -> float:
     """How far the TCP is off its line, m; on a turntable off the line on its plate."""
     path = motion.trajectory
+    if isinstance(path, Paused):
+        path = path.trajectory
     if isinstance(path, LinearTrajectory) and tcp_of(motion.command):
         ends = path.line.at(np.array([0.0, 1.0]))
         return distance_to_line(pose_of(path.kinematics.forward(seen.q)), *map(pose_of, ends))
@@ -661,7 +677,9 @@ def _words(command: Command) -> str:
             moved = () if isinstance(command, Measure) else command.along
             tcp = "" if isinstance(command, Measure) else command.tcp
             by = f" by {tcp}" if tcp else ""
-            return f"{kind_and_label(command)[1]} {mm} mm, {deg} deg{within}{by}{_with(moved)}"
+            elbow = None if isinstance(command, Measure) else command.arm_angle
+            arm = "" if elbow is None else f", arm angle {np.degrees(elbow):.4f} deg"
+            return f"{kind_and_label(command)[1]} {mm} mm, {deg} deg{within}{by}{_with(moved)}{arm}"
         case MoveAxes(axes=axes):
             shown = " ".join(f"{np.degrees(v):.4f}" for v in axes)
             return f"axes {shown} deg{_with(command.along)}"

@@ -74,9 +74,10 @@ class Journal:
         """A command has ended; `began` as `now` said it."""
         self._note("did", robot=robot, kind=kind, label=label, line=line, start=round(began, 4))
 
-    def sensed(self, robot: str, sensor: str, value: object) -> None:
-        """What a sensor has said."""
-        self._note("sense", robot=robot, sensor=sensor, value=value)
+    def sensed(self, robot: str, sensor: str, value: object, by: str = "") -> None:
+        """What a sensor has said, and who has chosen it."""
+        more = {"by": by} if by else {}
+        self._note("sense", robot=robot, sensor=sensor, value=value, **more)
 
     def arm(self, robot: str, q: Sequence[float]) -> None:
         """How an arm stands (rad): not too often, and not where it stood already."""

@@ -67,7 +67,9 @@ class RunJournal:
             if "transition" in line:
                 self._journal.mark(line["transition"], line["binding"], line["origin"])
             elif line.get("event") == "sense":
-                self._journal.sensed(line["robot"], line["sensor"], line["value"])
+                self._journal.sensed(
+                    line["robot"], line["sensor"], line["value"], line.get("by", "")
+                )
         self._noted = len(self._events)
         for robot in engine.robots:
             self._look(robot)
@@ -83,8 +85,8 @@ class RunJournal:
     def _look(self, robot: RobotRunner) -> None:
         motion = robot.motion
         known, began = self._under_way.get(robot.name, (None, 0.0))
-        if motion is known:
-            return
+        if motion is known or (motion and known and motion.command is known.command):
+            return  # also one that stands for a while
         if known is not None:
             kind, label = kind_and_label(known.command)
             self._journal.did(robot.name, kind, label, robot.line, began)

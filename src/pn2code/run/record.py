@@ -74,6 +74,15 @@ class ActivityRecord:
 
 
 @frozen
+class Interference:
+    """What a person at the page has done to the run, in words."""
+
+    t: float
+    robot: str
+    text: str
+
+
+@frozen
 class RunWarning:
     """Something that a person should look at, though the run went on."""
 
@@ -116,6 +125,8 @@ class RunRecord:
     parts: list[PartRecord] = field(default_factory=list)
     activities: list[ActivityRecord] = field(default_factory=list)
     warnings: list[RunWarning] = field(default_factory=list)
+    by_hand: list[Interference] = field(default_factory=list)
+    """what a person has chosen or done"""
     sample_t: list[float] = field(default_factory=list)
     series: dict[str, list[float]] = field(default_factory=dict)
     accuracy: dict[str, float] = field(default_factory=dict)

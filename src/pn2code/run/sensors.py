@@ -142,7 +142,7 @@ def _script(
         text = line.partition("#")[0].rstrip()
         if not text.strip():
             continue
-        found = _parsed(scalars, text)
+        found = parsed(scalars, text)
         if isinstance(found, Malformed):
             d.error(
                 CELL_VALUE,
@@ -163,7 +163,7 @@ def _script(
     return tuple(out)
 
 
-def _parsed(scalars: tuple[Scalar, ...], text: str) -> tuple[Value, ...] | Malformed:
+def parsed(scalars: tuple[Scalar, ...], text: str) -> tuple[Value, ...] | Malformed:
     """A value as in a message; a truth value may also be written as in the net."""
     word = text.strip()
     if scalars[0].kind is ScalarKind.BOOL and word in ("true", "false"):
@@ -188,7 +188,7 @@ def _default(
     text = str(value) if is_text else format_scalars(scalars, (value,))
     if isinstance(value, bool) and kind is not ScalarKind.BOOL:
         text = None
-    found = Malformed(f"`{value}` is no value", 1) if text is None else _parsed(scalars, text)
+    found = Malformed(f"`{value}` is no value", 1) if text is None else parsed(scalars, text)
     if not isinstance(found, Malformed):
         return found
     d.error(

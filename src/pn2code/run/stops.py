@@ -10,13 +10,16 @@ for each side, whatever the others do.
 
 from __future__ import annotations
 
+import math
 import random
 import re
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
 from pn2code.base.frozen import frozen
+from pn2code.robot.executor import Motion
 from pn2code.robot.motion import Trajectory
 from pn2code.robot.transforms import Array
 
@@ -113,3 +116,22 @@ class Paused:
     def on_way(self, s: Array) -> Array:
         """Joint positions at fractions of the way, which has no time in it."""
         return self.trajectory.on_way(s)
+
+
+def paused(motion: Motion, now: float) -> Motion:
+    """A motion that stands from now on, without end."""
+    path = motion.trajectory
+    inner, pauses = (path.trajectory, path.pauses) if isinstance(path, Paused) else (path, ())
+    at = float(Paused(inner, pauses)._own(np.asarray(now - motion.began)))
+    return replace(motion, trajectory=Paused(inner, (*pauses, (at, math.inf))))
+
+
+def resumed(motion: Motion, now: float) -> Motion:
+    """A motion that stands without end goes on now; any other is as it was."""
+    path = motion.trajectory
+    if not isinstance(path, Paused) or path.pauses[-1][1] != math.inf:
+        return motion
+    at = path.pauses[-1][0]
+    before = sum(seconds for _, seconds in path.pauses[:-1])
+    lasted = max(now - motion.began - before - at, 0.0)
+    return replace(motion, trajectory=replace(path, pauses=(*path.pauses[:-1], (at, lasted))))

@@ -20,7 +20,8 @@ from pn2code.tdl.evaluate import ScriptError, ScriptValue, evaluate
 from pn2code.tdl.expressions import RESERVED, Scope, type_of
 from pn2code.tdl.types import NUMBERS, QUANTITIES, Type, fits
 
-AXES = 6
+AXES = (4, 6, 7)
+"""How many axes an arm may have."""
 """Of an arm."""
 
 
@@ -40,6 +41,17 @@ class CheckedProgram:
     variables: Mapping[str, t.Variable]
     constants: Mapping[str, ScriptValue]
     bodies: Mapping[str, flow.Body]
+
+    @property
+    def sensors(self) -> tuple[str, ...]:
+        """The sensors that the script asks, each once."""
+        found = {
+            i.statement.sensor: None
+            for body in self.bodies.values()
+            for i in body.instructions
+            if isinstance(i, flow.Do) and isinstance(i.statement, t.Sense)
+        }
+        return tuple(found)
 
 
 def check(
@@ -440,6 +452,8 @@ class _Checker:
     def along(self, s: t.Move) -> None:
         """External axes: each once, in its unit."""
         names: set[str] = set()
+        if s.arm_angle is not None:
+            self.expect(s.arm_angle, Type.ANGLE, "the arm angle")
         for a in s.along:
             kind, what = (Type.LENGTH, "track") if a.is_track else (Type.ANGLE, "turntable")
             self.expect(a.position, kind, f"the position of {what} `{a.axis}`")
@@ -457,10 +471,11 @@ class _Checker:
     def goal(self, s: t.Move) -> None:
         """Where a move goes: an arc by way of somewhere, nothing else so."""
         if isinstance(s.target, t.Axes):
-            if len(s.target.angles) != AXES:
+            if len(s.target.angles) not in AXES:
                 self.d.error(
                     codes.ARGUMENTS,
-                    f"`axes` takes {AXES} angles, but {len(s.target.angles)} are given",
+                    "`axes` takes 4, 6 or 7 numbers, one for each axis of the arm, but "
+                    f"{len(s.target.angles)} are given",
                     s.target.span,
                 )
             for number, angle in enumerate(s.target.angles, 1):

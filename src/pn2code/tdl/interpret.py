@@ -175,6 +175,14 @@ class Interpreter:
         self._end = saved.end
         self._started = saved.started
 
+    def twin(self, files: Files) -> Interpreter:
+        """Another run in the same state, with files of its own; nobody hears what happens in it."""
+        other = Interpreter(
+            self._program, files, step_limit=self._limit, occurrences=self._occurrences
+        )
+        other.restore(self.save())
+        return other
+
     # Environment of expressions
 
     def value(self, name: str) -> ScriptValue:
@@ -343,6 +351,7 @@ class Interpreter:
         if not 0 < ramp <= 1:
             raise ScriptError(f"acceleration {ramp * 100:g} % is not above zero and at most 100 %")
         along = tuple(map(self._external, s.along))
+        elbow = None if s.arm_angle is None else math.radians(self._number(s.arm_angle))
         if s.motion in (t.Motion.JOINT, t.Motion.EXTERNAL):
             joint = 1.0 if speed is None else speed
             if not 0 < joint <= 1:
@@ -358,17 +367,21 @@ class Interpreter:
                     axes = tuple(math.radians(self._number(a)) for a in angles)
                     return commands.MoveAxes(axes, joint, ramp, along)
                 case target:
-                    return commands.MoveJoint(self._pose(target), joint, frame, ramp, along, s.tcp)
+                    return commands.MoveJoint(
+                        self._pose(target), joint, frame, ramp, along, s.tcp, elbow
+                    )
         if speed is not None and speed <= 0:
             raise ScriptError(f"linear speed {speed:g} mm/s is not above zero")
         metres = None if speed is None else speed / 1000.0
         assert s.target is not None and not isinstance(s.target, t.Axes), "it was checked"
         if s.motion is t.Motion.LINEAR:
-            return commands.MoveLinear(self._pose(s.target), frame, metres, ramp, along, s.tcp)
+            return commands.MoveLinear(
+                self._pose(s.target), frame, metres, ramp, along, s.tcp, elbow
+            )
         assert s.via is not None, "it was checked"
         via = self._pose(s.via)
         end = self._pose(s.target)
-        return commands.MoveCircular(via, end, frame, metres, ramp, along, s.tcp)
+        return commands.MoveCircular(via, end, frame, metres, ramp, along, s.tcp, elbow)
 
     def _external(self, a: t.Along) -> commands.Along:
         number = self._number(a.position)

@@ -77,6 +77,8 @@ _WORDS = {
     "GREATER_EQUAL": "`>=`", "PLUS": "`+`", "MINUS": "`-`", "AMPERSAND": "`&`", "TIMES": "`*`",
     "DIVIDE": "`/`",
 }  # fmt: skip
+_ARM_ANGLE = "$arm angle"
+"""No name of an axis: where the elbow of an arm with seven axes is."""
 _EXTERNAL = ("$track", "$turntable")
 _STATEMENTS = {
     "MOVE",
@@ -335,7 +337,8 @@ class _Builder(Transformer[Token, Any]):
                     hint="write `move $joint ... with ...` or `move $linear ... with ...` for both",
                 )
         told: list[t.Along | str] = next((x for x in rest if isinstance(x, list)), [])
-        along = tuple(x for x in told if isinstance(x, t.Along))
+        along = tuple(x for x in told if isinstance(x, t.Along) and x.axis != _ARM_ANGLE)
+        elbows = [x for x in told if isinstance(x, t.Along) and x.axis == _ARM_ANGLE]
         tcps = [x for x in told if isinstance(x, str)]
         to_pose = target is not None and not isinstance(target, Token | t.Axes)
         if len(tcps) > 1 or (tcps and not to_pose):
@@ -346,6 +349,13 @@ class _Builder(Transformer[Token, Any]):
                 else "only a move to a pose has a tool frame",
                 self._at(motion),
                 hint="write `move $linear p with $tool NAME`",
+            )
+        if len(elbows) > 1 or (elbows and not to_pose):
+            self._d.error(
+                codes.EXTERNAL,
+                "a move has one arm angle" if to_pose else "only a move to a pose has an arm angle",
+                self._at(motion),
+                hint="write `move $joint p with $arm angle = 30 deg`",
             )
         frame = next((x for x in rest if isinstance(x, t.Target)), None)
         said: dict[str, t.Expression] = dict(x for x in rest if isinstance(x, tuple))
@@ -358,6 +368,7 @@ class _Builder(Transformer[Token, Any]):
             said.get("acceleration"),
             along,
             tcps[0] if tcps else "",
+            elbows[0].position if elbows else None,
             frame.span if frame else None,
             self._span(meta),
         )
@@ -369,6 +380,8 @@ class _Builder(Transformer[Token, Any]):
         kind, name, *rest = c
         if str(kind) == "$tool" and not rest:
             return str(name)
+        if str(kind) == "$arm" and str(name) == "angle" and rest:
+            return t.Along(_ARM_ANGLE, rest[0], False, self._span(meta))
         position = rest[0] if rest else t.Quantity(0.0, "mm")
         if str(kind) not in _EXTERNAL or not rest:
             self._d.error(
@@ -377,7 +390,8 @@ class _Builder(Transformer[Token, Any]):
                 if rest
                 else f"`{kind} {name}` says nowhere to go",
                 self._at(kind),
-                hint="write `$track NAME = 1200 mm`, `$turntable NAME = 30 deg`, or `$tool NAME`",
+                hint="write `$track NAME = 1200 mm`, `$turntable NAME = 30 deg`, `$tool NAME`, "
+                "or `$arm angle = 30 deg`",
             )
         return t.Along(str(name), position, str(kind) != "$turntable", self._span(meta))
 

@@ -194,6 +194,7 @@ class Move:
 
     `target` None is home, or of `$external` nothing; `along`: external axes that move as well (`with ...`);
     `tcp`: the tool frame that comes to the pose (`with $tool gripper`), "": that of the tool;
+    `arm_angle`: where the elbow of an arm with seven axes is then (`with $arm angle = 30 deg`);
     `frame` None: none was written, which means `world`; `acceleration` None: all of it.
     """
 
@@ -205,6 +206,7 @@ class Move:
     acceleration: Expression | None = None
     along: tuple[Along, ...] = ()
     tcp: str = ""
+    arm_angle: Expression | None = None
     frame_span: Span | None = field(default=None, compare=False, repr=False)
     span: Span = field(default=GENERATED, compare=False, repr=False)
 

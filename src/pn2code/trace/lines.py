@@ -23,10 +23,14 @@ _NOTES: Mapping[str, Mapping[str, type]] = {
     "part": {"t": float, "event": str, "robot": str, "effect": str, "part": str},
     "stand": {"t": float, "event": str, "robot": str, "duration": float},
     "sense": {"t": float, "event": str, "robot": str, "sensor": str, "value": object},
+    "message": {"t": float, "event": str, "robot": str, "channel": str, "fate": str},
 }
 _MORE: Mapping[str, Mapping[str, type]] = {
     "header": {"seed": int, "still": bool},
     "end": {"final": list, "reason": str, "loop": int},
+    "stand": {"by": str},
+    "sense": {"by": str},
+    "message": {"by": str, "seconds": float},
 }
 """Members that a line may have; all others it must have."""
 

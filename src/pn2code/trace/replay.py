@@ -73,6 +73,7 @@ class ReplayResult:
         game: the game after the last step that was repeated; None when the net itself could not be started.
         given_up: whether the next step is not known to be wrong: the token game gave up an evaluation.
         given: places that begin with other tokens than the net's, because the header says so.
+        by_hand: notes of what a person has chosen.
     """
 
     ok: bool
@@ -84,6 +85,7 @@ class ReplayResult:
     game: Game | None
     given_up: bool = False
     given: tuple[str, ...] = ()
+    by_hand: int = 0
 
     @property
     def marking(self) -> Marking | None:
@@ -224,6 +226,7 @@ def replay_lines(
     given: tuple[str, ...] = ()
     markings: list[Marking] = []
     latest = 0.0
+    by_hand = 0
     try:
         for number, text in enumerate(lines, 1):
             if not text.strip():
@@ -265,16 +268,18 @@ def replay_lines(
                 latest = max(latest, _time_of(line))
                 markings.append(game.marking)
                 steps += 1
-            elif notes is not None:
-                _refuse(notes.note(line) or time_problem(line, latest))
-                latest = max(latest, _time_of(line))
+            else:
+                by_hand += "by" in line
+                if notes is not None:
+                    _refuse(notes.note(line) or time_problem(line, latest))
+                    latest = max(latest, _time_of(line))
         if game is None:
             raise _Wrong("the trace is empty")
     except (_Wrong, GameError) as wrong:
         why = str(wrong) if source == net.name else f"{wrong}; the trace is of net `{source}`"
         gave_up = isinstance(wrong, GivenUpError)
         return ReplayResult(False, steps, why, at, transition, ended, game, gave_up, given)
-    return ReplayResult(True, steps, "", 0, "", ended, game, given=given)
+    return ReplayResult(True, steps, "", 0, "", ended, game, given=given, by_hand=by_hand)
 
 
 def _refuse(problem: str | None) -> None:

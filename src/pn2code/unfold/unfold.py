@@ -55,7 +55,7 @@ def unfold(
         GameError: a declaration or an initial marking raises an exception.
     """
     before = len(d.errors)
-    _check(net, d)
+    check(net, d)
     if len(d.errors) > before:
         return None
     game = Game(net)
@@ -80,8 +80,8 @@ def unfold(
     return closure.result()
 
 
-def _check(net: FlatNet, d: Diagnostics) -> None:
-    """Report what a place/transition net cannot have."""
+def check(net: FlatNet, d: Diagnostics) -> None:
+    """Report what a place/transition net cannot have as errors."""
     hint = "verify the net itself instead"
     for p in net.places:
         if p.colset.timed:

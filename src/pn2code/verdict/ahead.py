@@ -243,14 +243,19 @@ def _constant(move: t.Move, constants: _Constants) -> Move:
     if not isinstance(value, ScriptPose) or not all(map(math.isfinite, astuple(value))):
         raise ScriptError("this is no pose")
     pose, frame = to_si(value), move.frame or "world"
+    elbow = None
+    if move.arm_angle is not None:
+        elbow = math.radians(float(cast(float, evaluate(move.arm_angle, constants))))
     match move.motion:
         case t.Motion.JOINT:
-            return MoveJoint(pose, frame=frame, along=along, tcp=move.tcp)
+            return MoveJoint(pose, frame=frame, along=along, tcp=move.tcp, arm_angle=elbow)
         case t.Motion.LINEAR:
-            return MoveLinear(pose, frame, along=along, tcp=move.tcp)
+            return MoveLinear(pose, frame, along=along, tcp=move.tcp, arm_angle=elbow)
         case _:
             via = _place_on_the_way(move, constants) or pose
-            return MoveCircular(via=via, target=pose, frame=frame, along=along, tcp=move.tcp)
+            return MoveCircular(
+                via=via, target=pose, frame=frame, along=along, tcp=move.tcp, arm_angle=elbow
+            )
 
 
 def _place_on_the_way(move: t.Move, constants: _Constants) -> Pose | None:

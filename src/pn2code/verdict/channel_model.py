@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from pn2code.cell.divide import divide
+from pn2code.channel_model.by_cell import Shown
 from pn2code.channel_model.check import WHOLE, Answer, Evidence, check_channel_model
 from pn2code.channel_model.faults import SAYS
 from pn2code.diagnostics import Diagnostics
@@ -15,11 +16,11 @@ from pn2code.verify.answers import basis
 from pn2code.verify.answers.properties import Verdict
 from pn2code.verify.answers.reasons import clause
 from pn2code.verify.codes import TIME_OVER
-from pn2code.verify.controller.control_types import BLOCKING, Control
+from pn2code.verify.controller.control_types import BLOCKING, MESSAGES, Control
 from pn2code.verify.controller.premises import Premises
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits
-from pn2code.verify.exploring.result import Exploration
+from pn2code.verify.exploring.result import COUNTED, Exploration
 
 Answers = tuple[Answer, ...]
 
@@ -47,7 +48,7 @@ def look(
     partition = divide(opened.flat, opened.config, d)
     if partition is None:
         return ()
-    is_small = found.complete or found.why in ("decided", "approximation")
+    is_small = found.complete or found.why in ("decided", "approximation", COUNTED)
     is_open = not is_small and limits.deadline.is_over()
     own = Diagnostics()
     answers = tuple(
@@ -60,12 +61,23 @@ def look(
             # All of it will not be seen where the cell was not, but what is wrong in a part is wrong.
             most=None if is_small else max(found.nodes, LEAST_STATES),
             options=ExploreOptions(progress=options.progress, interrupted=options.interrupted),
+            shown=_shown(control),
         )
     )
     # Each answer says itself that the time was over.
     d.items += [i for i in own.items if i.code != TIME_OVER]
     premise = Premises.of(partition, opened.config).replies.premise
     return tuple(_ending(a, control, premise) if a.check == WHOLE else a for a in answers)
+
+
+def _shown(control: Control | None) -> Shown | None:
+    """What the checks of the supervisor say of the files already; None: nothing."""
+    if control is None or not control.quiet or control.found is None or control.running is None:
+        return None
+    if any(c.answer != "yes" for c in control.checks if c.name == MESSAGES):
+        return None
+    net, found = control.running.net, control.found
+    return Shown(found.nodes, found.arcs, len(net.places), len(net.transitions), found.is_counted)
 
 
 _NOT_LOOKED = "whether programs stop or come too late is for the checks of the supervisor, which were left out"

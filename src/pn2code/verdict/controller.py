@@ -19,7 +19,7 @@ from pn2code.verify.controller.premises import Premises
 from pn2code.verify.controller.proofs import declared
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits
-from pn2code.verify.exploring.result import Exploration
+from pn2code.verify.exploring.result import COUNTED, Exploration
 
 LEAST_STATES = 1_000
 """Of the cell that are looked at where its closed net was not seen to the end."""
@@ -55,7 +55,7 @@ def look(
     # An approximate exploration came to its end; the checks make an exact one of their own.
     arms = Arms.of(config, d)
     bounds = (options.sizes.bounds if options.sizes is not None else None) or {}
-    is_partial = not found.complete and found.why not in ("decided", "approximation")
+    is_partial = not found.complete and found.why not in ("decided", "approximation", COUNTED)
     if is_partial and (found.why == "interrupted" or limits.deadline.is_over()):
         poses = None if arms is None else Poses(partition, config.primitives, arms, opened.storage)
         capacities = declared(partition, config, d)

@@ -16,7 +16,7 @@ from pn2code.diagnostics import Diagnostics, Note, Origin
 from pn2code.division import divided
 from pn2code.net.flat import FlatNet
 from pn2code.robot_scripts.translate import lower_robots
-from pn2code.verdict import channel_model, controller, properties
+from pn2code.verdict import channel_model, closed, controller, properties
 from pn2code.verdict.asked import Asked, gather
 from pn2code.verdict.opened import OpenNet
 from pn2code.verify.answers import outcome
@@ -28,7 +28,7 @@ from pn2code.verify.codes import REPORT_UNWRITABLE, STATE_ERROR, TRACE_UNWRITABL
 from pn2code.verify.controller import short_timers
 from pn2code.verify.controller.control_types import Control
 from pn2code.verify.exploring import nondeterminism
-from pn2code.verify.exploring.explore import ExploreOptions, explore
+from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.programs import Sizes
 from pn2code.verify.exploring.result import Exploration
@@ -193,7 +193,8 @@ def look(
     of_net = own_options or options
     if is_cell and of_net.covering and of_net.sizes is not None:
         of_net = replace(of_net, heaps=_open_channels(opened, of_net.sizes))
-    found = explore(opened.flat, opened.storage, part, d, of_net)
+    may_count = is_cell and not asked
+    found = closed.explored(opened, part, of_net, d, may_count=may_count)
     if found is None:
         return None
     control: Control | None = None

@@ -23,8 +23,8 @@ from pn2code.cell.config import COMMANDS, CommandName
 from pn2code.cell_file import json_schema, listing
 from pn2code.cell_file.keys import Key
 from pn2code.cell_file.whole import FILE
+from pn2code.robot.branches import ALL_NAMES
 from pn2code.robot.commands import EFFECTS
-from pn2code.robot.kinematics import BRANCH_NAMES
 
 EDITOR = jsonschema.Draft202012Validator(json_schema.schema())
 EVERY = [*keys(FULL)]
@@ -179,7 +179,7 @@ def test_words_are_those_of_the_parts_that_use_them() -> None:
     robot = FILE["robots"].inner
     assert primitive is not None and robot is not None
     assert set(EFFECTS) < primitive.names("tool") and not set(EFFECTS) & primitive.names("wait")
-    assert set(robot["branch"].words) == {"any", *BRANCH_NAMES}
+    assert set(robot["branch"].words) == {"any", *ALL_NAMES}
 
 
 def test_the_manual_has_all_keys(root: Path) -> None:

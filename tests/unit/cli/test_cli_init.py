@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from helpers.solvers import solver_for
 from pn2code.cell.load import load
 from pn2code.cell_file import json_schema
 from pn2code.cli.main import app
@@ -26,6 +27,7 @@ def pn2code(*words: object) -> tuple[int, str, str]:
 
 @pytest.mark.parametrize("name", TEMPLATES)
 def test_a_new_cell_has_all_of_its_files(name: str, tmp_path: Path) -> None:
+    solver_for(name)
     folder = tmp_path / "cells" / "press"
     code, said, _ = pn2code("init", folder, "--template", name)
     assert code == 0

@@ -15,6 +15,7 @@ LACKING: dict[str, str] = {}
 
 FILES = sorted(
     {p.name.removesuffix(".sml").removesuffix(".real") for p in prelude.FOLDER.glob("*.sml")}
+    | {"Word8", "Word32", "Word64", "Int64"}
 )
 
 

@@ -19,10 +19,14 @@ def test_files_are_up_to_date():
 
 def test_library_names():
     assert known_arms() == (
+        "cobra_s600",
+        "gantry_3000",
         "gp25",
+        "iiwa14_r820",
         "irb6700_200_260",
         "kr120_r2500",
         "kr210_r2700",
+        "lrmate200id",
         "tx2_90",
         "ur10e",
         "ur5e",

@@ -74,7 +74,7 @@ MISTAKES = [
     (
         put("robots", "robot1", "home", value=[0, 1]),
         "robot-value",
-        "a list of 6 numbers is expected",
+        "a list of four, six or seven numbers is expected",
     ),
     (
         put("robots", "robot1", "home", value=[0, -150, 110, 0, 45, 90]),

@@ -151,7 +151,7 @@ ERRORS = [
     ("move $circular home via p", "17:1 error[tdl-frame] `home` is a joint position"),
     (
         "move $joint axes(a, a, a, a, a)",
-        "17:13 error[tdl-arguments] `axes` takes 6 angles, but 5 are given",
+        "17:13 error[tdl-arguments] `axes` takes 4, 6 or 7 numbers, one for each axis of the arm, but 5 are given",
     ),
     (
         "move $joint axes(a, a, x, a, a, a)",

@@ -11,10 +11,17 @@ from tools.oracle.texts import NET
 
 from helpers.netbuilder import write
 
+LARGE = """val it'before = (Format.format, Scan.sscanf, Queue.dequeue);
+fun it'table () = HashTable.mkTable (Word.fromInt, op =) (4, Fail "none") : (int, int) HashTable.hash_table;
+"""
+"""Structures of the library that many expressions mention: they are typed once, not for each of them."""
+
 
 @pytest.fixture(scope="module")
 def here(tmp_path_factory: pytest.TempPathFactory) -> Here:
-    return Here(write(NET, tmp_path_factory.mktemp("oracle") / "Oracle.cpn"))
+    here = Here(write(NET, tmp_path_factory.mktemp("oracle") / "Oracle.cpn"))
+    here.declare(LARGE)
+    return here
 
 
 @pytest.mark.parametrize("name", sorted(p.stem for p in FOLDER.glob("*.tsv")))

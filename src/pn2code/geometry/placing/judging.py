@@ -128,11 +128,10 @@ class Judge:
         walks = {name: plan.walk(placed.robot(name), placed) for name, plan in self.plans.items()}
         for name, walk in walks.items():
             kinematics = placed.robot(name).kinematics
-            arm = kinematics.arm
             seconds += walk.seconds
             q = walk.q[walk.counts]
             if len(q):
-                off = np.minimum(q - arm.lower, arm.upper - q)[:, kinematics.joints]
+                off = kinematics.turning_margins(q)
                 limit = min(limit, float(off.min()))
                 found = kinematics.conditioning_many(q)
                 condition = max(condition, *(c.condition for c in found))

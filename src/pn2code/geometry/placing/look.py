@@ -264,7 +264,7 @@ class _Placing:
 
 def _keys(task: Task) -> Mapping[tuple[float, ...], int]:
     """Its groups by their ends."""
-    rows = np.concatenate([task.poses.reshape(-1, 16), task.carried], axis=1)
+    rows = np.concatenate([task.poses.reshape(-1, 16), task.carried, task.elbows[:, None]], axis=1)
     return {
         tuple(np.round(rows[[g.start, g.stop - 1]], 6).ravel().tolist()): i
         for i, g in enumerate(task.groups)
@@ -280,11 +280,13 @@ def _both(task: Task, other: Task) -> Task:
     own = _keys(task)
     more = [i for key, i in _keys(other).items() if key not in own]
     poses, groups, names = task.poses, list(task.groups), list(task.names)
-    shifts = task.carried
+    shifts, angles = task.carried, task.elbows
     for i in more:
         part = other.poses[other.groups[i]]
         groups.append(slice(len(poses), len(poses) + len(part)))
         names.append(other.names[i])
         poses = np.concatenate([poses, part])
         shifts = np.concatenate([shifts, other.carried[other.groups[i]]])
-    return Task(poses, tuple(groups), tuple(names), shifts)
+        angles = np.concatenate([angles, other.elbows[other.groups[i]]])
+    elbows = None if task.angles is None and other.angles is None else angles
+    return Task(poses, tuple(groups), tuple(names), shifts, elbows)

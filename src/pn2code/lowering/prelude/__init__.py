@@ -11,6 +11,7 @@ only knows by name are tuples, lists and numbers here: see `representation`.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping
 from dataclasses import fields as fields_of
 from functools import cache
@@ -34,6 +35,8 @@ from pn2code.ml.core.types import (
     tuple_of,
 )
 from pn2code.ml.elaborate import Elaborator
+from pn2code.ml.library import builtin_table_sized as sized
+from pn2code.ml.library.datatypes import LITERAL_TYPES, WORD_TYPES
 
 FOLDER = Path(__file__).resolve().parent
 
@@ -42,6 +45,12 @@ WORDS = {
     ">>": "right", "~>>": "arithmetic_right", "*+": "times_plus", "*-": "times_minus", "?=": "unordered_equal",
 }  # fmt: skip
 """Operators in names of functions."""
+
+_SIZES = {
+    **{name: ("Word", bits) for name, bits in sized.WORDS.items() if name != "Word"},
+    **{name: ("Int32", bits) for name, bits in sized.INTEGERS.items() if name != "Int32"},
+}
+"""Structures that are made from another one's file, with another number of bits."""
 
 PRIMITIVE = "prim_"
 _FIRST_UID = 1 << 40
@@ -54,7 +63,7 @@ _SUBSTRING = tuple_of(STRING, INT, INT)
 
 _REPRESENTATIONS: Mapping[str, Type] = {
     "word": _WORD,
-    "Word8.word": _WORD,
+    **{t.name: INTINF for t in (*WORD_TYPES, *LITERAL_TYPES) if "." in t.name},
     "substring": _SUBSTRING,
     "Time.time": INTINF,
     "Timer.real_timer": INTINF,
@@ -151,19 +160,24 @@ def find(builtin: str, real_time: bool) -> tuple[File, Symbol] | None:
 def _load(structure: str, real_time: bool) -> File | None:
     path = FOLDER / f"{structure}.real.sml"
     if not (real_time and path.is_file()):
-        path = FOLDER / f"{structure}.sml"
+        path = FOLDER / f"{_SIZES.get(structure, (structure, 0))[0]}.sml"
     if not structure or not path.is_file():
         return None
+    text = path.read_text("ascii")
+    if structure in _SIZES:
+        model, bits = _SIZES[structure]
+        text = re.sub(r"^val bits = \d+$", f"val bits = {bits}", text, flags=re.MULTILINE)
+        text = text.replace(f"{model}_", f"{structure}_")
     d = Diagnostics()
     elaborator = Elaborator(d, real_time=real_time)
-    name = f"prelude/{path.name}"
-    elaborator.declarations(SourceText(path.read_text("ascii"), Origin(name, 1, 1)))
+    elaborator.declarations(SourceText(text, Origin(f"prelude/{path.name}", 1, 1)))
     if d.has_errors:
         raise AssertionError(
             f"{path.name}: "
             + "; ".join(f"{e.origin.line}: {e.message}, {e.hint}" for e in d.errors[:5])
         )
-    number = sorted(p.name for p in FOLDER.glob("*.sml")).index(path.name)
+    files = sorted({p.name for p in FOLDER.glob("*.sml")} | {f"{name}.sml" for name in _SIZES})
+    number = files.index(f"{structure}.sml" if structure in _SIZES else path.name)
     offset = _FIRST_UID + number * _UIDS_OF_A_FILE
     declarations = elaborator.program().declarations
     return File(tuple(_renumbered(dec, offset, {}) for dec in declarations))

@@ -14,6 +14,17 @@ from pathlib import Path
 
 FOLDER = Path(__file__).resolve().parent
 
+
+def _slices_of(vectors: str, whole: str, element: str) -> str:
+    """The declaration of slices of vectors of one type of elements."""
+    text = (FOLDER / "VectorSlice.sml").read_text(encoding="ascii")
+    text = text.replace("Vector.", f"{vectors}.").replace("VectorSlice", f"{vectors}Slice")
+    types = f"type elem = {element}\n    type vector = {whole}\n"
+    return text.replace(
+        "datatype 'a slice = Slice of 'a vector", f"{types}    datatype slice = Slice of vector"
+    )
+
+
 _KEYS = {
     "Int": "struct type ord_key = int val compare = Int.compare end",
     "Word": "struct type ord_key = word val compare = Word.compare end",
@@ -41,6 +52,8 @@ MADE: dict[str, str] = {
         name: f"functor {name} (K : ORD_KEY) = struct structure Made = {functor} (K) open Made end"
         for name, functor in _OTHER_FUNCTORS.items()
     },
+    "CharVectorSlice": _slices_of("CharVector", "string", "char"),
+    "Word8VectorSlice": _slices_of("Word8Vector", "Word8Vector.vector", "Word8.word"),
     **{
         name: f"structure {name} = List{name[-3:]}Fn ({_KEYS[next(k for k in _KEYS if name.startswith(k))]})"
         for name in _STRUCTURES

@@ -45,38 +45,10 @@ OS.FileSys : compare fileId hash readLink setTime tmpName
 Timer : checkCPUTimes checkGCTime
 == pn2code does not have this part of the library
 IEEEReal : fromString getRoundingMode scan setRoundingMode toString
-CharArray : all app appi array collate copy copyVec exists find findi foldl foldli foldr foldri fromList
-CharArray : length modify modifyi sub tabulate update vector
-ArraySlice : all app appi base collate copy copyVec exists find findi foldl foldli foldr foldri full getItem
-ArraySlice : isEmpty length modify modifyi slice sub subslice update vector
-VectorSlice : all app appi base collate concat exists find findi foldl foldli foldr foldri full getItem
-VectorSlice : isEmpty length map mapi slice sub subslice vector
-Array2 : app appi array column copy dimensions fold foldi fromList modify modifyi nCols nRows row sub tabulate
-Array2 : update
-Word8 : andb compare div fmt fromLarge fromLargeInt fromLargeWord fromString max min mod notb orb scan toIntX
-Word8 : toLarge toLargeInt toLargeIntX toLargeWord toLargeWordX toLargeX xorb
-Word8Vector : all app appi collate exists find findi foldl foldli foldr foldri map mapi tabulate update
-Word8Array : all app appi array collate copy copyVec exists find findi foldl foldli foldr foldri fromList
-Word8Array : length modify modifyi sub tabulate update vector
-Int32 : abs compare div fmt fromInt fromLarge fromString max min mod quot rem sameSign scan sign toInt toLarge
-Int32 : toString
-LargeWord : andb compare div fmt fromInt fromLarge fromLargeInt fromLargeWord fromString max min mod notb orb
-LargeWord : scan toInt toIntX toLarge toLargeInt toLargeIntX toLargeWord toLargeWordX toLargeX toString xorb
-Word32 : andb compare div fmt fromInt fromLarge fromLargeInt fromLargeWord fromString max min mod notb orb
-Word32 : scan toInt toIntX toLarge toLargeInt toLargeIntX toLargeWord toLargeWordX toLargeX toString xorb
-CharVectorSlice : all app appi base collate concat exists find findi foldl foldli foldr foldri full getItem
-CharVectorSlice : isEmpty length map mapi slice sub subslice vector
-CharArraySlice : all app appi base collate copy copyVec exists find findi foldl foldli foldr foldri full
-CharArraySlice : getItem isEmpty length modify modifyi slice sub subslice update vector
-Word8VectorSlice : all app appi base collate concat exists find findi foldl foldli foldr foldri full getItem
-Word8VectorSlice : isEmpty length map mapi slice sub subslice vector
-Word8ArraySlice : all app appi base collate copy copyVec exists find findi foldl foldli foldr foldri full
-Word8ArraySlice : getItem isEmpty length modify modifyi slice sub subslice update vector
 SMLofNJ : exnHistory exportFn exportML getAllArgs getArgs getCmdName shiftArgs
 SMLofNJ.Cont : callcc capture escape isolate throw
 SMLofNJ.Internals.GC : doGC messages
 SMLofNJ.IntervalTimer : getIntTimer setIntTimer tick
-SMLofNJ.Susp : delay force
 SMLofNJ.SysInfo : getHostArch getOSKind getOSName getOSVersion getTargetArch hasMultiprocessing
 SMLofNJ.SysInfo : hasSoftwarePolling
 SMLofNJ.Weak : strong weak weak'

@@ -50,35 +50,6 @@ Real.fromLarge : IEEEReal.rounding_mode -> real -> real ; the same
 Real.fmt : StringCvt.realfmt -> real -> string ; formatted; raises Size
 Real.scan : ('a -> (char * 'a) option) -> 'a -> (real * 'a) option ; reads a number from a stream
 Bool.scan : ('a -> (char * 'a) option) -> 'a -> (bool * 'a) option ; reads true or false from a stream
-Word.wordSize : int ; 31
-Word.fromInt : int -> word ; modulo 2 to the power of 31
-Word.toInt : word -> int ; raises Overflow
-Word.toIntX : word -> int ; the highest bit is the sign
-Word.fromLargeInt : IntInf.int -> word ; modulo 2 to the power of 31
-Word.toLargeInt : word -> IntInf.int ; the same number
-Word.toLargeIntX : word -> IntInf.int ; the highest bit is the sign
-Word.+ : word * word -> word ; sum, modulo 2 to the power of 31
-Word.- : word * word -> word ; difference, modulo 2 to the power of 31
-Word.* : word * word -> word ; product, modulo 2 to the power of 31
-Word.div : word * word -> word ; quotient; raises Div
-Word.mod : word * word -> word ; remainder; raises Div
-Word.andb : word * word -> word ; bitwise and
-Word.orb : word * word -> word ; bitwise or
-Word.xorb : word * word -> word ; bitwise exclusive or
-Word.notb : word -> word ; bitwise negation
-Word.<< : word * word -> word ; shifted left
-Word.>> : word * word -> word ; shifted right
-Word.~>> : word * word -> word ; shifted right, copies of the highest bit come in
-Word.< : word * word -> bool ; less
-Word.<= : word * word -> bool ; less or equal
-Word.> : word * word -> bool ; greater
-Word.>= : word * word -> bool ; greater or equal
-Word.compare : word * word -> order ; three-way comparison
-Word.min : word * word -> word ; the smaller
-Word.max : word * word -> word ; the larger
-Word.toString : word -> string ; hexadecimal
-Word.fmt : StringCvt.radix -> word -> string ; digits to a base
-Word.fromString : string -> word option ; hexadecimal
 
 -- strings
 String.maxSize : int ; 16777215
@@ -327,9 +298,7 @@ Byte.byteToChar : Word8.word -> char ; the character of that code
 Byte.charToByte : char -> Word8.word ; its code
 Byte.bytesToString : Word8Vector.vector -> string ; the characters
 Byte.stringToBytes : string -> Word8Vector.vector ; the codes
-Word8.fromInt : int -> Word8.word ; modulo 256
-Word8.toInt : Word8.word -> int ; 0 to 255
-Word8.toString : Word8.word -> string ; hexadecimal
+Word8Vector.maxLen : int ; 16777215
 Word8Vector.length : Word8Vector.vector -> int ; number of bytes
 Word8Vector.sub : Word8Vector.vector * int -> Word8.word ; byte; raises Subscript
 Word8Vector.fromList : Word8.word list -> Word8Vector.vector ; the bytes

@@ -17,6 +17,7 @@ from __future__ import annotations
 from pn2code.ml.library.builtin_table import COLSET_TABLE, TABLE
 from pn2code.ml.library.builtin_table_absent import ABSENT_TABLE
 from pn2code.ml.library.builtin_table_library import LIBRARY_TABLE
+from pn2code.ml.library.builtin_table_sized import INTEGERS, SIZED_TABLE, WORDS
 from pn2code.ml.library.schemes import BuiltinInfo
 
 
@@ -53,6 +54,7 @@ BUILTINS: dict[str, BuiltinInfo] = {
     **_read_absent(ABSENT_TABLE),
     **_read(TABLE),
     **_read(LIBRARY_TABLE),
+    **_read(SIZED_TABLE),
 }
 COLSET_MEMBERS: dict[str, BuiltinInfo] = _read(COLSET_TABLE)
 
@@ -69,15 +71,15 @@ def internal_function(name: str) -> str | None:
     return BUILTINS.setdefault(name, BuiltinInfo(name, "'a -> 'b", "is not there", reason)).name
 
 
-_NUMBERS = ("Int", "Real", "IntInf")
-_ORDERED = ("Int", "Real", "IntInf", "String", "Char")
+_WHOLE = ("Int", "IntInf", *INTEGERS)
+_NUMBERS = ("Int", "Real", "IntInf", *INTEGERS)
+_ORDERED = ("Int", "Real", "IntInf", "String", "Char", *INTEGERS, *WORDS)
 
 OVERLOADED: dict[str, tuple[str, ...]] = {
-    **{op: tuple(f"{s}.{op}" for s in (*_NUMBERS, "Word")) for op in ("+", "-", "*")},
-    "~": tuple(f"{s}.~" for s in _NUMBERS),
-    "abs": ("Int.abs", "Real.abs", "IntInf.abs"),
-    **{op: tuple(f"{s}.{op}" for s in ("Int", "IntInf", "Word")) for op in ("div", "mod")},
-    **{op: tuple(f"{s}.{op}" for s in (*_ORDERED, "Word")) for op in ("<", "<=", ">", ">=")},
+    **{op: tuple(f"{s}.{op}" for s in (*_NUMBERS, *WORDS)) for op in ("+", "-", "*", "~")},
+    "abs": tuple(f"{s}.abs" for s in _NUMBERS),
+    **{op: tuple(f"{s}.{op}" for s in (*_WHOLE, *WORDS)) for op in ("div", "mod")},
+    **{op: tuple(f"{s}.{op}" for s in _ORDERED) for op in ("<", "<=", ">", ">=")},
 }
 """Short names that stand for one of several; the first (at int) is taken when nothing decides."""
 
@@ -237,6 +239,7 @@ STRUCTURE_ALIASES: dict[str, str] = {
     "LargeReal": "Real",
     "Real64": "Real",
     "Word31": "Word",
+    "LargeWord": "Word32",
     "SMLTime": "Time",
     "CPN'Time": "ModelTime",
     "Real.Math": "Math",
@@ -258,8 +261,8 @@ HIDDEN: frozenset[str] = frozenset(
 """Full names that no net can write; it has the short ones."""
 
 _OTHER_STRUCTURES = """
-Array2 BinIO CharArray ArraySlice VectorSlice CharVectorSlice CharArraySlice IEEEReal IO Int32 Int64
-LargeWord SMLofNJ StringCvt Unix Posix Socket Word32 Word64 Word8Array Word8VectorSlice CPN'Replications
+BinIO CharArray CharArraySlice IEEEReal IO
+SMLofNJ StringCvt Unix Posix Socket Word8ArraySlice CPN'Replications
 Replications Comms CPN'Sim CPN'NetCapture CPN'Monitors CPN'Env CPN'Settings CPN'StreamIO Cpn
 """
 
@@ -305,10 +308,8 @@ ABSENT_VALUES: frozenset[str] = frozenset(
         "NonblockingNotSupported",
     )}
     | {f"StringCvt.{name}" for name in ("BIN", "OCT", "DEC", "HEX", "SCI", "FIX", "GEN", "EXACT")}
-    | {f"{name}.maxLen" for name in ("CharArray", "Word8Vector", "Word8Array")}
-    | {f"{name}.wordSize" for name in ("Word8", "Word32", "LargeWord")}
-    | {f"Int32.{name}" for name in ("minInt", "maxInt", "precision")}
-    | {"Array2.RowMajor", "Array2.ColMajor", "INetSock.inetAF", "Unix.W_EXITED", "Posix.Process.W_EXITED"}
+    | {"CharArray.maxLen"}
+    | {"INetSock.inetAF", "Unix.W_EXITED", "Posix.Process.W_EXITED"}
     | {f"Posix.FileSys.{name}" for name in ("stdin", "stdout", "stderr")}
 )  # fmt: skip
 """What else the library of SML/NJ has and pn2code has not: values, constructors, exceptions."""

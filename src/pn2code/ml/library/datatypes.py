@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pn2code.ml.core.terms import Constructor, DatatypeDec
 from pn2code.ml.core.types import INT, INTINF, TCon, TVar, Type, tuple_of
+from pn2code.ml.library.builtin_table_sized import INTEGERS, WORD_BITS
 
 _LIST_A = TCon("list", (TVar(0),))
 
@@ -62,7 +63,8 @@ NIL, CONS = (c for c, _ in DATATYPES["list"].constructors)
 
 _ABSTRACT = (
     "TextIO.instream", "TextIO.outstream", "OS.FileSys.dirstream", "OS.Process.status", "OS.syserror", "Time.time",
-    "Timer.real_timer", "Timer.cpu_timer", "Date.date", "Random.rand", "Word8.word", "Word8Vector.vector",
+    "Timer.real_timer", "Timer.cpu_timer", "Date.date", "Random.rand",
+    "Word8Vector.vector", *(name for name in WORD_BITS if "." in name), *(f"{name}.int" for name in INTEGERS),
 )  # fmt: skip
 
 
@@ -82,7 +84,8 @@ TYPE_ABBREVIATIONS: dict[str, str] = {
     "List.list": "'a list", "Option.option": "'a option", "ModelTime.time": "time", "Vector.vector": "'a vector",
     "Array.array": "'a array", "Word.word": "word", "Substring.substring": "substring", "String.char": "char",
     "Char.string": "string", "TextIO.vector": "string", "TextIO.elem": "char", "SMLTime.time": "Time.time",
-       "Int31.int": "int", "Position.int": "int", "LargeReal.real": "real", "Math.real": "real",
+       "Int31.int": "int", "Word31.word": "word",
+    "LargeWord.word": "Word32.word", "Position.int": "int", "LargeReal.real": "real", "Math.real": "real",
 }  # fmt: skip
 """Names for other types; their arguments are `'a`, `'b`."""
 
@@ -94,7 +97,7 @@ NO_EQUALITY: frozenset[str] = frozenset(
 """Type constructors whose values have no equality (functions have none either). `real` has: CPN Tools patched it in."""
 
 
-LITERAL_TYPES: tuple[TCon, ...] = (INT, INTINF)
+LITERAL_TYPES: tuple[TCon, ...] = (INT, INTINF, *(TCon(f"{name}.int") for name in INTEGERS))
 """What an integer literal may be; int when nothing decides."""
-WORD_TYPES: tuple[TCon, ...] = (TCon("word"), TCon("Word8.word"))
+WORD_TYPES: tuple[TCon, ...] = tuple(map(TCon, WORD_BITS))
 """What a literal like `0wx1F` may be; word when nothing decides."""

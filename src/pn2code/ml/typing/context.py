@@ -13,6 +13,7 @@ from pn2code.ml import codes
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.colsets import Colset
 from pn2code.ml.core.types import INT, TCon, Type
+from pn2code.ml.library.builtin_table_sized import INTEGERS, WORD_BITS
 from pn2code.ml.library.datatypes import DATATYPES, LITERAL_TYPES, WORD_TYPES
 from pn2code.ml.library.exceptions import FIRST_EXCEPTION_TAG
 from pn2code.ml.library.schemes import scheme
@@ -282,15 +283,20 @@ class Context:
 
     def check_literal(self, value: object, t: Type, span: Span) -> None:
         """Refuses a literal beyond the width of its type, as CPN Tools does."""
-        words = {"word": 1 << self.int_bits, "Word8.word": 256}
-        if isinstance(t, TCon) and isinstance(value, int) and value >= words.get(t.name, value + 1):
+        if not isinstance(t, TCon) or not isinstance(value, int):
+            return
+        ends = {name: 1 << bits for name, bits in WORD_BITS.items()} | {
+            f"{name}.int": 1 << bits - 1 for name, bits in INTEGERS.items()
+        }
+        end = ends.get(t.name, abs(value) + 1)
+        if not -end <= value < end:
             self.error(
                 codes.LITERAL_TOO_LARGE,
-                f"`{span.text}` is too large for `{t.name}`, which ends at {words[t.name] - 1}",
+                f"`{span.text}` is too large for `{t.name}`, which ends at {end - 1}",
                 span,
             )
         limit = 1 << (self.int_bits - 1)
-        if t == INT and isinstance(value, int) and not -limit <= value < limit:
+        if t == INT and not -limit <= value < limit:
             self.error(
                 codes.LITERAL_TOO_LARGE,
                 f"`{span.text}` is too large for `int`, which ends at {limit - 1}",
@@ -345,9 +351,7 @@ class Context:
             case "among":
                 names = problem.right.among if isinstance(problem.right, Meta) else ()
                 words = names == tuple(t.name for t in WORD_TYPES)
-                if not words:
-                    names = tuple(n for n in names if n != "word")  # hardly what anyone meant
-                literal = words or names == tuple(t.name for t in LITERAL_TYPES)
+                literal = words or set(names) <= {t.name for t in (*LITERAL_TYPES, *WORD_TYPES)}
                 if literal:
                     names = names[:1]
                 self.error(

@@ -53,7 +53,6 @@ Byte : packString unpackString unpackStringVec
 ConnManagementLayer : DupConnNameExn ElementMissingExn canreceive
 IO : TerminatedStream
 LargeReal : class compareReal fromDecimal toDecimal
-LargeWord : * + - < << <= > >= >> ~ ~>>
 LibBase : banner failure version
 ListUtils : sort_int_list
 Misc : ::=
@@ -127,18 +126,6 @@ TextIO.StreamIO : canInput closeIn closeOut endOfStream filePosIn filePosOut flu
 TextIO.StreamIO : getReader getWriter input input1 inputAll inputLine inputN mkInstream mkOutstream output
 TextIO.StreamIO : output1 outputSubstr setBufferMode setPosOut
 Time : scan
-Word : fromLarge fromLargeWord scan toLarge toLargeWord toLargeWordX toLargeX
-Word : ~
-Word31 : fromLarge fromLargeWord scan toLarge toLargeWord toLargeWordX toLargeX
-Word31 : ~
-Word32 : * + - < << <= > >= >> ~ ~>>
-Word64 : * + - < << <= > >= >> ~ ~>>
-Word64 : andb compare div fmt fromInt fromLarge fromLargeInt fromLargeWord fromString max min mod notb orb
-Word64 : scan toInt toIntX toLarge toLargeInt toLargeIntX toLargeWord toLargeWordX toLargeX toString wordSize
-Word64 : xorb
-Word8 : * + - < << <= > >= >> ~ ~>>
-Word8Array : fromVector toList toVector
-Word8Vector : append prepend toList
 """
 
 ENGINE_STRUCTURES: frozenset[str] = frozenset(_STRUCTURES.split())

@@ -6,6 +6,7 @@ from pn2code.diagnostics import Span
 from pn2code.ml import codes
 from pn2code.ml.core import terms as core
 from pn2code.ml.core.types import UNIT, Type
+from pn2code.ml.library.builtin_table_sized import INTEGERS, WORDS, word_type
 from pn2code.ml.library.builtins import BUILTINS, OVERLOADED
 from pn2code.ml.library.datatypes import NIL
 from pn2code.ml.parsing import advice
@@ -51,7 +52,8 @@ _STRUCTURE_TYPES = {
     "IntInf": "IntInf.int",
     "String": "string",
     "Char": "char",
-    "Word": "word",
+    **{name: word_type(name) for name in WORDS},
+    **{name: f"{name}.int" for name in INTEGERS},
 }
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 
 from pn2code.diagnostics.suggestions import nearest
+from pn2code.ml.library.datatypes import LITERAL_TYPES, WORD_TYPES
 from pn2code.ml.typing.inference import ICon, IFun, IRec, Meta, Ty, prune
 
 _OPERAND = re.compile(r"(?:left |right )?operand of (?:`(.+)`|the backquote)")
@@ -15,6 +16,7 @@ MULTISET_OPERATORS = frozenset(
 """Infix operators of multi-sets: messages speak of multi-sets, not lists, there."""
 NUMERIC = frozenset({"+", "-", "*", "/", "div", "mod"})
 _NUMBERS = frozenset({"int", "real", "IntInf.int"})
+_RARE = frozenset(t.name for t in (*WORD_TYPES, *LITERAL_TYPES)) - _NUMBERS
 
 
 def operand(what: str) -> str:
@@ -256,7 +258,8 @@ def _wrong_record(found: IRec, expected: IRec) -> str:
 
 
 def among(names: tuple[str, ...]) -> str:
-    """The types that an overloaded operator is defined for, in words."""
+    """The types that an overloaded operator is defined for, in words, without those that are hardly meant."""
+    names = tuple(n for n in names if n not in _RARE) or names
     if set(names) == _NUMBERS:
         return "a number"
     if set(names) > _NUMBERS:

@@ -14,6 +14,7 @@ import math
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
+from pn2code.robot.models.chains import chains
 from pn2code.robot.models.cobots import cobots
 from pn2code.robot.models.shapes import (
     Mesh,
@@ -418,6 +419,7 @@ def files() -> dict[str, str]:
         _arm(spec, out)
     cobots(out)
     spherical(out)
+    chains(out)
     _tool("drill_riveter", 0.5, _drill(), out)
     _tool("counterpoint", 0.5, _counterpoint(), out)
     _tool("vacuum_gripper", 0.2, _vacuum_gripper(), out)

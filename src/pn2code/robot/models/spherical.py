@@ -38,6 +38,7 @@ class SphericalSpec:
         mount: roll, pitch and yaw of the flange at zero.
         radii: of the housings at the shoulder, the elbow and the wrist.
         colour: of what is painted.
+        data: what else is known of it, as `pn2code` elements.
     """
 
     name: str
@@ -49,6 +50,15 @@ class SphericalSpec:
     speeds: tuple[float, ...]
     radii: tuple[float, float, float]
     colour: str
+    data: str = ""
+
+
+def _coupled(low: float, high: float) -> str:
+    """Axis 3 as its maker counts it, in degrees."""
+    return (
+        f'  <pn2code coupled="joint_3" with="joint_2" factor="-1" lower="{math.radians(low)!r}" '
+        f'upper="{math.radians(high)!r}"/>\n'
+    )
 
 
 SPHERICAL = (
@@ -84,6 +94,19 @@ SPHERICAL = (
         (400, 400, 430, 540, 475, 760),
         (0.10, 0.08, 0.05),
         "yellow",
+    ),
+    SphericalSpec(
+        "lrmate200id",
+        ((0, 0, 0.33), (0.05, 0, 0), (0, 0, 0.33), (0, 0, 0.035), (0.335, 0, 0), (0, 0, 0)),
+        ("z", "y", "-y", "-x", "-y", "-x"),
+        0.08,
+        (180, -90, 0),
+        ((-170, 170), (-100, 145), (-70, 205), (-190, 190), (-125, 125), (-360, 360)),
+        (450, 380, 520, 550, 545, 1000),
+        (0.075, 0.06, 0.035),
+        "yellow",
+        # The maker counts axis 3 from the horizontal: where axis 2 moves alone, the forearm keeps its direction.
+        _coupled(-215, 205),
     ),
 )
 _BEVEL = 0.008
@@ -189,5 +212,5 @@ def _arm(spec: SphericalSpec, out: dict[str, str]) -> None:
     ignore = '  <pn2code ignore="link_4+link_6 link_4+flange"/>\n'
     out[f"{spec.name}.urdf"] = (
         f'{HEAD}<robot name="{spec.name}">\n{materials(used)}'
-        f"{''.join(links)}{''.join(joints)}{flange}{ignore}</robot>\n"
+        f"{''.join(links)}{''.join(joints)}{flange}{ignore}{spec.data}</robot>\n"
     )

@@ -1,4 +1,4 @@
-"""Built-in functions on bytes: `Word8` (a Python int), `Word8Vector` (a tuple of them), and CPN Tools' encodings."""
+"""Built-in functions on vectors of bytes (tuples of Python ints), and CPN Tools' encodings."""
 
 from __future__ import annotations
 
@@ -37,14 +37,13 @@ def _integer(e: Evaluator, data: Bytes) -> Value:
     return checked(e, found[0])
 
 
+CONSTANTS: dict[str, Value] = {"Word8Vector.maxLen": 2**24 - 1}
+
 FUNCTIONS: dict[str, tuple[int, Function]] = {
     "Byte.byteToChar": (1, lambda e, byte: chr(byte)),
     "Byte.charToByte": (1, lambda e, c: ord(c)),
     "Byte.bytesToString": (1, lambda e, data: _text(data)),
     "Byte.stringToBytes": (1, lambda e, text: _bytes(text)),
-    "Word8.fromInt": (1, lambda e, a: a & 255),
-    "Word8.toInt": (1, lambda e, byte: byte),
-    "Word8.toString": (1, lambda e, byte: format(byte, "X")),
     "Word8Vector.length": (1, lambda e, data: len(data)),
     "Word8Vector.sub": (1, lambda e, p: _sub(p)),
     "Word8Vector.fromList": (1, lambda e, items: items),

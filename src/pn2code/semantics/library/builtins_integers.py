@@ -6,9 +6,10 @@ import re
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from pn2code.ml.library.builtin_table_sized import INTEGERS, WORDS
 from pn2code.semantics.library.builtins_scan import from_string, scanner
 from pn2code.semantics.library.functions import Function, checked, fail
-from pn2code.semantics.values.data import MAX_BITS, Data, MlLimit, Value, int_text
+from pn2code.semantics.values.data import MAX_BITS, Data, MlLimit, Value, int_text, some
 
 if TYPE_CHECKING:
     from pn2code.semantics.evaluation.evaluate import Evaluator
@@ -74,6 +75,10 @@ def _plausible_in_number(c: str) -> bool:
     return c in "0123456789abcdefABCDEFxX~+- \t\n\v\f\r"
 
 
+def _plausible_in_word(c: str) -> bool:
+    return c in "0123456789abcdefABCDEFwWxX \t\n\v\f\r"
+
+
 def _written_in(structure: str) -> Function:
     """`Int.fmt`, whose digits are capital letters, or `IntInf.fmt`, whose are small."""
 
@@ -116,7 +121,7 @@ def integers(
         "sign": lambda e, a: sign(a),
         # SML/NJ takes 0 for positive here, but not among unlimited integers
         "sameSign": lambda e, p: (
-            (p[0] < 0) == (p[1] < 0) if structure == "Int" else sign(p[0]) == sign(p[1])
+            (p[0] < 0) == (p[1] < 0) if structure != "IntInf" else sign(p[0]) == sign(p[1])
         ),
         "toString": lambda e, a: int_text(a),
         "fromString": from_string(read),
@@ -153,49 +158,86 @@ UNBOUNDED: dict[str, Function] = {
 """Operations that only `IntInf` has."""
 
 
-WORD_BITS = 31
+def _read_digits(text: str, base: int) -> tuple[int, int] | None:
+    """A word at the start of a text, after blanks: it and the number of characters."""
+    digits = {2: "01", 8: "0-7", 10: "0-9", 16: "0-9a-fA-F"}[base]
+    prefix = "0w?[xX]|0w" if base == 16 else "0w"
+    found = re.match(rf"[ \t\n\v\f\r]*(?:(?:{prefix})(?=[{digits}]))?([{digits}]+)", text)
+    return None if found is None else (int(found[1], base), found.end())
 
 
-_MASK = 2**WORD_BITS - 1
+def words(structure: str, bits: int) -> dict[str, tuple[int, Function]]:
+    """The operations on words of a size: by full name the number of curried arguments, and the function."""
+    mask = 2**bits - 1
+    large = 2 ** WORDS["Word32"] - 1
+
+    def signed(w: int) -> int:
+        return w - mask - 1 if w >> (bits - 1) else w
+
+    def read(e: Evaluator, text: str, base: int = 16) -> tuple[int, int] | None:
+        found = _read_digits(text, base)
+        if found is not None and found[0] > mask:
+            raise fail("Overflow")
+        return found
+
+    def scan(e: Evaluator, radix: Data, reader: Value, stream: Value) -> Task:
+        base = BASES[radix.name]
+        return scanner(lambda e, text: read(e, text, base), _plausible_in_word)(e, reader, stream)  # type: ignore[no-any-return]
+
+    operations: dict[str, Function] = {
+        "fromInt": lambda e, a: a & mask,
+        "fromLargeInt": lambda e, a: a & mask,
+        "toInt": lambda e, w: checked(e, w),
+        "toIntX": lambda e, w: checked(e, signed(w)),
+        "toLargeInt": lambda e, w: w,
+        "toLargeIntX": lambda e, w: signed(w),
+        **dict.fromkeys(("toLarge", "toLargeWord"), lambda e, w: w & large),
+        **dict.fromkeys(("toLargeX", "toLargeWordX"), lambda e, w: signed(w) & large),
+        **dict.fromkeys(("fromLarge", "fromLargeWord"), lambda e, w: w & mask),
+        "~": lambda e, w: -w & mask,
+        "+": lambda e, p: (p[0] + p[1]) & mask,
+        "-": lambda e, p: (p[0] - p[1]) & mask,
+        "*": lambda e, p: (p[0] * p[1]) & mask,
+        "div": lambda e, p: p[0] // _nonzero(p[1]),
+        "mod": lambda e, p: p[0] % _nonzero(p[1]),
+        "andb": lambda e, p: p[0] & p[1],
+        "orb": lambda e, p: p[0] | p[1],
+        "xorb": lambda e, p: p[0] ^ p[1],
+        "notb": lambda e, w: w ^ mask,
+        "<<": lambda e, p: (p[0] << min(p[1], bits)) & mask,
+        ">>": lambda e, p: p[0] >> p[1],
+        "~>>": lambda e, p: (signed(p[0]) >> p[1]) & mask,
+        "min": lambda e, p: min(p),
+        "max": lambda e, p: max(p),
+        "toString": lambda e, w: digits_text(w, 16),
+        "fromString": from_string(read),
+    }
+    return {
+        **{f"{structure}.{name}": (1, f) for name, f in operations.items()},
+        f"{structure}.fmt": (2, lambda e, radix, w: digits_text(w, BASES[radix.name])),
+        f"{structure}.scan": (3, scan),
+    }
 
 
-def _signed(w: int) -> int:
-    return w - 2**WORD_BITS if w >> (WORD_BITS - 1) else w
+def fitting(bits: int) -> Callable[[Evaluator, int], int]:
+    """Checks a result of integers of a size."""
+    end = 2 ** (bits - 1)
+
+    def fit(e: Evaluator, i: int) -> int:
+        if not -end <= i < end:
+            raise fail("Overflow")
+        return i
+
+    return fit
 
 
-def _read_word(e: Evaluator, text: str) -> tuple[int, int] | None:
-    found = re.match(
-        r"[ \t\n\v\f\r]*(?:0w(?=[0-9a-fA-F])|0?w?[xX](?=[0-9a-fA-F]))?([0-9a-fA-F]+)", text
-    )
-    if found is None:
-        return None
-    number = int(found[1], 16)
-    if number > _MASK:
-        raise fail("Overflow")
-    return number, found.end()
-
-
-WORDS: dict[str, Function] = {
-    "fromInt": lambda e, a: a & _MASK,
-    "fromLargeInt": lambda e, a: a & _MASK,
-    "toInt": lambda e, w: checked(e, w),
-    "toIntX": lambda e, w: _signed(w),
-    "toLargeInt": lambda e, w: w,
-    "toLargeIntX": lambda e, w: _signed(w),
-    "+": lambda e, p: (p[0] + p[1]) & _MASK,
-    "-": lambda e, p: (p[0] - p[1]) & _MASK,
-    "*": lambda e, p: (p[0] * p[1]) & _MASK,
-    "div": lambda e, p: p[0] // _nonzero(p[1]),
-    "mod": lambda e, p: p[0] % _nonzero(p[1]),
-    "andb": lambda e, p: p[0] & p[1],
-    "orb": lambda e, p: p[0] | p[1],
-    "xorb": lambda e, p: p[0] ^ p[1],
-    "notb": lambda e, w: w ^ _MASK,
-    "<<": lambda e, p: (p[0] << min(p[1], WORD_BITS)) & _MASK,
-    ">>": lambda e, p: p[0] >> p[1],
-    "~>>": lambda e, p: (_signed(p[0]) >> p[1]) & _MASK,
-    "min": lambda e, p: min(p),
-    "max": lambda e, p: max(p),
-    "toString": lambda e, w: digits_text(w, 16),
-    "fromString": from_string(_read_word),
-}
+def constants() -> dict[str, Value]:
+    """The limits of numbers of a fixed size, by full name."""
+    found: dict[str, Value] = {f"{name}.wordSize": bits for name, bits in WORDS.items()}
+    for name, bits in INTEGERS.items():
+        found |= {
+            f"{name}.precision": some(bits),
+            f"{name}.minInt": some(-(2 ** (bits - 1))),
+            f"{name}.maxInt": some(2 ** (bits - 1) - 1),
+        }
+    return found

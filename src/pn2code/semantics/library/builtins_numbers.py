@@ -1,4 +1,4 @@
-"""Built-in functions on numbers: `Int`, `IntInf`, `Real`, `Math`, `Word`, and reading numbers from streams."""
+"""Built-in functions on numbers: `Int`, `IntInf`, `Real`, `Math`, words, and reading numbers from streams."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ import math
 import sys
 from typing import TYPE_CHECKING, Any
 
+from pn2code.ml.library.builtin_table_sized import INTEGERS, WORDS
 from pn2code.semantics.library.builtins_integers import (
-    BASES,
     UNBOUNDED,
-    WORD_BITS,
-    WORDS,
-    digits_text,
+    constants,
+    fitting,
     integers,
+    words,
 )
 from pn2code.semantics.library.builtins_mathematics import MATHEMATICS
 from pn2code.semantics.library.builtins_real_texts import format_real, scan_real
@@ -63,20 +63,20 @@ CONSTANTS: dict[str, Value] = {
     "IntInf.precision": NONE,
     "IntInf.minInt": NONE,
     "IntInf.maxInt": NONE,
-    "Word.wordSize": WORD_BITS,
+    **constants(),
 }
 
 FUNCTIONS: dict[str, tuple[int, Function]] = {
     **integers("Int", checked),
     **integers("IntInf", lambda e, i: i),
+    **{k: f for name, bits in INTEGERS.items() for k, f in integers(name, fitting(bits)).items()},
+    **{k: f for name, bits in WORDS.items() for k, f in words(name, bits).items()},
     **{
         name: f
-        for structure in ("Int", "IntInf", "Real", "Word", "String", "Char", "Time")
+        for structure in ("Int", "IntInf", "Real", "String", "Char", "Time", *INTEGERS, *WORDS)
         for name, f in _comparisons(structure).items()
     },
     **{f"IntInf.{name}": (1, f) for name, f in UNBOUNDED.items()},
-    **{f"Word.{name}": (1, f) for name, f in WORDS.items()},
-    "Word.fmt": (2, lambda e, radix, w: digits_text(w, BASES[radix.name])),
     **{f"Real.{name}": (1, one_nan(f)) for name, f in REALS.items()},
     "Real.toInt": (
         2,

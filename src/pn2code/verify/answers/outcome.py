@@ -15,7 +15,7 @@ from pn2code.net.flat import FlatNet
 from pn2code.verify.answers import basis
 from pn2code.verify.answers.reasons import clause, raised
 from pn2code.verify.exploring import nondeterminism
-from pn2code.verify.exploring.result import Exploration
+from pn2code.verify.exploring.result import Exploration, Known
 
 Word = Literal["yes", "no", "inconclusive"]
 _MORE = {
@@ -58,7 +58,7 @@ def verdict(found: Exploration, counts: Counts) -> Word:
     """The worst of all: where no property is asked, whether all markings were seen counts as well."""
     if counts.bad or counts.errors or _has_raised(found):
         return "no"
-    if counts.open or not (counts.asked or found.complete):
+    if counts.open or not (counts.asked or found.complete or found.known):
         return "inconclusive"
     return "yes"
 
@@ -67,7 +67,20 @@ def header(net: FlatNet, found: Exploration, counts: Counts) -> str:
     """Why the report is about a part only, and what that means, without a word before it; "": it is about all."""
     if found.complete:
         return ""
+    if found.known is not None:
+        return _counted(found, found.known)
     return f"{_why(found, counts)}. {endless(net, found)}{basis.partial(found)}"
+
+
+def _counted(found: Exploration, known: Known) -> str:
+    """What is said of a closed net whose markings were not counted to the end."""
+    ends = "which has a token in a final place" if known.ends else "which may be no end"
+    return (
+        f"the closed net has more than {found.nodes:,} markings; `--no-reduction` counts them. {known.nodes:,} states, "
+        "in which tokens are counted up to a limit, stand for all of them (docs/reductions.md): no inscription raises "
+        f"an exception, and each run comes to a dead marking, {ends}. Bounds, arcs and numbers of dead markings are "
+        "those of the part that was seen."
+    )
 
 
 def closing(net: FlatNet, found: Exploration, counts: Counts) -> str:
@@ -82,7 +95,7 @@ def closing(net: FlatNet, found: Exploration, counts: Counts) -> str:
     if counts.open:
         are = "are" if counts.open != 1 else "is"
         return f"Verdict: NOT KNOWN. {counts.open} of {counts.all} answers {are} not known."
-    if counts.all and (counts.asked or found.complete):
+    if counts.all and (counts.asked or found.complete or found.known):
         return f"Verdict: YES. {_all_good(counts.all)}."
     if found.complete:
         one = nondeterminism.undetermined(net)

@@ -39,6 +39,7 @@ from pn2code.structure.relations import relations
 from pn2code.verify.controller.by_turns import Looked, group, loosened
 from pn2code.verify.controller.control_types import Plan
 from pn2code.verify.controller.kept_silence import kept_silence
+from pn2code.verify.controller.left_over import nothing_left
 from pn2code.verify.controller.running import SUPERVISOR, Running, chunks
 from pn2code.verify.exploring.counts import LEAST_TOKENS, Counts, counts
 from pn2code.verify.exploring.explore import ExploreOptions, explore
@@ -66,11 +67,13 @@ class Seen:
         looked: the net and its states.
         said: what follows of the questions about the cell, in the order of `control.of_cell`.
         asked: the same of those about its orders.
+        is_quiet: whether nothing is left for the supervisor where nothing can happen any more (`left_over`).
     """
 
     looked: Looked
     said: tuple[Mapping[str, Any], ...]
     asked: tuple[Mapping[str, Any], ...]
+    is_quiet: bool
 
 
 @frozen
@@ -167,11 +170,12 @@ def look(
     count = sum(line.startswith("? ") for line in own.questions.split("\n"))
     if len(found.answers) != count:
         return None
-    rows = found.answers if is_decided else found.answers[: count - in_order.count("? ")]
+    rows = [*(found.answers if is_decided else found.answers[: count - in_order.count("? ")])]
+    quiet, *rows = rows
     if any(row["answer"] != "yes" for row in rows):
         return None
     if not is_decided:
-        is_choiceless = found.seen.arcs and found.answers[len(rows)]["answer"] != "unknown"
+        is_choiceless = found.seen.arcs and found.answers[len(rows) + 1]["answer"] != "unknown"
         if not is_choiceless:
             return None
     if not _all_occur(partition, plan, limits, own, made, found, part):
@@ -180,7 +184,8 @@ def look(
     longest, firings = lengths
     asked = (YES, {**YES, "value": firings}, *confluence)
     said = _said(partition, plan, made, found, rows, longest)
-    return Seen(Looked(running, _bounded(found, made, plan), None), said, asked)
+    looked = Looked(running, _bounded(found, made, plan), None)
+    return Seen(looked, said, asked, quiet["answer"] == "yes")
 
 
 CONFLUENCE = 2
@@ -188,10 +193,11 @@ CONFLUENCE = 2
 
 
 def questions(made: Abstract, plan: Plan, rising: frozenset[int]) -> str:
-    """All of them have to be answered with "yes"; first those that `_said` leaves out."""
+    """All but the first have to be answered with "yes"; in front are those that `_said` leaves out."""
     running, partition = made.running, made.running.partition
     lines = [x for x in running.lines(first=True) if not x.startswith("instant ")]
     asked = Questions()
+    asked.asked.append(f"? invariant {nothing_left(asked, running)}")
     if rising:
         lines += chunks("instant 0", sorted(rising))
         asked.asked.append(f"? restless 0 {ENDLESS}")

@@ -313,6 +313,7 @@ def examine(
             answers=found.answers[:count],
             closed=closed,
             reduced=in_turns is not None or in_counts is not None,
+            quiet=in_counts is not None and in_counts.is_quiet,
         )
         return settled(replace(control, late=late, doubt=doubt, premises=premises))
 

@@ -220,6 +220,7 @@ class Control:
         doubt: why a script may stop with an exception; "": none does, as far as is known.
         premises: what answers rest on besides.
         reduced: whether `found` is the reduced space of `by_turns`, or of `by_counts`.
+        quiet: whether it is one of `by_counts`, and nothing is left for the supervisor at its end (`left_over`).
     """
 
     checks: tuple[Check, ...]
@@ -232,6 +233,7 @@ class Control:
     doubt: str = ""
     premises: Premises = Premises()
     reduced: bool = False
+    quiet: bool = False
 
     @property
     def is_counted(self) -> bool:

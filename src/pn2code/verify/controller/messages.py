@@ -78,7 +78,7 @@ def _longest(scalar: Scalar) -> int | None:
 def _is_unlimited(colset: Colset) -> bool:
     """Whether integers of any size are in it."""
     parts = [c for c in colset.resolved.components if c is not None]
-    return colset.resolved.kind is Kind.INTINF or any(map(_is_unlimited, parts))
+    return colset.resolved.kind in (Kind.INTINF, Kind.TIME) or any(map(_is_unlimited, parts))
 
 
 def examine(partition: Partition, found: Exploration | None, d: Diagnostics) -> Format:

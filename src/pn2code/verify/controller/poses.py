@@ -297,8 +297,8 @@ def _goal(command: Move) -> object:
     """Where a move leads, whatever kind of move it is."""
     match command:
         case (
-            MoveJoint(target=pose, frame="world", tcp="")
-            | MoveLinear(target=pose, frame="world", tcp="")
+            MoveJoint(target=pose, frame="world", tcp="", arm_angle=None)
+            | MoveLinear(target=pose, frame="world", tcp="", arm_angle=None)
         ):
             return pose
         case _:

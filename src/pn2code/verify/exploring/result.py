@@ -92,6 +92,29 @@ class Trace:
         return Trace(found["node"], Path(found["file"]), found["steps"])
 
 
+COUNTED = "counted"
+"""Why an exploration has ended: what is asked of a closed net is known without the rest of its markings."""
+
+
+@frozen
+class Known:
+    """What is known of all markings of a net, where not all were counted (`net_by_counts`).
+
+    Each run comes to a dead marking, and no inscription raises an exception.
+
+    Args:
+        nodes, arcs, seconds: of the states that were explored.
+        ends: whether each dead marking of a cell has a token in a final place; if not, that is not known.
+        never: transitions that never occur; of others that did not occur in the part that was seen it is not known.
+    """
+
+    nodes: int
+    arcs: int
+    seconds: float
+    ends: bool
+    never: tuple[int, ...]
+
+
 @frozen
 class Exploration:
     """The state space, or the part of it that was seen.
@@ -99,7 +122,7 @@ class Exploration:
     Args:
         complete: whether all that was wanted was done; else `why` says what was in the way: "states", "seconds",
             "memory", "processor", "interrupted", "error", "approximation", "messages" (see
-            `ExploreOptions.heaps`), "infinite" (see `covering`).
+            `ExploreOptions.heaps`), "infinite" (see `covering`), "counted" (see `known`).
         seen: what is complete, also where not all is.
         error: of "error": `message`, `where`, `transition` (index or None), `node` (None: not known),
             `binding` (texts, when it is an occurrence that raises it), `trace` (as those of `traces`, or None).
@@ -121,6 +144,7 @@ class Exploration:
             None where bounds are not known.
         different: for each place, how many multi-sets it held; 0 where that is not counted, since its colours are few.
         covering: of "infinite": the run that shows that places grow without bound.
+        known: of "counted": what is known of all markings nevertheless.
     """
 
     complete: bool
@@ -149,6 +173,7 @@ class Exploration:
     arena: Mapping[str, int] | None = None
     different: tuple[int, ...] = ()
     covering: Covering | None = None
+    known: Known | None = None
 
     @property
     def is_reduced(self) -> bool:
@@ -330,8 +355,24 @@ def row(net: FlatNet, found: Exploration) -> dict[str, Any]:
         "symmetries": list(found.symmetries),
         "approximation": dict(found.approximation) if found.approximation else None,
         "error": dict(found.error) if found.error else None,
+        "counted": _known_row(net, found.known),
         "unbounded": _covering_row(net, found.covering),
         "traces": [{"node": t.node, "file": str(t.file), "steps": t.steps} for t in found.traces],
+    }
+
+
+def _known_row(net: FlatNet, known: Known | None) -> dict[str, Any] | None:
+    """What is known of all markings although they were not counted."""
+    if known is None:
+        return None
+    name = EngineNames(net).transition
+    return {
+        "states": known.nodes,
+        "arcs": known.arcs,
+        "seconds": round(known.seconds, 6),
+        "infinite_occurrence_sequences": False,
+        "dead_markings_are_ends": known.ends or None,
+        "dead_transitions": [name(i) for i in known.never],
     }
 
 

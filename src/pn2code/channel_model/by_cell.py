@@ -1,0 +1,214 @@
+"""A cell with its medium where that is large: what the cell as it runs says of it, without a look at the files.
+
+    why_not(partition, rules)                                  # "" if the cell as it runs tells
+    shown(partition, rules, storage, limits, options)           # what it tells; None: nothing
+
+In the cell as it runs (`verify.controller.running`) a channel holds its message from when it is put until it is taken;
+in the net with its medium (`compose`) the message is written, found, taken, and at last the file is emptied. Let R be
+the former, as turns look at it (`Running.of(loose=True)`), and M the latter. *If in R*
+
+  1  no channel ever holds two messages, no script stops, and no inscription raises an exception,
+  2  no run goes on for ever, and
+  3  wherever nothing can happen any more the supervisor has finished, and no message to it is left (`left_over`),
+
+*and if in the cell*
+
+  4  transitions of a robot that compete for a token need the same messages,
+  5  each of them sends at most one message, and
+  6  robots send no messages to each other,
+
+*then M has no fault, and from each of its states an end can be reached.* The steps of the proof; a prefix of a run of M
+is meant up to the supervisor's end, and without a fault:
+
+*Files.* What happens to one file is a circle: empty (`0`); written; read, while the message waits in the reader's memory;
+consumed; empty. The writer renames into an empty file only, the reader looks only where it has not read, numbers go
+along, and a side that has consumed a message empties its file before it does anything but empty others. So a message is
+not lost, torn, refused, or taken twice; the only fault is that a writer has a message for a file that is not empty, or
+two in one cycle.
+
+*A run of M is one of R.* R does the same as M: what the supervisor does, when M does it, its looks with the step that
+looks, its publishing with the step that renames; if a channel is one that R may see late, what a round sees there comes
+at the end of the round. What a robot does comes as late as possible: before the first look that finds its message, or
+one that it has sent later. If a look finds an empty file, the robot's message, if it has put one already, will be found
+by a later look, and so will those that it sends later, as they are written after it. So R finds nothing there either
+(5: no second message of the same transition could have been found before). A robot does what it does in M, because it
+chooses among transitions that need the same messages (4), and the one that it takes has all of its own: so have the
+others, and what is enabled depends on its own places and on these messages, of which there is one each (1). What is left
+when M's prefix ends comes last. Then each side has the same in its memory, and a channel of R holds what has been put,
+and not consumed.
+
+*No fault.* Take a shortest prefix after which a writer w has a message for a file that is not empty. If the message
+before has not been consumed, the channel holds two in R, against 1. If it has, by the reader r, then r has since emptied
+other files at most, and a message to another robot, which would be there at once, r does not send (6). So what r has
+done from the taking on has been seen by nobody; without it, and with all that the others have done, this is still a run
+of R: there it does not matter whether files have been emptied. After it the channel holds two, against 1.
+
+*The end.* Between two occurrences of the net's own transitions sides do a limited number of steps. So by 2 no run of M
+goes on for ever, up to the supervisor's end. Let nothing be possible in M; then all sides are calm, and all messages
+have been written and all consumed ones emptied, for each of these steps is possible (there is no fault). If no final
+place held a token, R would go on from its state, after the supervisor has come to rest, by 3: by a look that finds a
+message, but then M could look as well; by a transition of a robot, but then its messages can be read, or have been, and M
+could do this; or by a script that stops, against 1. So it is an end. After it the supervisor of M goes on looking, that
+of R does not. By 3 it finds nothing: robots do the same in both, and a message to it would stay in R for ever.
+
+What each channel holds in M's writers it holds in R as well: so the values of messages are those of R.
+
+This is a reduction by movers (R. Lipton, *Reduction: a method of proving properties of parallel programs*, 1975): emptying
+a file moves to the left, up to the taking; writing, and what precedes it, to the right, up to the look.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+
+from pn2code.base.frozen import frozen
+from pn2code.cell.partition import Partition
+from pn2code.channel_model.rules import Rules
+from pn2code.diagnostics import Diagnostics
+from pn2code.net.flat import ArcKind, FlatTransition
+from pn2code.properties.questions import Questions
+from pn2code.verify.controller import messages
+from pn2code.verify.controller.by_turns import loosened
+from pn2code.verify.controller.left_over import nothing_left
+from pn2code.verify.controller.running import (
+    SUPERVISOR,
+    NotModelledError,
+    Running,
+    chunks,
+)
+from pn2code.verify.exploring.explore import ExploreOptions, explore
+from pn2code.verify.exploring.limits import Limits
+from pn2code.verify.exploring.programs import Generated, Sizes
+from pn2code.verify.exploring.result import Exploration
+
+ENDLESS = 1_000_000_000
+"""A run is that long, or goes on for ever."""
+
+
+@frozen
+class Shown:
+    """That the files do no harm, as a space of the cell as it runs shows.
+
+    Args:
+        nodes, arcs: of that space; `places`, `transitions`: of its net.
+        is_counted: whether tokens were counted up to a limit (`by_counts`).
+    """
+
+    nodes: int
+    arcs: int
+    places: int
+    transitions: int
+    is_counted: bool = False
+
+
+def why_not(partition: Partition, rules: Rules) -> str:
+    """What is against it in the net, a clause; "": nothing."""
+    if rules != Rules():
+        return "the rules of the protocol are others"
+    if partition.net.timed:
+        return "the net is timed"
+    if not partition.final_places:
+        return "the cell has no end"
+    if any(SUPERVISOR not in (c.writer, c.reader) for c in partition.channels):
+        return "robots send messages to each other"
+    return next(_against(partition), "")
+
+
+def _against(partition: Partition) -> Iterator[str]:
+    channels = {c.place for c in partition.channels}
+
+    def inputs(t: FlatTransition) -> set[int]:
+        return {a.place for a in t.arcs if a.kind is not ArcKind.OUTPUT}
+
+    for owner in range(1, len(partition.owners)):
+        own = [t for t in partition.net.transitions if partition.transition_owner[t.index] == owner]
+        for i, t in enumerate(own):
+            sent = {a.place for a in t.arcs if a.kind is ArcKind.OUTPUT and a.place in channels}
+            if len(sent) > 1:
+                yield f"`{t.name}` sends {len(sent)} messages"
+            for u in own[:i]:
+                one, other = inputs(t), inputs(u)
+                if (one & other) - channels and (one ^ other) & channels:
+                    yield f"`{t.name}` and `{u.name}` compete, and need different messages"
+
+
+def shown(
+    partition: Partition,
+    rules: Rules,
+    storage: Mapping[str, str],
+    limits: Limits,
+    options: ExploreOptions,
+) -> Shown | None:
+    """What a look at the cell as it runs, in turns, says; None: nothing."""
+    return None if why_not(partition, rules) else looked(partition, storage, limits, options)
+
+
+def looked(
+    partition: Partition, storage: Mapping[str, str], limits: Limits, options: ExploreOptions
+) -> Shown | None:
+    """The same, whatever is against it in the net."""
+    seen = _explored(partition, storage, limits, options)
+    if seen is None:
+        return None
+    running, found = seen
+    is_good = all(a["answer"] == "yes" for a in found.answers)
+    if not is_good or messages.examine(partition, found, Diagnostics()).answer != "yes":
+        return None
+    return Shown(found.nodes, found.arcs, len(running.net.places), len(running.net.transitions))
+
+
+def rows(
+    partition: Partition, storage: Mapping[str, str], limits: Limits, options: ExploreOptions
+) -> list[tuple[str, str]]:
+    """What is asked, and the answers; nothing where the cell is not seen to its end."""
+    seen = _explored(partition, storage, limits, options)
+    if seen is None:
+        return []
+    running, found = seen
+    lines = [x for x in questions(running).split("\n") if x.startswith("? ")]
+    return [(x, str(a["answer"])) for x, a in zip(lines, found.answers, strict=True)]
+
+
+def _explored(
+    partition: Partition, storage: Mapping[str, str], limits: Limits, options: ExploreOptions
+) -> tuple[Running, Exploration] | None:
+    """The net of turns, and its space, all of it; None: that is not seen."""
+    try:
+        made = loosened(partition)
+    except NotModelledError:
+        return None
+    if made is None:
+        return None
+    running, table = made
+    asked = questions(running)
+    own = replace(
+        options,
+        turns=table,
+        questions=asked,
+        sizes=Sizes.start(running.net, storage),
+        generated=Generated(),
+        whole=tuple(c.place for c in partition.channels),
+        stem="files",
+        quick=False,
+    )
+    d = Diagnostics()  # what is wrong with this net the whole space tells
+    found = explore(running.net, storage, replace(limits, graph=True, traces=0), d, own)
+    if found is None or not found.complete or not found.seen.arcs or found.error is not None:
+        return None
+    return (running, found) if len(found.answers) == asked.count("? ") else None
+
+
+def questions(running: Running) -> str:
+    """The lines for the explorer: how programs choose, and what has to be answered with "yes"."""
+    lines = [x for x in running.lines(first=True) if not x.startswith("instant ")]
+    lines += chunks("instant 0", range(len(running.net.transitions)))
+    q = Questions()
+    ends = [running.stopped, *([] if running.unsure is None else [running.unsure])]
+    q.asked += [
+        f"? restless 0 {ENDLESS}",
+        *(f"? bound {place} 0 0" for place in ends),
+        *(f"? bound {c.place} 0 1" for c in running.partition.channels),
+        f"? invariant {nothing_left(q, running)}",
+    ]
+    return "".join(f"{line}\n" for line in lines) + q.text()

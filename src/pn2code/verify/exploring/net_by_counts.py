@@ -1,0 +1,144 @@
+"""A net of which not all markings are counted: what can still be said of all of them.
+
+    known = look(net, storage, limits, options, part, final=places)    # None: nothing
+    known.ends, known.never
+
+As for a cell with many parts (`verify.controller.by_counts`) tokens are counted up to a limit only (`counts`), and
+transitions are looked at in turns (`turns`); here each transition is an owner of its own, as in a net everything that
+is enabled may occur. What holds in all states, and of all steps, holds in all markings, if no run goes on for ever;
+that weights show (`ranking`), and a look for a cycle of the transitions for which there are none:
+
+    no exception    none is raised in a state; an occurrence that raises one would be a step of a state
+    no endless run  each run comes to a dead marking
+    ends            each state in which nothing is enabled has a token in one of the places `final`; so has each dead
+                    marking, as its state is dead, too
+    never           transitions that occur in no state
+
+Priorities would make transitions depend on each other all over the net, so all have to be the same.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from dataclasses import replace
+
+from pn2code.base.frozen import frozen
+from pn2code.diagnostics import Diagnostics
+from pn2code.net.flat import FlatNet
+from pn2code.properties.questions import Questions
+from pn2code.structure import bounds_and_sums
+from pn2code.structure.relations import relations
+from pn2code.verify.exploring.counts import LEAST_TOKENS, Counts, counts
+from pn2code.verify.exploring.elements import NotPossibleError
+from pn2code.verify.exploring.explore import ExploreOptions, explore
+from pn2code.verify.exploring.limits import Limits
+from pn2code.verify.exploring.programs import Generated, Sizes
+from pn2code.verify.exploring.ranking import Ranking
+from pn2code.verify.exploring.result import Known
+from pn2code.verify.exploring.turns import Turns, turns
+
+ENDLESS = 1_000_000_000
+"""A run is that long, or goes on for ever."""
+MOST_STATES = 2_000_000
+"""Where there are more the limits do not help enough."""
+MOST_OWNERS = 250
+"""Transitions: each is an owner of its own."""
+
+
+@frozen
+class Abstract:
+    """What is counted in a net up to a limit, and how it is explored."""
+
+    counts: Counts
+    turns: Turns
+    sizes: Sizes
+    rising: frozenset[int]
+    questions: str
+
+
+def abstract(
+    net: FlatNet,
+    storage: Mapping[str, str],
+    final: Collection[int] = (),
+    *,
+    least: int = LEAST_TOKENS,
+) -> Abstract | None:
+    """The limits of a net; None: it is not possible, or there is nothing to count so."""
+    if (
+        net.timed
+        or len(net.transitions) > MOST_OWNERS
+        or len({t.priority for t in net.transitions}) > 1
+    ):
+        return None
+    try:
+        table = turns(net, range(len(net.transitions)))
+    except NotPossibleError:
+        return None
+    known = bounds_and_sums(net, storage=storage)
+    bounds = {p: b.bound for p, b in known[0].items() if b.bound is not None}
+    free = set(range(len(net.places))) - set(final)
+    found = counts(net, relations(net, storage), bounds, free=free, least=least)
+    if found is None or not found.limited:
+        return None
+    sizes = Sizes.start(net, storage, known)
+    # A place that follows from others does so in markings only.
+    sizes = replace(sizes, packing=replace(sizes.packing, sums=()))
+    rising = Ranking.of(net, storage, bounds).rising()
+    return Abstract(found, found.within(table), sizes, rising, _questions(net, final, rising))
+
+
+def _questions(net: FlatNet, final: Collection[int], rising: frozenset[int]) -> str:
+    """Whether each dead state is an end, and whether those that may go on for ever have a cycle."""
+    asked = Questions()
+    lines = [*(f"owner {t.index} {t.index}" for t in net.transitions), "priorities own"]
+    lines += [f"instant 0 {i}" for i in sorted(rising)] or ["instant 0 0"]
+    found = asked.line(f"not {asked.line('dead')}")
+    for place in sorted(final):
+        found = asked.line(f"or {found} {asked.line(f'within {place} 1 -')}")
+    asked.asked.append(f"? invariant {found}")
+    if rising:
+        asked.asked.append(f"? restless 0 {ENDLESS}")
+    return "".join(f"{line}\n" for line in lines) + asked.text()
+
+
+def look(
+    net: FlatNet,
+    storage: Mapping[str, str],
+    limits: Limits,
+    options: ExploreOptions,
+    final: Collection[int],
+) -> Known | None:
+    """Explores; None: nothing can be said in this way.
+
+    Args:
+        net, storage: as for `explore`.
+        limits: of the exploration.
+        options: who is told of the progress, and who may interrupt.
+        final: places one of which is to hold a token in each dead marking.
+    """
+    made = abstract(net, storage, final)
+    if made is None:
+        return None
+    own = ExploreOptions(
+        turns=made.turns,
+        counts=made.counts,
+        sizes=made.sizes,
+        generated=Generated(),
+        questions=made.questions,
+        stem="counts",
+        progress=options.progress,
+        interrupted=options.interrupted,
+        initial=options.initial,
+        quick=True,
+    )
+    most = min(limits.max_states or MOST_STATES, MOST_STATES)
+    own_limits = replace(limits, max_states=most, traces=0, graph=True, reductions=())
+    d = Diagnostics()  # what is wrong with the net all of its markings tell
+    found = explore(net, storage, own_limits, d, own)
+    if found is None or not found.complete or not found.seen.arcs or found.error is not None:
+        return None
+    ends, *others = found.answers
+    if len(others) != bool(made.rising) or any(row["answer"] != "yes" for row in others):
+        return None
+    never = tuple(t.index for t in net.transitions if not found.fired[t.index])
+    return Known(found.nodes, found.arcs, found.seconds, ends["answer"] == "yes", never)

@@ -1,0 +1,124 @@
+"""`pn2code run --live --intervene`: a person says what sensors see, and the records say that a person did."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from helpers.browser import launched, opened
+from helpers.lively import Running, running
+from helpers.played import Talk
+from helpers.processes import pn2code
+
+
+@pytest.fixture(scope="module")
+def chromium() -> Iterator[Any]:
+    """The browser of this file."""
+    with launched() as found:
+        yield found
+
+
+def token_of(run: Running) -> str:
+    """What the terminal has printed for those who take part."""
+    line = run.process.stdout.readline()
+    assert line.startswith(f"to play a robot or the fault: {run.url}#act="), line
+    return line.split("#act=")[1].strip()
+
+
+class Person(Talk):
+    """A page of somebody who takes part."""
+
+    def act(self, do: str, **more: Any) -> None:
+        self.text(json.dumps({"do": "act", "wish": {"do": do, **more}}))
+
+    def until(self, is_so: Callable[[dict[str, Any]], Any]) -> dict[str, Any]:
+        """Waits until the hand is told to be so."""
+        while True:
+            for update in self.hear("updates")["updates"]:
+                if is_so(update["hand"]):
+                    return dict(update["hand"])
+
+    def asked(self, sensor: str) -> dict[str, Any]:
+        """Waits for a question."""
+        told = self.until(lambda h: any(q["sensor"] == sensor for q in h["questions"]))
+        return next(q for q in told["questions"] if q["sensor"] == sensor)
+
+
+def lines_of(run: Running) -> list[dict[str, Any]]:
+    text = (run.out / "sorting.trace.jsonl").read_text(encoding="utf-8")
+    return [json.loads(line) for line in text.splitlines()]
+
+
+def test_what_a_person_says_is_done_and_recorded(root: Path, tmp_path: Path) -> None:
+    cell = root / "examples/sorting"
+    more = ("--intervene", "--patience", "500", "--speed", "3")
+    with running(cell, tmp_path / "run", *more) as run:
+        token = token_of(run)
+        with Person(run) as person:
+            person.act("fail", party="belt")
+            assert person.hear("act") == {"act": "not joined"}
+            for wrong in (run.stop_token, [token]):
+                person.text(json.dumps({"do": "join", "token": wrong}))
+                assert person.hear("act") == {"act": "wrong token"}
+            person.text(json.dumps({"do": "join", "token": token}))
+            assert person.hear("act") == {"act": "joined"}
+            person.act("way", party="robot", sensor="gripper", way="own")
+            first = person.asked("verdict")
+            assert first["values"] == ["good", "bad"] and 0 < first["left"] <= 500
+            person.act("hold", party="robot")
+            person.until(lambda h: "robot" in h["held"])
+            other = "bad" if first["own"] == "good" else "good"
+            person.act("answer", number=first["number"], value="ugly")
+            assert "ugly" in person.until(lambda h: h["refused"][0])["refused"][1]
+            person.act("answer", number=first["number"], value=other)
+            person.until(lambda h: not h["questions"])
+            person.act("go", party="robot")
+            person.until(lambda h: not h["held"])
+            person.text(json.dumps({"do": "stop", "token": run.stop_token}))
+            person.hear("over")
+        code, said = run.wait()
+    assert code == 1, said
+    assert "by a person" in said
+    (chosen,) = (x for x in lines_of(run) if x.get("event") == "sense" and "by" in x)
+    assert (chosen["robot"], chosen["value"], chosen["by"]) == ("belt", other, "person")
+    summary = json.loads((run.out / "summary.json").read_text(encoding="utf-8"))
+    texts = [h["text"] for h in summary["by_hand"]]
+    assert any(f"verdict: {other}, chosen by a person" in text for text in texts)
+    assert any(text.startswith("held for") for text in texts)
+    replayed = pn2code("replay", run.out / "sorting.trace.jsonl", cell)
+    assert "each enabled when its turn came" in replayed.stdout
+    assert "a person has chosen 2 of" in replayed.stdout
+    events = json.loads((run.out / "run.json").read_text(encoding="utf-8"))["happenings"]["events"]
+    assert any(e["text"] == f"sensor verdict: {other}, chosen by a person" for e in events)
+
+
+def test_in_the_page_a_person_answers_and_lets_a_device_fail(
+    root: Path, chromium: Any, tmp_path: Path
+) -> None:
+    more = ("--intervene", "--patience", "500", "--speed", "3")
+    with (
+        running(root / "examples/sorting", tmp_path / "run", *more) as run,
+        opened(chromium) as browser,
+    ):
+        page = browser.page
+        page.goto(f"{run.url}#act={token_of(run)}")
+        page.wait_for_selector("body[data-ready=true]")
+        assert "act=" not in page.url
+        question = page.get_by_role("group", name="Question of belt")
+        question.get_by_text("belt asks sensor verdict").wait_for()
+        question.get_by_role("button", name="bad", exact=True).click()
+        question.wait_for(state="hidden")
+        page.get_by_role("tab", name="Intervene").click()
+        page.get_by_role("button", name="Hold: belt").click()
+        page.get_by_role("button", name="Go on: belt").wait_for()
+        page.get_by_role("button", name="Fail: belt").click()
+        page.get_by_text("The run has ended: failed").wait_for()
+        code, said = run.wait()
+        assert code == 1 and "as a person at the live page wanted" in said.replace("\n", " ")
+        assert browser.errors == []
+    chosen = [x for x in lines_of(run) if x.get("event") == "sense" and "by" in x]
+    assert [x["value"] for x in chosen] == ["bad"]
