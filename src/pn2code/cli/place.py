@@ -283,7 +283,8 @@ def _text(
             yield "    no two arms collide, nor an arm and a part, in any interleaving that the net permits"
             yield f"    on the whole way: {_whole(tried.proof)}"
             continue
-        yield f"  does not hold, {where}: {tried.proof.trouble}"
+        holds = "not known" if tried.proof.answer == "unknown" else "does not hold"
+        yield f"  {holds}, {where}: {tried.proof.trouble}"
         if math.isfinite(tried.proof.condition):
             yield f"    on the whole way: {_whole(tried.proof)}"
     if found.chosen is None:
@@ -293,7 +294,8 @@ def _text(
             if is_open
             else "NO: none of these holds on the whole way"
         )
-        yield f"{answer}; wish for more (`--clearance`), or look at more (`--tries`)"
+        more = "give it more time" if found.unfinished else "wish for more (`--clearance`)"
+        yield f"{answer}; {more}, or look at more (`--tries`)"
     elif record is not None:
         why = f": {record.reason}" if record.reason else ""
         yield f"  ran in PyBullet: {record.verdict} after {record.time:.1f} s of the cell{why}"
