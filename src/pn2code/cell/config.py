@@ -164,7 +164,7 @@ class CellConfig:
 
     Args:
         path: the file.
-        geometry: the raw sections `robots`, `motion`, `scene`, layout applied.
+        geometry: the raw sections `robots`, `motion`, `scene` and the like, layout applied, and `primitives`.
         layouts: name -> description.
         layout: the one applied, or "".
         storage: colour set -> storage ("float32").

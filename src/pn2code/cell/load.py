@@ -113,6 +113,7 @@ def _config(
                 if isinstance(table, dict)
             },
             **{key: merged.get(key, {}) for key in PLACED if key != "robots"},
+            "primitives": _table(data.get("primitives")),
         },
         layouts={
             name: str(t.get("description", ""))

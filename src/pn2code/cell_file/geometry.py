@@ -471,6 +471,11 @@ ROBOT = Section(
             high=180.0,
         ),
         Key(
+            "carries",
+            "texts",
+            "The kinds of parts that it takes, for its payload; without it, all that any primitive takes.",
+        ),
+        Key(
             "tcps",
             "named",
             "A further tool frame, in the frame of the flange, to which moves can refer (`tcp` of an entry of "
@@ -533,6 +538,14 @@ SCENE = Section(
 PART = Section(
     (
         *_shape(),
+        Key(
+            "mass",
+            "number",
+            "What a part weighs: checked, with its tool, against what arms may carry ([robots.md](robots.md#payload)).",
+            default=0.0,
+            unit="kg",
+            low=0.0,
+        ),
         Key(
             "at",
             "tables",
