@@ -99,6 +99,9 @@ NEVER = {
     "./dev bench --states": "the same",
     "./dev bench --monitor": "the same",
     "./dev bench --compile": "the same",
+    "./dev bench --replay": "the same, in a browser",
+    "./dev bench --live examples/riveting --repeat 3": "the same",
+    "./dev site -o site": "runs of three cells in PyBullet; test_site has its first page",
     "./dev bench --against CHECKOUT": "the same, and another checkout",
     "./dev bench --database-15": "the same, and gigabytes",
     "./dev contest --seconds 10 --examinations ReachabilityDeadlock UpperBounds --log contest.jsonl": "hours; "
