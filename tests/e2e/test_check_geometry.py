@@ -159,7 +159,7 @@ def test_air_that_is_gripped(tmp_path: Path) -> None:
 
 
 def test_a_part_that_is_released_in_the_air(tmp_path: Path) -> None:
-    """A run stops there; so the check says so as well, and how the net comes there."""
+    """A run stops there (`test_carrying`); so the check says so as well, and how the net comes there."""
     cell = carrying_cell.write(tmp_path / "cell")
     text = changed(carrying_cell.NET, "(n div 2), 150.0)", "(n div 2), 200.0)")
     (cell / "cell.cpn").write_bytes(cpn(text))
@@ -172,7 +172,6 @@ def test_a_part_that_is_released_in_the_air(tmp_path: Path) -> None:
     assert bad.run is not None and bad.run.file is not None
     result = CliRunner().invoke(app, ["replay", str(bad.run.file), str(cell)])
     assert result.exit_code == 0, result.output
-    assert bad.problem.split(", part at")[0] in ran(cell, tmp_path / "run")
 
 
 @pytest.mark.parametrize(("z", "answer"), [("0.565", "no"), ("0.574", "unknown")])

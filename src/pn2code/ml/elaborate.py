@@ -167,6 +167,11 @@ class Elaborator:
         self._hide({*spec.ids, *(label for label, _ in spec.fields)}, spec.origin)
         return colset
 
+    @property
+    def infix(self) -> frozenset[str]:
+        """The operators that are infix now, besides those of the language."""
+        return frozenset(self._fixities) - frozenset(INFIX)
+
     def announce(self, names: Callable[[], frozenset[str]]) -> None:
         """Gives the names that the net declares anywhere: hints tell of declarations in the wrong order."""
         self._ctx.announced = names
