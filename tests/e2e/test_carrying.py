@@ -18,6 +18,7 @@ from pn2code.cli.main import app
 from pn2code.conform.cell import ProgramComparison
 from pn2code.diagnostics import Diagnostics
 from pn2code.pipeline import Generated, generate
+from pn2code.robot.model import MODELS
 from pn2code.run.cell import RunOptions, RunResult, run_cell
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
@@ -186,3 +187,23 @@ def test_a_trace_that_says_something_else_of_a_part_is_refused(cell: Path, tmp_p
     found = random.Random(7).sample(list(forgeries(judge.text)), amount(60, 600))
     found += [f for f in forgeries(judge.text) if '"event": "part"' in lines[f.line - 1]]
     assert not [f.what for f in found if judge.verdict(f)[0] in WRONG]
+
+
+def test_check_names_a_tool_and_a_part_that_are_too_heavy(tmp_path: Path) -> None:
+    """A KUKA arm that is said to carry 120 kg; of a lighter part nothing is said."""
+    model = (MODELS / "kr120_r2500.urdf").read_text().replace("meshes/", f"{MODELS}/meshes/")
+    for mass, carries, says in (
+        (119.0, "", ""),
+        (121.0, "", "carries its tool `vacuum_gripper` (0 kg) and a part `box` (121 kg), 121 kg, but 120 kg"),
+        (1.0, "carries = []", "takes a part `box`, which `carries` of it does not name"),
+    ):  # fmt: skip
+        toml = changed(TOML, 'model = "kr120_r2500"', f'model = "arm.urdf"\n{carries}')
+        toml = changed(toml, "[parts.box]", f"[parts.box]\nmass = {mass}")
+        where = write(tmp_path / str(mass), NET, toml)
+        (where / "arm.urdf").write_text(
+            changed(model, "</robot>", '<pn2code payload="120"/></robot>')
+        )
+        done = CliRunner().invoke(app, ["check", str(where)])
+        text = " ".join(done.output.split())
+        assert (done.exit_code == 0) == (not says), text
+        assert says in text and ("robot-payload" in text) == bool(says)

@@ -1,4 +1,4 @@
-"""Seven axes, a SCARA, a gantry and coupled axes, from the net to the arm: scripts, checks, geometry, runs, the page."""
+"""Seven axes, a SCARA, a gantry and coupled axes, from the net to the arm: scripts, checks, geometry and runs."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def test_joint_positions_in_nets(model: str, values: str, says: str, tmp_path: P
     record = " * ".join(f"{x.split(' =')[0]}:REAL" for x in values.split(", "))
     net = changed(net, "  val MOVE", f"  colset AXES = record {record};\n  val MOVE")
     net = changed(net, "action moveJoint p", f"action moveJoint {{{values}}}")
-    write(where.parent, net, (where / "cell.toml").read_text())
+    write(where, net, (where / "cell.toml").read_text())
     done = ask("check", str(where))
     assert (done.exit_code == 0) == (not says), done.output
     assert says in " ".join(done.output.split())
@@ -116,6 +116,29 @@ def test_joint_positions_in_nets(model: str, values: str, says: str, tmp_path: P
         assert found is not None, [e.message for e in d.errors]
         assert found.record.verdict == "finished", found.record.reason
         assert any(x.label == "axes" and x.end > x.start for x in found.record.actions)
+
+
+@pytest.mark.parametrize(
+    ("has_axes", "command", "says"),
+    [
+        (False, 'move_joint", arm_angle = 3.0', "has an `arm_angle`, but its arm `cobra_s600` has 4 axes"),
+        (True, 'move_axes"', "has 4 numbers, one for each axis of its arm `cobra_s600`, but 6"),
+    ],
+)  # fmt: skip
+def test_what_an_arm_cannot_be_told_whatever_the_values(
+    has_axes: bool, command: str, says: str, tmp_path: Path
+) -> None:
+    where = cell(tmp_path / "cell", "cobra_s600", f'{{ command = "{command} }}')
+    if has_axes:
+        record = " * ".join(f"a{i}:REAL" for i in range(1, 7))
+        fields = ", ".join(f"a{i} = #x p" for i in range(1, 7))
+        net = NET.replace("moveJoint (p : POSE)", "moveJoint (q : AXES)")
+        net = changed(net, "  val MOVE", f"  colset AXES = record {record};\n  val MOVE")
+        net = changed(net, "action moveJoint p", f"action moveJoint {{{fields}}}")
+        write(where, net, (where / "cell.toml").read_text())
+    done = ask("check", str(where))
+    assert done.exit_code == 1
+    assert says in " ".join(done.output.replace("|", " ").split()), done.output
 
 
 def test_a_map_of_bases_knows_the_arm_angle(tmp_path: Path) -> None:

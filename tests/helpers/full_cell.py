@@ -104,6 +104,7 @@ model = "iiwa14_r820"
 base = { y = -9.0 }
 home = [0.0, 30.0, 0.0, 90.0, 0.0, -60.0, 0.0]
 arm_angle = 15.0
+carries = ["rod"]
 
 [robots.turner]
 instance = "Turner"
@@ -131,6 +132,8 @@ variable = "v"
 file = "gauge.txt"
 default = 4
 seed = 5
+sees = "here"
+part = "box"
 
 [scene]
 floor = false
@@ -169,6 +172,7 @@ at = [{ x = 1.5, z = 0.5 }]
 grips = [{ z = 0.075, roll = 180.0 }]
 grip_tolerance = 0.01
 grip_angle_deg = 7.0
+mass = 1.5
 
 [parts.rod]
 kind = "cylinder"
@@ -233,9 +237,11 @@ about = "net"
 
 _NEEDED = {
     "primitives": ("parts", "places", "frames", "robots"),
+    "sensors": ("parts", "places", "robots"),
     "report": ("channel", "primitives", "parts", "places", "frames", "robots"),
-    "frames": ("robots",),
-    "scene": ("robots",),
+    "frames": ("robots", "parts"),
+    "robots": ("parts",),
+    "scene": ("robots", "parts"),
     "layouts": tuple(FULL),
 }
 """The sections that are named in a section."""
@@ -313,7 +319,7 @@ def read(folder: Path, data: dict[str, Any], section: str) -> tuple[str, Diagnos
         shown += [
             (name, k.T_flange_tcp.tolist()) for r in cell.robots for name, k in r.tcps.items()
         ]
-        shown += [r.kinematics.arm_angle for r in cell.robots]
+        shown += [(r.kinematics.arm_angle, r.carries) for r in cell.robots]
         shown += [a.described() for r in cell.robots for a in r.axes]
     return re.sub(r"Origin\([^()]*\)", "", repr(shown).replace(str(folder), "")), d
 

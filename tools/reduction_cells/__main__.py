@@ -11,6 +11,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))  # as pytest does
 
 from tools.reduction_cells.bed import judge
+from tools.reduction_cells.files import ANY, FORGETFUL
 from tools.reduction_cells.limited import WRONG_LIMITS
 from tools.reduction_cells.mutants import MUTANTS, NO_GROUPS, RASH
 
@@ -43,7 +44,7 @@ def main() -> int:
     print(f"{options.cells} cells: {dict(sorted(counts.items()))}")
     names = (*MUTANTS, *WRONG_LIMITS)
     missed = [name for name in names if not shown[name]] if options.mutants else []
-    for name in (NO_GROUPS, RASH) if options.mutants else ():
+    for name in (NO_GROUPS, RASH, *FORGETFUL, ANY) if options.mutants else ():
         print(f"{name}: noticed in {shown[name]} cells")  # it takes rare cells
     for name in missed:
         print(f"not noticed: {name}")

@@ -6,7 +6,7 @@
 * *limits*: the states in which tokens are counted up to a limit stand for all markings: whatever occurs, or is held, in
   these does so in those, and what is said of those is true of these.
 * *the checks of the supervisor*: with turns and without, wherever turns say anything; and with limits.
-* *the medium*: the same.
+* *the medium*: the same; and what the cell as it runs says of its files (`files`).
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from random import Random
 from typing import Any
 
 from tools.adversary.cells import random_cell as adversary_cell
+from tools.reduction_cells import files
 from tools.reduction_cells.flows import flow
 from tools.reduction_cells.limited import Limited
 from tools.reduction_cells.mutants import MUTANTS, NO_GROUPS, RASH
@@ -244,6 +245,7 @@ def judge(seed: int, folder: Path, *, mutants: bool, wants_medium: bool) -> Verd
     wrong += _of_checks(cell, counts)
     if wants_medium:
         wrong += _of_medium(cell, counts)
+        wrong += files.judged(partition, opened.storage, counts, shown if mutants else None)
     return Verdict(tuple(wrong), frozenset(shown), counts)
 
 

@@ -26,6 +26,8 @@ FORGETFUL: Mapping[str, Question] = {
     "the end may be no end": lambda line: line.startswith("? invariant"),
 }
 """By name, the questions that are not asked."""
+ANY = "programs may send and wait as they like"
+"""What is against it in the net is not looked at."""
 
 
 def judged(
@@ -47,10 +49,12 @@ def judged(
         shown.update(_noticed(partition, storage, limits, options))
 
 
-def _noticed(partition: Partition, storage: Mapping[str, Any], limits: Limits, options: ExploreOptions) -> Iterator[str]:
+def _noticed(
+    partition: Partition, storage: Mapping[str, Any], limits: Limits, options: ExploreOptions
+) -> Iterator[str]:
     if by_cell.why_not(partition, Rules()):
         if by_cell.looked(partition, storage, limits, options) is not None:
-            yield "programs may send and wait as they like"
+            yield ANY
         return
     rows = by_cell.rows(partition, storage, limits, options)
     for name, is_left_out in FORGETFUL.items():

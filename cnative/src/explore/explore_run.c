@@ -156,7 +156,9 @@ static void grow_all(ex_run_t *run)
     } else {
         ex_key_widths(run, width);
     }
-    is_fine = is_fine && ((run->store.bucket == NULL) || ex_store_grow(&run->store, width));
+    /* A graph is made of the slots of the store: in it, what is new is not found, and not inserted either. */
+    const bool is_settled = (run->store.bucket == NULL) || (run->graph != NULL);
+    is_fine = is_fine && (is_settled || ex_store_grow(&run->store, width));
     if (!is_fine) {
         ex_stop(run, EX_MEMORY);
     }

@@ -3,9 +3,9 @@
     why_not(partition, rules)                                  # "" if the cell as it runs tells
     shown(partition, rules, storage, limits, options)           # what it tells; None: nothing
 
-In the cell as it runs (`verify.controller.running`) a channel holds its message from when it is put until it is taken;
-in the net with its medium (`compose`) the message is written, found, taken, and at last the file is emptied. Let R be
-the former, as turns look at it (`Running.of(loose=True)`), and M the latter. *If in R*
+In the cell as it runs (`verify.controller.running`) a channel holds its message from when it is put until it is
+taken; in the net with its medium (`compose`) the message is written, found, taken, and at last the file is emptied.
+Let R be the former, as turns look at it (`Running.of(loose=True)`), and M the latter. *If in R*
 
   1  no channel ever holds two messages, no script stops, and no inscription raises an exception,
   2  no run goes on for ever, and
@@ -17,44 +17,46 @@ the former, as turns look at it (`Running.of(loose=True)`), and M the latter. *I
   5  each of them sends at most one message, and
   6  robots send no messages to each other,
 
-*then M has no fault, and from each of its states an end can be reached.* The steps of the proof; a prefix of a run of M
-is meant up to the supervisor's end, and without a fault:
+*then M has no fault, and from each of its states an end can be reached.* The steps of the proof; a prefix of a run of
+M is meant up to the supervisor's end, and without a fault:
 
-*Files.* What happens to one file is a circle: empty (`0`); written; read, while the message waits in the reader's memory;
-consumed; empty. The writer renames into an empty file only, the reader looks only where it has not read, numbers go
-along, and a side that has consumed a message empties its file before it does anything but empty others. So a message is
-not lost, torn, refused, or taken twice; the only fault is that a writer has a message for a file that is not empty, or
-two in one cycle.
+*Files.* What happens to one file is a circle: empty (`0`); written; read, while the message waits in the reader's
+memory; consumed; empty. The writer renames into an empty file only, the reader looks only where it has not read,
+numbers go along, and a side that has consumed a message empties its file before it does anything but empty others. So
+a message is not lost, torn, refused, or taken twice; the only fault is that a writer has a message for a file that is
+not empty, or two in one cycle.
 
 *A run of M is one of R.* R does the same as M: what the supervisor does, when M does it, its looks with the step that
-looks, its publishing with the step that renames; if a channel is one that R may see late, what a round sees there comes
-at the end of the round. What a robot does comes as late as possible: before the first look that finds its message, or
-one that it has sent later. If a look finds an empty file, the robot's message, if it has put one already, will be found
-by a later look, and so will those that it sends later, as they are written after it. So R finds nothing there either
-(5: no second message of the same transition could have been found before). A robot does what it does in M, because it
-chooses among transitions that need the same messages (4), and the one that it takes has all of its own: so have the
-others, and what is enabled depends on its own places and on these messages, of which there is one each (1). What is left
-when M's prefix ends comes last. Then each side has the same in its memory, and a channel of R holds what has been put,
-and not consumed.
+looks, its publishing with the step that renames; if a channel is one that R may see late, what a round sees there
+comes at the end of the round. What a robot does comes as late as possible: before the first look that finds its
+message, or one that it has sent later. If a look finds an empty file, the robot's message, if it has put one already,
+will be found by a later look, and so will those that it sends later, as they are written after it. So R finds nothing
+there either (5: no second message of the same transition could have been found before). A robot does what it does in
+M, because it chooses among transitions that need the same messages (4), and the one that it takes has all of its own:
+so have the others, and what is enabled depends on its own places and on these messages, of which there is one each
+(1). What is left when M's prefix ends comes last. Then each side has the same in its memory, and a channel of R holds
+what has been put, and not consumed.
 
 *No fault.* Take a shortest prefix after which a writer w has a message for a file that is not empty. If the message
-before has not been consumed, the channel holds two in R, against 1. If it has, by the reader r, then r has since emptied
-other files at most, and a message to another robot, which would be there at once, r does not send (6). So what r has
-done from the taking on has been seen by nobody; without it, and with all that the others have done, this is still a run
-of R: there it does not matter whether files have been emptied. After it the channel holds two, against 1.
+before has not been consumed, the channel holds two in R, against 1. If it has, by the reader r, then r has since
+emptied other files at most, and a message to another robot, which would be there at once, r does not send (6). So
+what r has done from the taking on has been seen by nobody; without it, and with all that the others have done, this
+is still a run of R: there it does not matter whether files have been emptied. After it the channel holds two, against
+1.
 
-*The end.* Between two occurrences of the net's own transitions sides do a limited number of steps. So by 2 no run of M
-goes on for ever, up to the supervisor's end. Let nothing be possible in M; then all sides are calm, and all messages
-have been written and all consumed ones emptied, for each of these steps is possible (there is no fault). If no final
-place held a token, R would go on from its state, after the supervisor has come to rest, by 3: by a look that finds a
-message, but then M could look as well; by a transition of a robot, but then its messages can be read, or have been, and M
-could do this; or by a script that stops, against 1. So it is an end. After it the supervisor of M goes on looking, that
-of R does not. By 3 it finds nothing: robots do the same in both, and a message to it would stay in R for ever.
+*The end.* Between two occurrences of the net's own transitions sides do a limited number of steps. So by 2 no run of
+M goes on for ever, up to the supervisor's end. Let nothing be possible in M; then all sides are calm, and all
+messages have been written and all consumed ones emptied, for each of these steps is possible (there is no fault). If
+no final place held a token, R would go on from its state, after the supervisor has come to rest, by 3: by a look that
+finds a message, but then M could look as well; by a transition of a robot, but then its messages can be read, or have
+been, and M could do this; or by a script that stops, against 1. So it is an end. After it the supervisor of M goes on
+looking, that of R does not. By 3 it finds nothing: robots do the same in both, and a message to it would stay in R
+for ever.
 
 What each channel holds in M's writers it holds in R as well: so the values of messages are those of R.
 
-This is a reduction by movers (R. Lipton, *Reduction: a method of proving properties of parallel programs*, 1975): emptying
-a file moves to the left, up to the taking; writing, and what precedes it, to the right, up to the look.
+This is a reduction by movers (R. Lipton, *Reduction: a method of proving properties of parallel programs*, 1975):
+emptying a file moves to the left, up to the taking; writing, and what precedes it, to the right, up to the look.
 """
 
 from __future__ import annotations

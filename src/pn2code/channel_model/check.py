@@ -217,7 +217,7 @@ def whole(
         return full(run.limits)
     if shown is not None and not by_cell.why_not(partition, rules):
         return _by_cell(shown, assumes, 0.0)
-    if not by_cell.why_not(partition, rules) and FILES_FROM < min(first, most):
+    if not by_cell.why_not(partition, rules) and min(first, most) > FILES_FROM:
         part = full(replace(run.limits, max_states=FILES_FROM))
         if part.answer != "inconclusive" or part.why != _incomplete("states"):
             return part

@@ -17,8 +17,8 @@ ROBOT_TOOL = register(
 ROBOT_URDF = register(
     "robot-urdf",
     "a URDF file cannot be used",
-    "The file is missing, not XML, or its links and joints are not one tree with four, six or seven joints with limits from "
-    "the base to the flange. The flange is the link named `flange` or `tool0`, or the end of the chain.",
+    "The file is missing, not XML, or its links and joints are not one tree with four, six or seven joints with limits "
+    "from the base to the flange. The flange is the link named `flange` or `tool0`, or the end of the chain.",
 )
 UNSUPPORTED_KINEMATICS = register(
     "unsupported-robot-kinematics",
@@ -49,6 +49,12 @@ ROBOT_PART = register(
     "a part overlaps something at the start",
     "The poses of `at` in `[parts.KIND]` say where parts are when a run begins. Overlaps above 1 mm are measured "
     "with PyBullet, as at HOME.",
+)
+ROBOT_PAYLOAD = register(
+    "robot-payload",
+    "a robot carries more than its arm may",
+    "The masses of tools (`inertial` in their URDF files) and of parts (`mass` in `[parts.KIND]`) are compared with "
+    "what the URDF file of the arm says: `payload` in kg, and the moments about axes 4, 5 and 6.",
 )
 ROBOT_REACH = register(
     "robot-reach",

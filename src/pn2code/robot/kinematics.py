@@ -232,6 +232,16 @@ class Kinematics:
         lengths += np.maximum(-self.arm.lower, self.arm.upper)[self._sliding].sum()
         return float(lengths + np.linalg.norm((self._chain.end @ self.T_flange_tcp)[:3, 3]))
 
+    @property
+    def wrist_in_flange(self) -> Array | None:
+        """Where axes 4, 5 and 6 meet, and the direction of axis 6, seen from the flange, (2, 3); None: nowhere."""
+        if not isinstance(self._form, SphericalWrist):
+            return None
+        frame = inverse(self._chain.zero[-1])
+        centre = frame @ np.append(self._chain.wrist_centre, 1.0)
+        axis = frame[:3, :3] @ self._chain.axis(5, [f[None] for f in self._chain.zero])[0]
+        return np.stack([centre[:3], axis])
+
     # Differential
 
     def jacobian(self, q: ArrayLike) -> Array:

@@ -30,6 +30,7 @@ class PartKind:
         shape: its geometry, in its own frame.
         at: where the parts are that are there at the start.
         grips: where the TCP may be when it is gripped, in the frame of the part; empty: at its origin, however turned.
+        mass: kg; 0: it is not said.
         tolerance: how far the TCP may be from there, m; angle: and how far it may be turned, rad.
     """
 
@@ -39,6 +40,7 @@ class PartKind:
     grips: tuple[Pose, ...] = ()
     tolerance: float = 0.005
     angle: float = math.radians(5.0)
+    mass: float = 0.0
 
 
 def read_kinds(t: Table, folder: Path) -> dict[str, PartKind]:
@@ -51,9 +53,10 @@ def read_kinds(t: Table, folder: Path) -> dict[str, PartKind]:
         grips = tuple(map(read_own_pose, table.tables("grips")))
         tolerance = table.number("grip_tolerance")
         angle = math.radians(table.number("grip_angle_deg"))
+        mass = table.number("mass")
         if shape is not None:
             table.done()
-            out[name] = PartKind(name, shape, at, grips, tolerance, angle)
+            out[name] = PartKind(name, shape, at, grips, tolerance, angle, mass)
     return out
 
 

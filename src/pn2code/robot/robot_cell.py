@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field
 
 import numpy as np
 
 from pn2code.base.frozen import frozen
+from pn2code.robot import payload
 from pn2code.robot.carried import STAND
 from pn2code.robot.commands import Pose
 from pn2code.robot.external import Externals
@@ -16,6 +17,7 @@ from pn2code.robot.kinematics import Branch, Kinematics
 from pn2code.robot.model import Arm, Tool
 from pn2code.robot.motion import MotionLimits
 from pn2code.robot.parts_table import PartKind
+from pn2code.robot.payload import Load
 from pn2code.robot.scene_objects import SceneObject
 from pn2code.robot.transforms import Array, matrix_of
 
@@ -101,6 +103,8 @@ class CellRobot:
         branch: the only one joint moves may end in; None: the fastest to reach.
         axes: its external ones; `home` has all.
         tcps: kinematics to further tool frames, by name.
+        carries: kinds of parts that it may take, by name; pace: what its heaviest load leaves of the speeds and the
+            accelerations of its axes.
         turning: frames that turn with a turntable of it, by name: the axis, by its index, and the pose on its plate.
     """
 
@@ -114,6 +118,26 @@ class CellRobot:
     axes: Externals = field(default_factory=Externals)
     turning: Mapping[str, tuple[int, Pose]] = field(default_factory=dict)
     tcps: Mapping[str, Kinematics] = field(default_factory=dict)
+    carries: tuple[str, ...] = ()
+    pace: tuple[float, float] = (1.0, 1.0)
+
+    def loads(self, kinds: Mapping[str, PartKind], taken: Iterable[str]) -> Iterator[Load]:
+        """What hangs on its flange: the tool, alone and with parts of these kinds."""
+        tool = self.tool
+        own = (tool.name, tool.urdf.mass, tool.urdf.centre) if tool is not None else None
+        frame = self.kinematics.T_flange_tcp
+        yield from payload.loads(own, frame, (kinds[k] for k in taken if k in kinds))
+
+    def overload(self, kinds: Mapping[str, PartKind], taken: Iterable[str]) -> str:
+        """Why it may not carry what it takes, in words that name tool and part; "": it may, or nothing is said."""
+        rating = self.arm.urdf.rating
+        if rating is None:
+            return ""
+        centre = self.kinematics.alone.wrist_in_flange
+        for load in self.loads(kinds, taken):
+            if why := rating.exceeded(load, centre):
+                return f"robot `{self.name}` (`{self.arm.name}`) carries {load.words}, {why}"
+        return ""
 
     @property
     def root(self) -> str:
@@ -135,20 +159,24 @@ class CellRobot:
     def limits(self, motion: MotionConfig) -> MotionLimits:
         """What this arm may do under a motion configuration."""
         ones = np.ones(len(self.arm.velocity))
-        velocity = self.arm.velocity * motion.joint_speed
+        fast, ramp = self.pace
+        most = self.arm.velocity * fast
+        velocity = most * motion.joint_speed
         acceleration, jerk = ones * motion.joint_acceleration, ones * motion.joint_jerk
         sliding = self.kinematics.joints.start + np.flatnonzero(self.kinematics.alone.slides)
         acceleration[sliding], jerk[sliding] = motion.slide_acceleration, motion.slide_jerk
+        acceleration *= ramp
         for axis in self.axes:
             i = self.index(axis.name)
             velocity[i], acceleration[i], jerk[i] = axis.velocity, axis.acceleration, axis.jerk
+            most[i] = axis.velocity
         return MotionLimits(
             velocity=velocity,
             acceleration=acceleration,
             jerk=jerk,
-            axis_velocity=self.arm.velocity,
+            axis_velocity=most,
             linear_velocity=motion.linear_speed,
-            linear_acceleration=motion.linear_acceleration,
+            linear_acceleration=motion.linear_acceleration * ramp,
             linear_jerk=motion.linear_jerk,
             angular_velocity=motion.angular_speed,
         )

@@ -85,7 +85,9 @@ def load(
     places = read_places(table("places", None))
     plates = [f"{r.name}.{a.name}" for r in robots for a in r.axes.tables]
     frames = read_frames(table("frames", None), plates)
-    robots = tuple(_with_frames(r, frames) for r in robots)
+    named = dict(table("robots", None).named(ROBOT))
+    taken = _taken(geometry.get("primitives", {}))
+    robots = tuple(_loaded(_with_frames(r, frames), kinds, taken, named[r.name]) for r in robots)
     scene = _scene(table("scene", SCENE), robots, names, kinds, folder)
     if len(d.errors) != before:
         return None
@@ -100,6 +102,29 @@ def _with_frames(robot: CellRobot, frames: Frames) -> CellRobot:
         if owner == robot.name
     }
     return replace(robot, turning=turning) if turning else robot
+
+
+def _taken(primitives: object) -> tuple[str, ...]:
+    """The kinds of parts that tools take, in order."""
+    tables = primitives.values() if isinstance(primitives, Mapping) else ()
+    kinds = [t.get("takes") for t in tables if isinstance(t, Mapping)]
+    return tuple(dict.fromkeys(k for k in kinds if isinstance(k, str)))
+
+
+def _loaded(
+    robot: CellRobot, kinds: Mapping[str, PartKind], taken: tuple[str, ...], t: Table
+) -> CellRobot:
+    """A robot with what it carries, which may slow it down."""
+    carries = robot.carries if "carries" in t.data else taken
+    for name in robot.carries:
+        if name not in kinds:
+            t.wrong("carries", "a list of kinds of parts", did_you_mean(name, tuple(kinds)))
+    robot = replace(robot, carries=carries)
+    rating = robot.arm.urdf.rating
+    if rating is None or not rating.derating:
+        return robot
+    heaviest = max(load.mass for load in robot.loads(kinds, carries))
+    return replace(robot, pace=rating.factors(heaviest))
 
 
 def _motion(t: Table) -> MotionConfig:
@@ -129,6 +154,7 @@ def _robot(t: Table, name: str, folder: Path) -> CellRobot | None:
     home_deg = t.numbers("home")
     branch_name = t.text("branch")
     arm_angle = t.number("arm_angle")
+    carries = t.texts("carries")
     axes = read_axes(t, name, base, folder)
     frames = t.table("tcps").named(t.inner("tcps")) if t.has("tcps") else ()
     further = {key: read_own_pose(p) for key, p in frames}
@@ -160,14 +186,18 @@ def _robot(t: Table, name: str, folder: Path) -> CellRobot | None:
             hint="only arms with seven axes have one; leave the key out",
         )
     if not axes:
-        return CellRobot(name, arm, tool, kinematics, base, home, branch, tcps=tcps)
+        return CellRobot(
+            name, arm, tool, kinematics, base, home, branch, tcps=tcps, carries=carries
+        )
     whole = with_axes(arm, axes, name, t.at("axes"), t.d)
     if whole is None:
         return None
     home = (*(a.home for a in axes.tracks), *home, *(a.home for a in axes.tables))
     carried = WithAxes(kinematics, axes, whole)
     tcps = {key: WithAxes(own, axes, whole) for key, own in tcps.items()}
-    return CellRobot(name, whole, tool, carried, base, home, branch, axes, tcps=tcps)
+    return CellRobot(
+        name, whole, tool, carried, base, home, branch, axes, tcps=tcps, carries=carries
+    )
 
 
 def _home(t: Table, name: str, arm: Arm, numbers: tuple[float, ...]) -> tuple[float, ...] | None:

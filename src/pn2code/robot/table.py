@@ -115,6 +115,16 @@ class Table:
             return default
         return tuple(map(float, value))
 
+    def texts(self, name: str) -> tuple[str, ...]:
+        """A list of texts; none if it is not there."""
+        value = self.data.get(name, [])
+        if not self.has(name):
+            return ()
+        if not isinstance(value, list) or not all(isinstance(v, str) and v for v in value):
+            self.wrong(name, "a list of names")
+            return ()
+        return tuple(value)
+
     def text(self, name: str) -> str:
         """A text that is not empty, one of the words of its key; the default or "" where there is none."""
         key = self._key(name)

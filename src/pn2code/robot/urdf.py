@@ -17,6 +17,7 @@ from lxml import etree
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.robot import codes
+from pn2code.robot.payload import Rating
 from pn2code.robot.transforms import Array, rotation_xyz
 
 JointType = Literal["revolute", "continuous", "prismatic", "fixed"]
@@ -66,6 +67,8 @@ class Urdf:
         contact_links: links that may touch what the tool works on (`<pn2code contact="nose"/>`).
         self_ignore: pairs of links never checked against each other.
         couplings: axes whose limits and positions depend on another one (`<pn2code coupled="joint_3" .../>`).
+        rating: what an arm may carry; None: nothing is said.
+        mass: kg, of all links that have one; centre: of it, in the frame of the root, m.
         root: the link that is no joint's child.
         xml: the parsed file.
     """
@@ -77,6 +80,9 @@ class Urdf:
     contact_links: tuple[str, ...]
     self_ignore: frozenset[frozenset[str]]
     couplings: tuple[Coupling, ...]
+    rating: Rating | None
+    mass: float
+    centre: Array
     root: str
     xml: Any
 
@@ -151,6 +157,7 @@ def _tree(path: Path, root: Any) -> Urdf:
     roots = [name for name in links if name not in children]
     if len(roots) != 1:
         raise _BadError(f"the links are not one tree: {len(roots)} of them have no parent")
+    mass, centre = _mass(root, joints)
     return Urdf(
         path=path,
         name=root.get("name", path.stem),
@@ -167,6 +174,9 @@ def _tree(path: Path, root: Any) -> Urdf:
         couplings=tuple(
             _coupling(e, joints) for e in root.findall("pn2code") if e.get("coupled") is not None
         ),
+        rating=_rating(root),
+        mass=mass,
+        centre=centre,
         root=roots[0],
         xml=root,
     )
@@ -189,6 +199,52 @@ def _numbers(element: Any, name: str, count: int, default: str) -> tuple[float, 
         line = 0 if element is None else element.sourceline
         raise _BadError(f"`{name}` is `{text}`, but {count} numbers are expected", line)
     return values
+
+
+def _mass(root: Any, joints: tuple[Joint, ...]) -> tuple[float, Array]:
+    """Of all links together, with joints at zero."""
+    by_child = {j.child: j for j in joints}
+    whole, moment = 0.0, np.zeros(3)
+    for link in root.findall("link"):
+        inertial = link.find("inertial")
+        if inertial is None or inertial.find("mass") is None:
+            continue
+        (mass,) = _numbers(inertial.find("mass"), "value", 1, "")
+        if mass < 0.0:
+            raise _BadError(f"the mass of link `{link.get('name')}` is below zero", link.sourceline)
+        point = np.array([*_numbers(inertial.find("origin"), "xyz", 3, "0 0 0"), 1.0])
+        name = link.get("name")
+        while name in by_child:
+            point, name = by_child[name].T_parent_joint @ point, by_child[name].parent
+        whole, moment = whole + mass, moment + mass * point[:3]
+    return whole, moment / whole if whole > 0.0 else moment
+
+
+def _rating(root: Any) -> Rating | None:
+    """What an arm may carry."""
+    said = [e for e in root.findall("pn2code") if e.get("payload") is not None]
+    rows = [e for e in root.findall("pn2code") if e.get("load") is not None]
+    if not said:
+        if rows:
+            raise _BadError("`load` says how fast an arm is, but no `payload`", rows[0].sourceline)
+        return None
+    (payload,) = _numbers(said[0], "payload", 1, "")
+    moments = _numbers(said[0], "moments", 3, "") if said[0].get("moments") is not None else ()
+    if not (payload > 0.0 and all(m > 0.0 for m in moments)):
+        raise _BadError("`payload` and `moments` must be above zero", said[0].sourceline)
+    keys = ("load", "speed", "acceleration")
+    derating: list[tuple[float, float, float]] = []
+    for e in rows:
+        load, speed, acceleration = (_numbers(e, key, 1, "1")[0] for key in keys)
+        if not (load >= 0.0 and 0.0 < speed <= 1.0 and 0.0 < acceleration <= 1.0):
+            raise _BadError(
+                "`load` needs kg from 0, and `speed` and `acceleration` above 0, at most 1",
+                e.sourceline,
+            )
+        if derating and load <= derating[-1][0]:
+            raise _BadError("the rows of `load` are not in rising order", e.sourceline)
+        derating.append((load, speed, acceleration))
+    return Rating(payload, moments, tuple(derating))
 
 
 def _coupling(element: Any, joints: tuple[Joint, ...]) -> Coupling:

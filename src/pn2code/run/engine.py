@@ -78,6 +78,7 @@ from pn2code.tdl.requests import (
     MessageConsumed,
     MessageWritten,
     Request,
+    Scalar,
     Sense,
 )
 from pn2code.trace.growing import GrowingTrace
@@ -398,7 +399,13 @@ class Engine:
 
     def _sense(self, robot: RobotRunner, request: Sense) -> Said | None:
         """What a sensor says; None: that is not known yet."""
-        return Said(self.sensors.ask(robot.name, request.sensor))
+        return Said(self._sensor_says(robot, request))
+
+    def _sensor_says(self, robot: RobotRunner, request: Sense) -> Scalar | None:
+        looks = self.sensors.seen.get(request.sensor)
+        if looks is not None:
+            return self.parts.parts.is_seen(*looks)
+        return self.sensors.ask(robot.name, request.sensor)
 
     def _told(self, robot: RobotRunner, request: Sense, said: Said) -> Request:
         """A sensor has said something: what the script wants next."""
@@ -591,7 +598,9 @@ class Engine:
                 continue
             where = r.element_at(r.line)
             at = f" (net transition {where})" if where else ""
-            parts.append(f"{r.script}:{r.line}{at}: {r.name}: {_words(r.motion.command)}")
+            parts.append(
+                f"{r.script}:{r.line}{at}: {r.name}: {_words(r.motion.command, _slides(r))}"
+            )
         return "under way: " + "; ".join(parts)
 
     def _stop(self, problem: CellStoppedError) -> None:
@@ -658,7 +667,12 @@ def _with(along: tuple[Along, ...]) -> str:
     return f" with {text}" if text else ""
 
 
-def _words(command: Command) -> str:
+def _slides(robot: RobotRunner) -> tuple[bool, ...]:
+    """Which axes of an arm slide."""
+    return () if robot.arm is None else tuple(robot.arm.robot.kinematics.alone.slides.tolist())
+
+
+def _words(command: Command, slides: tuple[bool, ...] = ()) -> str:
     """A command in the units of the scripts."""
     match command:
         case MoveJoint() | MoveLinear() | MoveCircular() | Measure():
@@ -675,6 +689,9 @@ def _words(command: Command) -> str:
             return f"{kind_and_label(command)[1]} {mm} mm, {deg} deg{within}{by}{_with(moved)}{arm}"
         case MoveAxes(axes=axes):
             shown = " ".join(f"{np.degrees(v):.4f}" for v in axes)
+            if any(slides):
+                slid = ", ".join(str(i) for i, slid in enumerate(slides, 1) if slid)
+                shown += f" (axes {slid}: mm)"
             return f"axes {shown} deg{_with(command.along)}"
         case MoveExternal(along=along):
             return f"external{_with(along)}"

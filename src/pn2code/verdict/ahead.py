@@ -73,6 +73,9 @@ def look_ahead(
             return
         where = f" in layout `{layout}`" if layout else ""
         _home(cell, chosen, where, d)
+        for ir in programs:
+            _payload(cell, ir, chosen, where, d)
+            _kind_of_arm(cell, ir, where, d)
     arms = Arms.of(config, d, partial=False)
     if arms is not None:
         for ir in programs:
@@ -85,7 +88,9 @@ def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> No
     if not cell.robots:
         return
     for robot in cell.robots:
-        angles = [round(math.degrees(q), 4) for q in robot.home[robot.kinematics.joints]]
+        own = robot.home[robot.kinematics.joints]
+        turning = ~robot.kinematics.alone.slides
+        angles = [round(math.degrees(q), 4) for q, turns in zip(own, turning, strict=True) if turns]
         if scene.in_radians(angles):
             d.warning(
                 codes.ROBOT_HOME,
@@ -124,6 +129,70 @@ def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> No
             f"at HOME{where}: {verdict.fault.message}",
             config.locator.origin("robots", verdict.fault.robot, "home"),
             hint="change `home` (degrees) or `base` (m and degrees) of the robot, or move what it touches",
+        )
+
+
+def _kind_of_arm(cell: RobotCell, ir: RobotIR, where: str, d: Diagnostics) -> None:
+    """Moves that an arm with so many axes cannot be told, whatever their values."""
+    robot = next((r for r in cell.robots if r.name == ir.name), None)
+    if robot is None:
+        return
+    alone = robot.kinematics.alone
+    count, constants = len(alone.arm.lower), _constants_of(ir)
+    for body in (ir.body, *(body for _, body in ir.procedures)):
+        for origin, move in _moves(body, ir.origin):
+            if _is_constant(move, constants):
+                continue  # it is looked at with its values
+            if isinstance(move.target, t.Axes) and len(move.target.angles) != count:
+                d.error(
+                    codes.ROBOT_REACH,
+                    f"a joint position of robot `{ir.name}`{where} has {count} numbers, one for each axis of its arm "
+                    f"`{robot.arm.name}`, but {len(move.target.angles)} are given",
+                    origin,
+                    hint=f"use a record of the reals a1 .. a{count}",
+                )
+            if move.arm_angle is not None and alone.arm_angle is None:
+                d.error(
+                    codes.ROBOT_REACH,
+                    f"a move of robot `{ir.name}`{where} has an `arm_angle`, but its arm `{robot.arm.name}` has "
+                    f"{count} axes",
+                    origin,
+                    hint="only arms with seven axes have one; leave `arm_angle` of the primitive out",
+                )
+
+
+def _is_constant(move: t.Move, constants: _Constants) -> bool:
+    try:
+        _constant(move, constants)
+    except ScriptError:
+        return False
+    return True
+
+
+def _payload(cell: RobotCell, ir: RobotIR, config: CellConfig, where: str, d: Diagnostics) -> None:
+    """What a robot carries, with all that its script takes, is not too much."""
+    robot = next((r for r in cell.robots if r.name == ir.name), None)
+    if robot is None:
+        return
+    taken: dict[str, Origin] = {}
+    for body in (ir.body, *(body for _, body in ir.procedures)):
+        for origin, said in _statements(body, ir.origin):
+            if isinstance(said, t.Tool) and said.handling and said.handling.effect == "takes":
+                taken.setdefault(said.handling.part, origin)
+    for kind, origin in taken.items():
+        if kind not in robot.carries:
+            d.error(
+                codes.ROBOT_PAYLOAD,
+                f"robot `{robot.name}` takes a part `{kind}`, which `carries` of it does not name",
+                origin,
+                hint=f'add "{kind}" to `carries` of robot `{robot.name}` in cell.toml',
+            )
+    if problem := robot.overload(cell.parts, taken):
+        d.error(
+            codes.ROBOT_PAYLOAD,
+            problem + where,
+            config.locator.origin("robots", robot.name, "model"),
+            hint="choose another arm, or a lighter tool or part (`mass` of the kind of parts, kg)",
         )
 
 
@@ -276,18 +345,25 @@ def _external(a: t.Along, constants: _Constants) -> Along:
 
 def _moves(nodes: Iterable[Node], origin: Origin) -> Iterator[tuple[Origin, t.Move]]:
     """The moves, each with the net element that it comes from."""
+    for at, said in _statements(nodes, origin):
+        if isinstance(said, t.Move):
+            yield at, said
+
+
+def _statements(nodes: Iterable[Node], origin: Origin) -> Iterator[tuple[Origin, t.Simple]]:
+    """The lines of a program, each with the net element that it comes from."""
     for node in nodes:
         match node:
-            case Line(t.Move() as move):
-                yield origin, move
+            case Line(statement):
+                yield origin, statement
             case Region(body=body):
-                yield from _moves(body, node.origin)
+                yield from _statements(body, node.origin)
             case Repeat(body=body):
-                yield from _moves(body, origin)
+                yield from _statements(body, origin)
             case Chain(branches, otherwise):
                 for _, body in branches:
-                    yield from _moves(body, origin)
-                yield from _moves(otherwise or (), origin)
+                    yield from _statements(body, origin)
+                yield from _statements(otherwise or (), origin)
             case _:
                 pass
 

@@ -37,7 +37,9 @@ def explored(
     if first is None or not may_count or not plain or not is_enough or opened.flat.timed:
         return explore(opened.flat, opened.storage, limits, d, options)
     part = replace(limits, max_states=first)
-    found = explore(opened.flat, opened.storage, part, d, options)
+    # To compile better what sees so little takes longer than it saves.
+    soon = replace(options, quick=True, first_states=first)
+    found = explore(opened.flat, opened.storage, part, d, soon)
     if found is None or found.why != "states":
         return found
     partition = properties.divided(opened, Diagnostics())

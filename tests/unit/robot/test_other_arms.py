@@ -12,7 +12,7 @@ import pytest
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.geometry.lines import Follower
 from pn2code.robot.bullet import BulletBackend
-from pn2code.robot.commands import MoveAxes, MoveCircular, MoveJoint, MoveLinear, Pose
+from pn2code.robot.commands import Along, MoveAxes, MoveCircular, MoveJoint, MoveLinear, Pose
 from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.kinematics import Kinematics
 from pn2code.robot.model import MODELS, find_arm
@@ -280,6 +280,31 @@ def test_on_a_line_the_arm_angle_goes_evenly_and_increments_keep_it() -> None:
     tcp = k.forward_many(motion.sample(np.linspace(0.0, motion.duration, 50)))
     assert motion.duration > 0.5 and np.abs(tcp - tcp[0]).max() < 1e-9
     assert k.arm_angle_of(arm.q) == pytest.approx(0.5)
+
+
+def test_on_a_rail_and_a_plate_the_arm_angle_goes_along() -> None:
+    axes = {
+        "rail": {"direction": [0.0, 1.0, 0.0], "from": -0.5, "to": 1.0},
+        "plate": {
+            "kind": "turntable", "pose": {"x": 0.6, "z": 0.4}, "from": -180.0, "to": 180.0, "radius": 0.2,
+        },
+    }  # fmt: skip
+    d = Diagnostics()
+    robot = {"model": "iiwa14_r820", "base": {}, "home": PUBLISHED["iiwa14_r820"][2], "axes": axes}
+    frames = {"seam": {"parent": "r.plate", "z": 0.1}}
+    c = load({"robots": {"r": robot}, "frames": frames}, Path(), lambda *_: HERE, d)
+    assert c is not None, [e.message for e in d.errors]
+    arm = RobotExecutor(c.robot("r"), c.motion, c.frames)
+    k = arm.robot.kinematics
+    begin(arm, MoveJoint(down(0.0, 0.0, 0.0, 2.0), frame="seam", arm_angle=0.2))
+    along = (Along("rail", 0.1, True), Along("plate", 0.2, False))
+    motion = begin(arm, MoveLinear(down(0.05, 0.0, 0.0, 2.0), "seam", along=along, arm_angle=0.5))
+    for s in (0.0, 0.5, 1.0):
+        q = motion.trajectory.on_way(np.array([s]))[0]
+        assert k.arm_angle_of(q) == pytest.approx(0.2 + 0.3 * s)
+        assert q[0] == pytest.approx(0.1 * s)
+        seen = motion.trajectory.on_plate(q)
+        assert seen[:3, 3] == pytest.approx([0.05 * s, 0.0, 0.1])
 
 
 def test_an_arm_angle_where_there_is_none() -> None:

@@ -129,7 +129,9 @@ static bool expand(ex_run_t *run, level_t *level, uint32_t blocks)
     if (level->block_count > 1U) {
         ex_parallel(run, expand_blocks, level);
     } else {
+        run->at_work = 1U; /* of a part of the space there are successors without a number: tables may have to grow */
         expand_blocks(&run->worker[0], level);
+        run->at_work = 0U;
     }
     if (atomic_load(&level->is_failed) || ex_is_stopping(run)) {
         return false;

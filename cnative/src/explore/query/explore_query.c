@@ -554,7 +554,6 @@ static void answer_by_part(ex_run_t *run)
 {
     ex_queries_t *const queries = run->queries;
     const int why = atomic_load(&run->why);
-    const uint64_t pauses = run->pauses;
     bool is_asked = false;
     for (uint32_t i = 0U; i < queries->questions; i++) {
         is_asked = is_asked || is_of_part(queries, &queries->question[i]);
@@ -565,7 +564,7 @@ static void answer_by_part(ex_run_t *run)
     }
     revive(run);
     queries->is_part = true;
-    const bool is_made = ex_graph(run) && (run->pauses == pauses); /* else a table has grown, and slots have moved */
+    const bool is_made = ex_graph(run);
     int now = atomic_load(&run->why);
     if (now <= (int)EX_INFINITE) {
         atomic_store(&run->why, why); /* that this found no room is not why the run has ended */

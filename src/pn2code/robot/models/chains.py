@@ -127,6 +127,7 @@ CHAINS = (
         (0, 0, 0.045),
         (0, 0, 0),
         "link_1+link_3 link_3+link_5 link_5+link_7 link_5+flange link_6+flange",
+        '  <pn2code payload="14"/>\n',
     ),
     ChainSpec(
         "cobra_s600",
@@ -157,6 +158,7 @@ CHAINS = (
         (0, 0, -0.1),
         (180, 0, 0),
         "link_2+link_4 link_2+flange link_3+flange",
+        '  <pn2code payload="5.5"/>\n',
     ),
     ChainSpec(
         "gantry_3000",

@@ -53,6 +53,12 @@ class SphericalSpec:
     data: str = ""
 
 
+def _payload(mass: float, moments: str = "") -> str:
+    """Its rated payload, kg, and the moments (Nm) about axes 4, 5 and 6."""
+    more = f' moments="{moments}"' if moments else ""
+    return f'  <pn2code payload="{mass:g}"{more}/>\n'
+
+
 def _coupled(low: float, high: float) -> str:
     """Axis 3 as its maker counts it, in degrees."""
     return (
@@ -72,6 +78,7 @@ SPHERICAL = (
         (110, 110, 110, 190, 150, 210),
         (0.25, 0.18, 0.11),
         "orange",
+        _payload(200),
     ),
     SphericalSpec(
         "gp25",
@@ -83,6 +90,7 @@ SPHERICAL = (
         (210, 210, 265, 420, 420, 885),
         (0.15, 0.12, 0.06),
         "blue",
+        _payload(25, "52 52 32"),
     ),
     SphericalSpec(
         "tx2_90",
@@ -105,8 +113,9 @@ SPHERICAL = (
         (450, 380, 520, 550, 545, 1000),
         (0.075, 0.06, 0.035),
         "yellow",
+        _payload(7, "16.6 16.6 9.4")
         # The maker counts axis 3 from the horizontal: where axis 2 moves alone, the forearm keeps its direction.
-        _coupled(-215, 205),
+        + _coupled(-215, 205),
     ),
 )
 _BEVEL = 0.008

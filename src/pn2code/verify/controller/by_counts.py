@@ -53,6 +53,8 @@ ENDLESS = 1_000_000_000
 """A run is that long, or goes on for ever."""
 MOST_STATES = 2_000_000
 """Where there are more the limits do not help enough."""
+SOON = 300_000
+"""States that are seen by what was compiled quickly."""
 WITNESSES = 60_000
 """States among which transitions are looked for that occur."""
 YES: Mapping[str, Any] = {"answer": "yes", "value": None, "trace": None, "loop": None, "why": None}
@@ -159,7 +161,8 @@ def look(
         bindings=(),
         questions=questions(made, plan, rising) + ("" if is_decided else in_order),
         stem="counts",
-        quick=False,
+        quick=True,
+        first_states=SOON,
     )
     most = min(limits.max_states or MOST_STATES, MOST_STATES)
     limits = replace(limits, max_states=most, traces=0)

@@ -196,9 +196,11 @@ def examine(
         first_part = replace(part, max_states=part.turns_from) if may_turn else part
         may_count = _may_count(partition, plan, part)
         counts_part = replace(part, max_states=part.counts_from) if may_count else first_part
-        found = explore(running.net, plan.storage, counts_part, d, options)
+        # To compile better what sees so little takes longer than it saves.
+        soon = replace(options, first_states=counts_part.max_states) if may_count else options
+        found = explore(running.net, plan.storage, counts_part, d, soon)
         if may_count and found is not None and found.why == "states":
-            own = replace(options, questions=of_orders(running, plan.firings), stem="orders")
+            own = replace(soon, questions=of_orders(running, plan.firings), stem="orders")
             orders_part = explore(running.net, plan.storage, counts_part, d, own)
             if orders_part is None:
                 return None

@@ -98,6 +98,7 @@ class ExploreOptions:
         sizes: what the places of the compiled net hold at first; None: what their structure and initial marking say.
         generated: what an exploration of the same net with the same predicates has generated; gets what this one has.
         quick: the space is likely to be small: it is compiled quickly, and better if it turns out to be large.
+        first_states: how many states are seen by what was compiled quickly; None: `programs.FIRST_STATES`.
         turns: the table by which the programs of a cell are looked at in turns; None: they are not.
         counts: with `turns`, the places whose tokens are counted up to a limit only; None: there are none.
         bindings: transitions of which it is told with which bindings they occur, if the graph is not large.
@@ -121,6 +122,7 @@ class ExploreOptions:
     sizes: Sizes | None = None
     generated: Generated | None = None
     quick: bool = False
+    first_states: int | None = None
     turns: Turns | None = None
     counts: Counts | None = None
     bindings: tuple[int, ...] = ()
@@ -231,8 +233,9 @@ def _explored(
             is_limited = is_first and made.is_quick
             is_first = is_limited or (is_first and options.quick)
             if is_limited:
-                most = limits.max_states or programs.FIRST_STATES
-                own = replace(limits, max_states=min(most, programs.FIRST_STATES))
+                first_states = options.first_states or programs.FIRST_STATES
+                most = limits.max_states or first_states
+                own = replace(limits, max_states=min(most, first_states))
             arguments = _arguments(own, chosen, sizes, options)
             arguments += ["--still"] if nondeterminism.draws(net) else []
             deciding = replace(options, progress=_nothing) if is_limited else options

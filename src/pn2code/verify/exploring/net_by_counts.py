@@ -41,6 +41,8 @@ ENDLESS = 1_000_000_000
 """A run is that long, or goes on for ever."""
 MOST_STATES = 2_000_000
 """Where there are more the limits do not help enough."""
+SOON = 300_000
+"""States that are seen by what was compiled quickly."""
 MOST_OWNERS = 250
 """Transitions: each is an owner of its own."""
 
@@ -64,7 +66,11 @@ def abstract(
     least: int = LEAST_TOKENS,
 ) -> Abstract | None:
     """The limits of a net; None: it is not possible, or there is nothing to count so."""
-    if net.timed or len(net.transitions) > MOST_OWNERS or len({t.priority for t in net.transitions}) > 1:
+    if (
+        net.timed
+        or len(net.transitions) > MOST_OWNERS
+        or len({t.priority for t in net.transitions}) > 1
+    ):
         return None
     try:
         table = turns(net, range(len(net.transitions)))
@@ -87,13 +93,16 @@ def _questions(net: FlatNet, final: Collection[int], rising: frozenset[int]) -> 
     """Whether each dead state is an end, and whether those that may go on for ever have a cycle."""
     asked = Questions()
     lines = [*(f"owner {t.index} {t.index}" for t in net.transitions), "priorities own"]
-    lines += [f"instant 0 {i}" for i in sorted(rising)] or ["instant 0 0"]
+    lines += [*(f"instant 0 {i}" for i in sorted(rising)), "instant 1 0"]
     found = asked.line(f"not {asked.line('dead')}")
     for place in sorted(final):
         found = asked.line(f"or {found} {asked.line(f'within {place} 1 -')}")
     asked.asked.append(f"? invariant {found}")
     if rising:
         asked.asked.append(f"? restless 0 {ENDLESS}")
+    asked.asked.append(
+        f"? restless 1 {ENDLESS}"
+    )  # needs the graph: a "no" to the first ends nothing
     return "".join(f"{line}\n" for line in lines) + asked.text()
 
 
@@ -126,6 +135,7 @@ def look(
         interrupted=options.interrupted,
         initial=options.initial,
         quick=True,
+        first_states=SOON,
     )
     most = min(limits.max_states or MOST_STATES, MOST_STATES)
     own_limits = replace(limits, max_states=most, traces=0, graph=True, reductions=())
@@ -133,7 +143,7 @@ def look(
     found = explore(net, storage, own_limits, d, own)
     if found is None or not found.complete or not found.seen.arcs or found.error is not None:
         return None
-    ends, *others = found.answers
+    ends, *others, _ = found.answers
     if len(others) != bool(made.rising) or any(row["answer"] != "yes" for row in others):
         return None
     never = tuple(t.index for t in net.transitions if not found.fired[t.index])

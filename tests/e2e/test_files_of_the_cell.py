@@ -1,0 +1,244 @@
+"""Cells whose files are decided by the cell as it runs, and closed nets that are not counted to the end."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+import pytest
+from tools.reduction_cells.files import judged
+from typer.testing import CliRunner
+
+from helpers.netbuilder import cpn
+from pn2code.cell.divide import divide
+from pn2code.channel_model import by_cell, check
+from pn2code.channel_model.rules import Rules
+from pn2code.cli import verify as command
+from pn2code.cli.main import app
+from pn2code.cli.nets import open_net
+from pn2code.diagnostics import Diagnostics
+from pn2code.verdict.opened import OpenNet
+from pn2code.verify.exploring import net_by_counts
+from pn2code.verify.exploring.explore import ExploreOptions, explore
+from pn2code.verify.exploring.limits import Limits
+
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
+
+NET = """net cell
+  standard
+  fun act () = ();
+  colset SAID = int with 1..2;
+  var k: SAID;
+  var n: INT;
+  page Top
+    place ask : SAID
+    place say : SAID
+    subst Supervisor = Sup (ask -> ask, say -> say)
+    subst D = Device (ask -> ask, say -> say)
+  page Sup
+    place ask port out : SAID
+    place say port in : SAID
+    place Feeder = {parts}
+    place Left : INT = 1`{parts}
+    place Free = 1
+    place Busy
+    place Tray
+    place Good
+    place Scrap
+    place Finished
+    trans Send
+      in Feeder : ()
+      in Free : ()
+      out Busy : ()
+      out ask : 1
+    trans Heard
+      in Busy : ()
+      in say : {heard}
+      out Free : ()
+      out Tray : ()
+    trans Pack
+      in Tray : ()
+      in Left : n
+      out Left : n - 1
+      out Good : ()
+    trans Drop
+      in Tray : ()
+      in Left : n
+      out Left : n - 1
+      out Scrap : ()
+    trans End
+      in Left : 0
+      out Finished : ()
+  page Device
+    place ask port in : SAID
+    place say port out : SAID
+    place Waiting = 1
+    place Told : SAID
+    place Done : SAID
+    trans Accept
+      in Waiting : ()
+      in ask : k
+      out Told : k
+    trans Work code action act ()
+      in Told : k
+      out Done : {done}
+    trans Say
+      in Done : k
+      out Waiting : ()
+      out say : k
+"""
+TOML = """[net]
+file = "cell.cpn"
+[supervisor]
+instance = "Supervisor"
+final = ["Finished"]
+order = "documented"
+[devices.d]
+instance = "D"
+[[channel]]
+place = "ask"
+file = "ask.txt"
+kind = "flag"
+[[channel]]
+place = "say"
+file = "say.txt"
+kind = "flag"
+[primitives]
+act = { command = "tool", action = "act", duration_s = 0.5 }
+"""
+
+
+def written(
+    folder: Path,
+    *,
+    parts: int = 3,
+    heard: str = "k",
+    done: str = "k",
+    change: tuple[str, str] = ("", ""),
+) -> Path:
+    """The files of a cell."""
+    folder.mkdir(parents=True, exist_ok=True)
+    net = NET.replace("{parts}", str(parts)).replace("{heard}", heard).replace("{done}", done)
+    assert change[0] in net
+    (folder / "cell.cpn").write_bytes(cpn(net.replace(*change) if change[0] else net))
+    (folder / "cell.toml").write_text(TOML, encoding="utf-8")
+    return folder
+
+
+def opened(folder: Path) -> OpenNet:
+    return open_net(folder, {}, warnings=Diagnostics())
+
+
+def verified(cell: Path, *options: str) -> dict[str, Any]:
+    """What `verify --json` says."""
+    more = ["--json", "--traces", str(cell / "t"), *options]
+    found: dict[str, Any] = json.loads(CliRunner().invoke(app, ["verify", str(cell), *more]).stdout)
+    return found
+
+
+def answers(found: dict[str, Any]) -> list[tuple[str, str]]:
+    rows = [(c["check"], c["answer"]) for c in found["controller"]]
+    return rows + [(m["check"], m["answer"]) for m in found["medium"]]
+
+
+def test_a_large_cell_is_decided_without_its_files_and_without_all_markings(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    cell = written(tmp_path / "cell", parts=6)
+    monkeypatch.setattr(command, "COUNTS_FROM", 60)
+    found, whole = verified(cell), verified(cell, "--no-reduction")
+    assert answers(found) == answers(whole)
+    assert [check for check, answer in answers(whole) if answer != "yes"] == ["confluence"]
+    (medium, *_), (other, *_) = found["medium"], whole["medium"]
+    assert medium["reduced"] is True and other["reduced"] is False
+    assert medium["nodes"] < other["nodes"]
+    assert "no channel holds a second message" in medium["assumes"]
+    assert (found["complete"], found["why"], found["nodes"]) == (False, "counted", 60)
+    assert found["counted"]["dead_markings_are_ends"] is True
+    assert found["counted"]["dead_transitions"] == whole["dead_transitions"] == []
+    assert whole["complete"] is True and whole["counted"] is None and whole["dead_markings"] == 7
+    screen = CliRunner().invoke(app, ["verify", str(cell), "--traces", str(tmp_path / "t")])
+    assert screen.exit_code == 0, screen.output
+    assert "Verdict: YES" in screen.output and "each has a token in a final place" in screen.output
+
+
+@pytest.mark.parametrize(
+    ("heard", "done", "change"),
+    [
+        ("1", "k", ("out ask : 1\n", "out ask : 1\n      out Free : ()\n")),  # it does not wait
+        ("1", "2", ("", "")),  # an answer that is not understood: a deadlock
+    ],
+)
+def test_what_is_not_all_good_is_not_said_without_the_files(
+    tmp_path: Path, heard: str, done: str, change: tuple[str, str]
+) -> None:
+    net = opened(written(tmp_path, parts=2, heard=heard, done=done, change=change))
+    partition = divide(net.flat, net.config, Diagnostics())
+    assert partition is not None and by_cell.why_not(partition, Rules()) == ""
+    counts: Counter[str] = Counter()
+    assert list(judged(partition, net.storage, counts, None)) == []
+    assert counts["files not of the cell"] == 1
+
+
+def test_whoever_would_speak_after_the_end_is_noticed(tmp_path: Path) -> None:
+    change = ("in Left : 0", "in Left : 1")
+    net = opened(written(tmp_path, parts=2, change=change))
+    partition = divide(net.flat, net.config, Diagnostics())
+    assert partition is not None
+    limits, options = Limits(threads=1, traces=0), ExploreOptions(quick=True)
+    rows = by_cell.rows(partition, net.storage, limits, options)
+    assert [answer for line, answer in rows if line.startswith("? bound")] == ["yes"] * 3
+    assert rows[-1][0].startswith("? invariant") and rows[-1][1] == "no"
+
+
+def test_other_rules_are_looked_at_with_the_files(tmp_path: Path) -> None:
+    net = opened(written(tmp_path, parts=2))
+    partition = divide(net.flat, net.config, Diagnostics())
+    assert partition is not None
+    shown = by_cell.Shown(1, 1, 1, 1)
+    run = check.Run(Limits(threads=1, traces=0), Diagnostics(), ExploreOptions(quick=True))
+    answer = check.whole(
+        partition, net.storage, run, Rules(checks_empty=False, renames=False), (), shown
+    )
+    assert answer.nodes > 1 and not answer.reduced
+
+
+@pytest.mark.parametrize("change", [("", ""), ("in Left : 0", "in Left : 0\n      in Scrap : ()")])
+def test_a_closed_net_has_the_ends_that_its_states_say(
+    tmp_path: Path, change: tuple[str, str]
+) -> None:
+    net = opened(written(tmp_path, parts=5, change=change))
+    partition = divide(net.flat, net.config, Diagnostics())
+    assert partition is not None
+    limits, options = Limits(threads=1, traces=0), ExploreOptions(quick=True)
+    known = net_by_counts.look(net.flat, net.storage, limits, options, partition.final_places)
+    assert known is not None
+    (final,) = partition.final_places
+    asked = f"dead\nnot 0\nwithin {final} 1 -\nor 1 2\nag 3\n? initially 4\n"
+    whole = explore(
+        net.flat, net.storage, limits, Diagnostics(), ExploreOptions(quick=True, questions=asked)
+    )
+    assert whole is not None and whole.complete
+    assert known.ends == (whole.answers[0]["answer"] == "yes")
+    assert known.never == whole.dead_transitions()
+    assert whole.graph is not None and whole.graph.fairness is None
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        (
+            "    trans Say\n",
+            "    trans Back\n      in Done : k\n      out Told : k\n    trans Say\n",
+        ),  # it goes round
+        ("out Left : n - 1", "out Left : n - 1 + 0 * (1 div (n - 2))"),  # an exception
+    ],
+)
+def test_a_closed_net_of_which_states_say_nothing_is_seen_as_a_whole(
+    tmp_path: Path, change: tuple[str, str]
+) -> None:
+    net = opened(written(tmp_path, parts=5, change=change))
+    limits, options = Limits(threads=1, traces=0), ExploreOptions(quick=True)
+    assert net_by_counts.look(net.flat, net.storage, limits, options, ()) is None
