@@ -4,15 +4,18 @@
 import { upperBound } from "./course.js";
 import { colour, el } from "./dom.js";
 import { Path, frames, valueAt } from "./kinematics.js";
-import { CellScene, place } from "./scene3d.js";
-
 import { Gaps } from "./gaps.js";
+import { CellScene, place } from "./scene3d.js";
+import { Thrift, drawsInSoftware } from "./thrift.js";
 
 const THREE = /** @type {any} */ (globalThis).THREE;
 
-/** Seconds of a path that are bright behind the tool. */
-const SLOW_MS = 70;
 const FIELD = 38;
+/** Where little may be drawn: when all of the picture is there at rest, and how fine it is then. */
+const FINE_MS = 400;
+const FINE = 2;
+/** How coarse it is while the run goes on. */
+const COARSE = 0.75;
 /** Of a run that goes on: samples of a path that are drawn, and how often they are drawn anew. */
 const LIVE_SAMPLES = 600;
 const PATHS_MS = 500;
@@ -41,8 +44,10 @@ export class CellView {
       this.fail(missing || "three.js is not in this page");
       return;
     }
+    /** Whether the rest of the page should not be drawn with each picture: drawing is slow here. */
+    this.isSparing = drawsInSoftware();
     try {
-      this.renderer = new THREE.WebGLRenderer({ antialias: true, powerPreference: "high-performance" });
+      this.renderer = new THREE.WebGLRenderer({ antialias: !this.isSparing, powerPreference: "high-performance" });
     } catch (problem) {
       this.fail(`this browser has no WebGL (${problem instanceof Error ? problem.message : problem})`);
       return;
@@ -58,7 +63,8 @@ export class CellView {
   }
 
   start() {
-    this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
+    this.ratio = this.isSparing ? COARSE : Math.min(devicePixelRatio, 2);
+    this.renderer.setPixelRatio(this.ratio);
     this.renderer.shadowMap.enabled = false; // the first picture is there sooner without
     this.renderer.shadowMap.type = THREE.PCFShadowMap;
     this.renderer.outputEncoding = THREE.LinearEncoding;
@@ -78,7 +84,8 @@ export class CellView {
     canvas.addEventListener("pointerdown", () => (this.mounted = -1));
     canvas.addEventListener("keydown", (/** @type {KeyboardEvent} */ e) => this.key(e));
     this.hasPaths = true;
-    this.slow = 0;
+    this.thrift = new Thrift();
+    if (this.isSparing) this.hasShadows = false;
     this.mounted = -1;
     this.makePaths();
     this.gaps = new Gaps(this.cell, this.run.cell);
@@ -255,7 +262,7 @@ export class CellView {
     this.pathsAt = now;
     for (const trail of this.trails ?? []) {
       if (!trail) continue;
-      for (const line of [trail.behind, trail.ahead]) {
+      for (const line of [trail.behind, trail.thin, trail.ahead]) {
         this.cell?.scene.remove(line);
         line.geometry.dispose();
         line.material.dispose();
@@ -280,8 +287,13 @@ export class CellView {
     plain.setAttribute("position", new THREE.BufferAttribute(points, 3));
     const ahead = new THREE.Line(plain, new THREE.LineBasicMaterial({ color: 0x5b6b7c, transparent: true, opacity: 0.45 }));
     ahead.frustumCulled = false;
-    this.cell?.scene.add(behind, ahead);
-    return { behind, ahead, material, t, count: t.length };
+    const past = new THREE.BufferGeometry();
+    past.setAttribute("position", new THREE.BufferAttribute(points, 3));
+    past.setAttribute("color", new THREE.BufferAttribute(colours, 3));
+    const thin = new THREE.Line(past, new THREE.LineBasicMaterial({ vertexColors: true }));
+    thin.frustumCulled = false;
+    this.cell?.scene.add(behind, thin, ahead);
+    return { behind, thin, ahead, material, t, count: t.length };
   }
 
   /** @param {boolean} on */
@@ -302,11 +314,15 @@ export class CellView {
     return this.paths[robot]?.at(t) ?? this.run.cell.robots[robot].home;
   }
 
-  /** @param {number} t */
-  update(t) {
+  /**
+   * @param {number} t
+   * @param {{isGoing?: boolean, isWhole?: boolean}} [how] whether the moment goes on by itself; with all that is written
+   */
+  update(t, { isGoing = false, isWhole = true } = {}) {
     this.t = t;
+    this.isGoing = isGoing;
     this.frames = this.run.cell.robots.map((/** @type {any} */ r, /** @type {number} */ i) => frames(r, this.joints(i, t)));
-    this.tell(t);
+    if (isWhole) this.tell(t);
     if (!this.renderer) return;
     this.cell?.robots.forEach((/** @type {any} */ { links }, /** @type {number} */ i) => {
       links.forEach((/** @type {any} */ link, /** @type {number} */ k) => place(link, this.frames[i][k]));
@@ -315,7 +331,7 @@ export class CellView {
     if (this.cell) this.cell.marks.count = this.run.cell.marks.filter((/** @type {any} */ m) => m.t <= t + 1e-9).length;
     if ((this.mounted ?? -1) >= 0) this.mount();
     const near = this.gaps?.update(t) ?? [];
-    if (near.length) {
+    if (near.length && isWhole) {
       const [{ pair, distance }] = near;
       const text = `${(distance * 1000).toFixed(1)} mm between ${pair[0]} and ${pair[1]}`;
       this.legend.append(el("span", { class: distance < this.run.cell.warningClearance ? "arm near" : "arm", text }));
@@ -379,23 +395,36 @@ export class CellView {
 
   paint() {
     if (!this.host.clientWidth) return;
-    const start = performance.now();
+    if (this.isGoing && this.thrift?.picture(performance.now())) this.spare();
+    if (!this.isGoing) this.thrift?.rest();
+    this.draw(this.ratio, this.isSparing);
+    clearTimeout(this.fine);
+    if (this.isSparing && !this.isGoing) this.fine = setTimeout(() => this.draw(FINE), FINE_MS);
+    if (this.hasShadows === undefined) setTimeout(() => this.shadows(true), 0);
+  }
+
+  /**
+   * @param {number} ratio pixels of the picture in one of the page
+   * @param {boolean} [isPlain] with simpler light, and thin paths
+   */
+  draw(ratio, isPlain = false) {
     const { clientWidth: w, clientHeight: h } = this.host;
+    if (!w || !h) return;
+    this.cell?.plain(isPlain);
     for (const trail of this.trails ?? []) {
       if (!trail) continue;
       const n = upperBound(trail.t, this.t);
-      trail.behind.visible = trail.ahead.visible = Boolean(this.hasPaths);
+      trail.ahead.visible = Boolean(this.hasPaths);
+      trail.thin.visible = isPlain && trail.ahead.visible;
+      trail.behind.visible = !isPlain && trail.ahead.visible;
       trail.behind.geometry.instanceCount = Math.max(n - 1, 0);
+      trail.thin.geometry.setDrawRange(0, n);
       trail.ahead.geometry.setDrawRange(Math.max(n - 1, 0), trail.count);
       trail.material.resolution.set(w, h);
     }
     this.gaps?.size(w, h);
+    if (this.renderer.getPixelRatio() !== ratio) this.renderer.setPixelRatio(ratio);
     this.renderer.render(this.cell?.scene, this.camera);
-    if (this.hasShadows === undefined) {
-      setTimeout(() => this.shadows(true), 0);
-    } else {
-      this.spare(performance.now() - start);
-    }
   }
 
   /** @param {boolean} wanted */
@@ -406,14 +435,11 @@ export class CellView {
     this.request();
   }
 
-  /**
-   * Leaves out shadows where drawing is slow (without a GPU).
-   * @param {number} ms
-   */
-  spare(ms) {
-    if (!this.hasShadows) return;
-    this.slow = ms > SLOW_MS ? (this.slow ?? 0) + 1 : 0;
-    if (this.slow >= 12) this.shadows(false);
+  /** Pictures come too slowly: first there are no shadows, then coarser pictures, and the rest of the page waits. */
+  spare() {
+    if (this.hasShadows) this.shadows(false);
+    else this.ratio = COARSE;
+    this.isSparing = true;
   }
 }
 

@@ -307,7 +307,7 @@ export class NetView {
    * The moment has changed.
    * @param {number} k
    * @param {number} t
-   * @param {{isPlaying: boolean, speed: number}} how
+   * @param {{isPlaying: boolean, speed: number, isSparing?: boolean}} how
    */
   update(k, t, how) {
     const came = this.lastStep < 0 ? 0 : k - this.lastStep;
@@ -319,7 +319,7 @@ export class NetView {
     if (isNew) this.followStep(k, !how.isPlaying);
     this.tokens();
     this.light(k, t);
-    if (isNew && came > 0 && came < 40 && !isStill()) {
+    if (isNew && came > 0 && came < 40 && !how.isSparing && !isStill()) {
       for (let i = Math.max(k - came, k - 4) + 1; i <= k; i++) this.fly(i);
     }
   }

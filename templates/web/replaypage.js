@@ -15,6 +15,10 @@ import { Timeline } from "./timeline.js";
 import { Transport, help } from "./transport.js";
 import { Watch } from "./watch.js";
 
+/** Where drawing is slow, so long, and for so many pictures, the rest of the page stays while the arms move on (ms). */
+const PANES_MS = 200;
+const PICTURES = 3;
+
 export class ReplayPage {
   /** @param {{runs: any[], difference: any, generator: string, missing: string}} data */
   constructor(data) {
@@ -264,12 +268,20 @@ export class ReplayPage {
 
   update() {
     const { clock } = this;
-    this.net.update(clock.k, clock.t, clock.pace());
+    const now = performance.now();
+    const isGoing = clock.pace().isPlaying;
+    const isSparing = isGoing && Boolean(this.cell?.isSparing);
+    this.since = (this.since ?? 0) + 1;
+    const isWhole = !isSparing || (this.since > PICTURES && now > (this.drawnAt ?? 0) + PANES_MS);
+    this.cell?.update(clock.t, { isGoing, isWhole });
+    if (!isWhole) return;
+    this.drawnAt = now;
+    this.since = 0;
+    this.net.update(clock.k, clock.t, { ...clock.pace(), isSparing });
     if (this.second) {
       const k = this.run.clock === "seconds" ? this.second.stepAt(clock.t) : Math.min(clock.k, this.second.steps);
       this.otherNet?.update(k, clock.t, clock);
     }
-    this.cell?.update(clock.t);
     this.timeline.update();
     this.transport.update();
     this.messages?.update();

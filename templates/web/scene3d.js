@@ -6,6 +6,8 @@ import { frames } from "./kinematics.js";
 const THREE = /** @type {any} */ (globalThis).THREE;
 
 const CREASE = Math.cos((38 * Math.PI) / 180);
+/** Normals are the same within 2.6 degrees. */
+const SAME = 0.999;
 
 /**
  * The triangles of a mesh of the description, with normals that are smooth but across sharp edges.
@@ -36,10 +38,14 @@ export function geometryOf(mesh) {
   }
   const corners = new Float32Array(9 * faces);
   const normals = new Float32Array(9 * faces);
+  const used = new Uint32Array(3 * faces);
+  /** Of each point the corners that it has become: faces that meet without an edge share one. */
+  /** @type {number[][]} */
+  const made = Array.from({ length: n }, () => []);
+  let count = 0;
   for (let f = 0; f < faces; f++) {
     for (let k = 0; k < 3; k++) {
       const point = index[3 * f + k];
-      const at = 9 * f + 3 * k;
       let x = 0, y = 0, z = 0;
       for (const g of around[point]) {
         const dot = flat[3 * f] * flat[3 * g] + flat[3 * f + 1] * flat[3 * g + 1] + flat[3 * f + 2] * flat[3 * g + 2];
@@ -49,13 +55,18 @@ export function geometryOf(mesh) {
         z += flat[3 * g + 2];
       }
       const size = Math.hypot(x, y, z) || 1;
-      normals.set([x / size, y / size, z / size], at);
-      corners.set(position.subarray(3 * point, 3 * point + 3), at);
+      const same = made[point].find((c) => normals[3 * c] * x + normals[3 * c + 1] * y + normals[3 * c + 2] * z > SAME * size);
+      used[3 * f + k] = same ?? count;
+      if (same !== undefined) continue;
+      normals.set([x / size, y / size, z / size], 3 * count);
+      corners.set(position.subarray(3 * point, 3 * point + 3), 3 * count);
+      made[point].push(count++);
     }
   }
   const geometry = new THREE.BufferGeometry();
-  geometry.setAttribute("position", new THREE.BufferAttribute(corners, 3));
-  geometry.setAttribute("normal", new THREE.BufferAttribute(normals, 3));
+  geometry.setAttribute("position", new THREE.BufferAttribute(corners.slice(0, 3 * count), 3));
+  geometry.setAttribute("normal", new THREE.BufferAttribute(normals.slice(0, 3 * count), 3));
+  geometry.setIndex(new THREE.BufferAttribute(used, 1));
   return geometry;
 }
 
@@ -127,12 +138,31 @@ export class CellScene {
     return found;
   }
 
+  /**
+   * Materials that are lit at the corners of triangles only, and so drawn faster, or those that are lit everywhere.
+   * @param {boolean} wanted
+   */
+  plain(wanted) {
+    if (wanted === this.isPlain) return;
+    this.isPlain = wanted;
+    for (const fine of this.materials.values()) {
+      if (!fine.plain) {
+        const { color, transparent, opacity, side } = fine;
+        fine.plain = new THREE.MeshLambertMaterial({ color, transparent, opacity, side });
+      }
+    }
+    this.scene.traverse((/** @type {any} */ o) => {
+      if (o.fine) o.material = wanted ? o.fine.plain : o.fine;
+    });
+  }
+
   /** @param {any[][]} visuals */
   group(visuals) {
     const group = new THREE.Group();
     for (const [mesh, frame, rgba, scale] of visuals) {
       if (!this.cell.meshes[mesh]?.triangles.length) continue;
       const object = new THREE.Mesh(this.geometry(mesh), this.material(rgba));
+      object.fine = object.material;
       place(object, frame);
       object.matrix.scale(new THREE.Vector3(...scale));
       object.castShadow = object.receiveShadow = rgba[3] >= 1;

@@ -13,6 +13,7 @@ from helpers.explored import SANITIZERS, Explorers
 from helpers.generated import Cached
 from helpers.objects import Objects
 from helpers.session import common, once
+from helpers.tiny_compiler import QuickMake
 from pn2code import pipeline
 from pn2code.diagnostics import Diagnostics, render
 from pn2code.emission.write import write
@@ -20,13 +21,14 @@ from pn2code.pipeline import Generated
 from pn2code.toolchain import build
 from pn2code.verify.exploring import explore
 
+
 @pytest.fixture(scope="session", autouse=True)
 def objects(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """The runtime of cells is compiled once with each set of flags, also when several workers build them."""
     folder = common(tmp_path_factory) / "objects"
     folder.mkdir(exist_ok=True)
     with pytest.MonkeyPatch.context() as changed:
-        changed.setattr(build, "build", Objects(build.build, folder))
+        changed.setattr(build, "build", QuickMake(Objects(build.build, folder), folder))
         yield
 
 
@@ -42,7 +44,7 @@ def large_explorations(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Non
 
 @pytest.fixture(scope="module")
 def quick_build() -> Iterator[None]:
-    """Supervisors are built without optimization, which takes a fifth of the time."""
+    """Supervisors are built without optimization, by `tcc` where it is there."""
     with pytest.MonkeyPatch.context() as changed:
         changed.setenv("CFLAGS", "-O0")
         yield

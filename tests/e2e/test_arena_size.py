@@ -65,7 +65,11 @@ def test_the_functions_that_allocate_are_known(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("name", "values"),
-    [("riveting", {}), ("sorting", {}), ("timed", {"parts": "1", "orders": "1"})],  # a million states with three parts
+    [
+        ("riveting", {}),
+        ("sorting", {}),
+        ("timed", {"parts": "1", "orders": "1"}),
+    ],  # a million states with three parts
 )
 def test_the_examples_run_in_what_is_proven(
     name: str,

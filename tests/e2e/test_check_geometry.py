@@ -31,6 +31,8 @@ from pn2code.run.cell import RunOptions, run_cell
 from pn2code.verdict.opened import read, with_inputs
 from pn2code.verify.exploring.limits import Limits
 
+WALKS = amount(2, 4)
+
 pytestmark = [pytest.mark.cc, pytest.mark.bullet, pytest.mark.usefixtures("quick_build")]
 
 
@@ -157,7 +159,7 @@ def test_air_that_is_gripped(tmp_path: Path) -> None:
 
 
 def test_a_part_that_is_released_in_the_air(tmp_path: Path) -> None:
-    """A run stops there; so the check says so as well, and how the net comes there."""
+    """A run stops there (`test_carrying`); so the check says so as well, and how the net comes there."""
     cell = carrying_cell.write(tmp_path / "cell")
     text = changed(carrying_cell.NET, "(n div 2), 150.0)", "(n div 2), 200.0)")
     (cell / "cell.cpn").write_bytes(cpn(text))
@@ -170,7 +172,6 @@ def test_a_part_that_is_released_in_the_air(tmp_path: Path) -> None:
     assert bad.run is not None and bad.run.file is not None
     result = CliRunner().invoke(app, ["replay", str(bad.run.file), str(cell)])
     assert result.exit_code == 0, result.output
-    assert bad.problem.split(", part at")[0] in ran(cell, tmp_path / "run")
 
 
 @pytest.mark.parametrize(("z", "answer"), [("0.565", "no"), ("0.574", "unknown")])
@@ -243,16 +244,16 @@ def test_no_walk_contradicts_a_yes(seed: int, tmp_path: Path) -> None:
     """The same with arms that may take any time for their ways, on random walks."""
     cell = random_cell(seed, tmp_path)
     layout, met = walked(cell, tmp_path / "runs")
-    assert layout.answer == "no" or met == [None] * 4
+    assert layout.answer == "no" or met == [None] * WALKS
 
 
 def test_walks_with_parts(tmp_path: Path) -> None:
     layout, met = walked(carrying_cell.write(tmp_path / "cell"), tmp_path / "runs")
-    assert layout.answer == "yes" and met == [None] * 4
+    assert layout.answer == "yes" and met == [None] * WALKS
 
 
 def walked(cell: Path, runs: Path) -> tuple[Layout, list[str | None]]:
-    """What is said of a cell, and what happens on four walks."""
+    """What is said of a cell, and what happens on some walks."""
     d = Diagnostics()
     opened = read(cell, {}, d)
     assert opened is not None, [i.message for i in d]
@@ -263,7 +264,7 @@ def walked(cell: Path, runs: Path) -> tuple[Layout, list[str | None]]:
     assert partition is not None
     graph = explore_cell(partition, opened.storage, Limits(), d)
     assert graph is not None
-    return layout, [wander(graph, arms, Random(number), 3_000) for number in range(4)]
+    return layout, [wander(graph, arms, Random(number), 3_000) for number in range(WALKS)]
 
 
 def test_what_is_not_known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

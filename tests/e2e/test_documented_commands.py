@@ -63,6 +63,9 @@ LONG = {
     "pn2code conform examples/welding": "all states of a larger cell",
     "pn2code time examples/welding": "test_time_bounds asks about it",
     "pn2code run examples/welding --backend fake": CELLS,
+    "pn2code verify examples/welding --durations": "test_verify_durations asks a smaller cell",
+    "pn2code verify examples/welding --durations --property \"every fires(Supervisor'Turned) is followed by "
+    "fires(Supervisor'Both) within 60 seconds\"": "the same",
     "pn2code check --geometry examples/assembly": "./dev geometry looks at it",
     "pn2code verify examples/assembly": CELLS,
     "pn2code generate examples/assembly -o out && make -C out": CELLS,
@@ -96,6 +99,9 @@ NEVER = {
     "./dev bench --states": "the same",
     "./dev bench --monitor": "the same",
     "./dev bench --compile": "the same",
+    "./dev bench --replay": "the same, in a browser",
+    "./dev bench --live examples/riveting --repeat 3": "the same",
+    "./dev site -o site": "runs of three cells in PyBullet; test_site has its first page",
     "./dev bench --against CHECKOUT": "the same, and another checkout",
     "./dev bench --database-15": "the same, and gigabytes",
     "./dev contest --seconds 10 --examinations ReachabilityDeadlock UpperBounds --log contest.jsonl": "hours; "

@@ -37,6 +37,11 @@ def test_sensors_go_on_from_run_to_run(tmp_path: Path) -> None:
     done = CliRunner().invoke(app, ["replay", str(trace), str(cell)])
     assert done.exit_code == 0, done.output
     assert "Again" in trace.read_text(encoding="utf-8")
+    described = json.loads((trace.parent / "run.json").read_text(encoding="utf-8"))
+    assert described["end"] == 4.0
+    assert (trace.parent / "replay.html").is_file()
+    done = CliRunner().invoke(app, ["show", str(trace.parent), "-o", str(tmp_path / "page.html")])
+    assert done.exit_code == 0, done.output
 
 
 def test_stops_hold_commands_up(tmp_path: Path) -> None:
@@ -61,6 +66,7 @@ def test_stops_hold_commands_up(tmp_path: Path) -> None:
     found, text = ran(cell, tmp_path / "run", "--cycles", "2", code=1)
     assert found["finished"] == 0 and found["seconds"] is None and "cycle 1 failed" in text
     assert (tmp_path / "run" / "failed" / "summary.json").is_file()
+    assert (tmp_path / "run" / "failed" / "run.json").is_file()
     assert not (tmp_path / "run" / "slowest").exists()
 
 

@@ -223,6 +223,23 @@ class TestRivetingCell:
         browser.open(shown.file, "#t=33.42")
         assert browser.ask("() => replay.page.clock.t") == 33.42
 
+    def test_without_a_gpu_the_arms_move_on_while_the_rest_waits(self, browser: Page) -> None:
+        drawn = browser.ask("""() => {
+            const { page } = replay;
+            let [arms, rest] = [0, 0];
+            const [cell, net] = [page.cell.update, page.net.update];
+            page.cell.update = (...how) => (arms++, cell.apply(page.cell, how));
+            page.net.update = (...how) => (rest++, net.apply(page.net, how));
+            page.clock.isPlaying = true;
+            page.drawnAt = performance.now() + 1e6;  // as if all had just been drawn
+            for (let i = 0; i < 10; i++) page.clock.seek(10 + i / 100);
+            page.clock.isPlaying = false;
+            page.clock.seek(10.5);
+            delete page.cell.update, delete page.net.update;
+            return [page.cell.isSparing, page.cell.hasShadows, arms, rest, page.transport.time.value];
+        }""")
+        assert drawn == [True, False, 11, 1, "10.50"]
+
     def test_nothing_was_complained_of_or_asked_for(self, browser: Page, shown: Shown) -> None:
         assert browser.errors == []
         own = {

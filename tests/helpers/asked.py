@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from helpers import netbuilder
-from helpers.explored import LIBRARY, Explorers
+from helpers.explored import Explorers
 from pn2code.diagnostics import Diagnostics
 from pn2code.diagnostics.render import report
 from pn2code.ml.elaborate import Elaborator
@@ -83,7 +83,7 @@ class Net:
             assert files is not None, report(d)
             for one in files:
                 (folder / one.path).write_text(one.text)
-            explorers._run(folder, "-shared", "net.c", "-o", LIBRARY)
+            explorers.compile_net(folder)
             more = ("--queries", file, "--query-trace-to", folder / "run-")
             said = explorers.said(folder, *more, *options).report
             error = said["error"]

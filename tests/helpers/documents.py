@@ -20,6 +20,7 @@ from pathlib import Path
 
 from helpers import objects
 from helpers.processes import Command
+from helpers.tiny_compiler import quick_compiler
 
 COMMANDS = (
     "pn2code",
@@ -184,10 +185,11 @@ class Desk:
         if not (folder / "runtime").is_dir():
             yield
             return
-        own = self.kept / objects.key(folder)
-        objects.put(own, folder)
-        yield
-        objects.keep(own, folder)
+        with quick_compiler(self.kept):
+            own = self.kept / objects.key(folder)
+            objects.put(own, folder)
+            yield
+            objects.keep(own, folder)
 
     def _command(self, words: list[str]) -> None:
         at = self.at

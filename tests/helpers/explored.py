@@ -135,10 +135,10 @@ class Explorers:
         folder.mkdir(exist_ok=True)
         for file in files:
             (folder / file.path).write_text(file.text)
-        self._net(folder)
+        self.compile_net(folder)
         return folder
 
-    def _net(self, folder: Path) -> None:
+    def compile_net(self, folder: Path) -> None:
         """The library of a net. Without sanitizers `tcc` makes it, where it is there and accepts the net."""
         tiny = shutil.which("tcc") if self.flags == QUICK else None
         if tiny is not None:

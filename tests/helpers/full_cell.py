@@ -132,6 +132,8 @@ variable = "v"
 file = "gauge.txt"
 default = 4
 seed = 5
+sees = "here"
+part = "box"
 
 [scene]
 floor = false
@@ -235,6 +237,7 @@ about = "net"
 
 _NEEDED = {
     "primitives": ("parts", "places", "frames", "robots"),
+    "sensors": ("parts", "places", "robots"),
     "report": ("channel", "primitives", "parts", "places", "frames", "robots"),
     "frames": ("robots", "parts"),
     "robots": ("parts",),

@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 from helpers import netbuilder
-from helpers.explored import LIBRARY, Explored, Explorers, wide
+from helpers.explored import Explored, Explorers, wide
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
 from pn2code.emission.output import OutputFile
 from pn2code.ml.core.terms import Symbol
@@ -55,7 +55,7 @@ def ask(
     folder.mkdir(exist_ok=True)
     for file in files:
         (folder / file.path).write_text(file.text)
-    explorers._run(folder, "-shared", "net.c", "-o", LIBRARY)
+    explorers.compile_net(folder)
     return Asked(explorers, folder, flat)
 
 

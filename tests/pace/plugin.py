@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import gc
 import json
+import os
 import time
 from collections.abc import Generator, Sequence
 from pathlib import Path
@@ -108,9 +109,12 @@ class Pace:
             items[:] = [items[n] for n in longest_first(asked, self._known)]
 
     def _cores(self) -> int:
+        """How many tests work at a time: there may be more processes than processors, as some tests wait."""
         if self._is_worker:
-            return int(self._config.workerinput["workercount"])  # type: ignore[attr-defined]
-        return len(getattr(self._config.option, "tx", None) or ()) or 1
+            processes = int(self._config.workerinput["workercount"])  # type: ignore[attr-defined]
+        else:
+            processes = len(getattr(self._config.option, "tx", None) or ()) or 1
+        return min(processes, os.cpu_count() or 1)
 
     # ---- what they take
 

@@ -12,26 +12,31 @@ from collections.abc import Iterator
 from pathlib import Path
 from random import Random
 
-from tools.adversary import bed, wander
+from tools.adversary import bed, waits, wander
 from tools.adversary.cells import random_cell
 from tools.adversary.wander import Built, Pace, Run
 
 from pn2code.diagnostics import Diagnostics
 from pn2code.timing.answers import Cycle
-from pn2code.timing.look import look
+from pn2code.timing.look import Measured, look
 from pn2code.verdict.opened import read, with_inputs
 from pn2code.verify.exploring.limits import Limits
 
 FINISHED = "finished"
 
 
-def cycle_of(folder: Path) -> Cycle | None:
-    """What is said of the cycles of a cell; None: nothing."""
+def cycle_of(folder: Path, measured: list[Measured] | None = None) -> Cycle | None:
+    """What is said of the cycles of a cell; None: nothing.
+
+    Args:
+        measured: gets all that was gone through.
+    """
     d = Diagnostics()
     opened = read(folder, {}, d)
     if opened is None:
         return None
-    found = look(with_inputs(opened, d), None, Limits(), None, d)
+    seen = [] if measured is None else measured
+    found = look(with_inputs(opened, d), None, Limits(), None, d, measured=seen.append)
     return found.layouts[0].cycle if found is not None and found.layouts else None
 
 
@@ -71,7 +76,8 @@ def runs_of(built: Built, count: int) -> Iterator[tuple[Pace, Run]]:
 def judge(seed: int, folder: Path, count: int) -> tuple[list[str], Counter[str]]:
     """What is wrong of a random cell, and what was known of it."""
     bed.write(random_cell(Random(seed)), folder)
-    cycle = cycle_of(folder)
+    measured: list[Measured] = []
+    cycle = cycle_of(folder, measured)
     if cycle is None:
         return [], Counter(["nothing known"])
     counts: Counter[str] = Counter()
@@ -88,7 +94,8 @@ def judge(seed: int, folder: Path, count: int) -> tuple[list[str], Counter[str]]
         return [], Counter(["refused"])
     made = list(runs_of(built, count))
     counts.update(f"{pace.value} {run.end}" for pace, run in made)
-    return list(contradictions(cycle, iter(made))), counts
+    wrong = list(contradictions(cycle, iter(made)))
+    return [*wrong, *waits.contradictions(measured[0], Random(seed), made)], counts
 
 
 def main() -> None:

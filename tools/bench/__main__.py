@@ -138,7 +138,26 @@ def main() -> int:
     parser.add_argument(
         "--against", type=Path, metavar="CHECKOUT", help="only commands, beside those of a checkout"
     )
+    parser.add_argument("--replay", action="store_true", help="only the replay page in a browser")
+    parser.add_argument(
+        "--replay-of", type=Path, metavar="RUN", help="the same, of the folder of a run"
+    )
+    parser.add_argument(
+        "--live", type=Path, metavar="CELL", help="only what watchers cost the supervisor of a cell"
+    )
+    parser.add_argument("--pages", type=int, default=10, help="with --live (default 10)")
+    parser.add_argument("--watchers", type=int, default=0, help="with --live, instead of pages")
+    parser.add_argument("--speed", type=float, default=10.0, help="with --live (default 10)")
     options = parser.parse_args()
+    if options.live:
+        from tools.bench import live  # loads all that a run needs
+
+        runs = min(options.repeat, 6)
+        return live.measure(options.live, options.pages, runs, options.speed, options.watchers)
+    if options.replay or options.replay_of:
+        from tools.bench import replay  # needs Playwright
+
+        return replay.measure(options.replay_of, options.repeat)
     if options.against:
         return pairs.measure(options.against, options.repeat)
     if options.compile:

@@ -1,6 +1,7 @@
 """What pages that watch a cell cost its supervisor: how long its answers take without a live view and with ten pages.
 
-    python -m tools.bench.live examples/riveting --pages 10 --runs 4 --speed 10
+    ./dev bench --live examples/riveting --pages 10 --repeat 4 --speed 10
+    ./dev bench --live examples/riveting --watchers 2         # `pn2code watch`, with a page each, instead
 
 Runs without and with the live view take turns, so that both meet the same machine. An answer is the time from a robot's
 message to the next one that it takes (`pn2code.run.punctuality`). A page is a WebSocket that reads all it is told; what
@@ -10,13 +11,16 @@ a browser draws is not measured.
 from __future__ import annotations
 
 import argparse
+import os
 import secrets
 import shutil
+import signal
 import socket
 import statistics
 import subprocess
 import sys
 import tempfile
+import threading
 from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
@@ -29,6 +33,8 @@ from pn2code.run.cell import RunOptions, run_cell
 from pn2code.run.engine import Engine
 from pn2code.run.realtime import RealtimeEngine
 
+MOST = 1.05
+"""Times that the slowest hundredth of the answers may take with pages."""
 _LEAST = 10_000
 """Bytes that each page must have been told."""
 _READERS = """
@@ -68,10 +74,49 @@ class _Answers:
         self.seconds = list(engine.punctuality.answers)
 
 
-def answers(cell: Path, pages: int | None, speed: float) -> list[float]:
+class _Watchers(_Answers):
+    """An observer that also lets others watch: `pn2code watch`, with a page each."""
+
+    def __init__(self, out: Path, count: int) -> None:
+        super().__init__()
+        self._out, self._count = out, count
+        self._watching: list[subprocess.Popen[str]] = []
+        self._reading: list[subprocess.Popen[str]] = []
+
+    def begun(self, engine: Engine) -> None:
+        """From now on the folder says where the cell runs."""
+        assert isinstance(engine, RealtimeEngine)
+        self._engine, self._from = engine, 0
+        command = [sys.executable, "-m", "pn2code", "watch", str(self._out), "--no-browser"]
+        for _ in range(self._count):
+            self._watching.append(subprocess.Popen(command, stdout=subprocess.PIPE, text=True))
+        threading.Thread(target=self._open, daemon=True).start()
+
+    def _open(self) -> None:
+        for one in self._watching:
+            assert one.stdout is not None
+            if words := one.stdout.readline().split():
+                self._reading.append(_open(words[-1], 1))
+        self._from = len(self._engine.punctuality.answers)
+
+    def ended(self, engine: Engine) -> None:
+        """The watchers end; they must have seen something."""
+        super().ended(engine)
+        for one in self._watching:
+            one.send_signal(signal.SIGINT)
+            one.wait()
+        told = [int(line) for one in self._reading for line in one.communicate()[0].split()]
+        if len(told) != self._count or min(told) < _LEAST:
+            raise SystemExit(
+                f"the watchers were told too little: {told} bytes; try a lower --speed"
+            )
+        self.seconds = self.seconds[self._from :]  # while they started they were no watchers yet
+
+
+def answers(cell: Path, pages: int | None, speed: float, watchers: int = 0) -> list[float]:
     """The answers of one run; None: without a live view."""
-    seen = _Answers()
     out = Path(tempfile.mkdtemp(prefix="pn2code-live-"))
+    seen = _Watchers(out, watchers) if watchers else _Answers()
     options = RunOptions(
         out, backend="fake", looks=False, realtime=True, speed=speed, checked=False
     )
@@ -124,28 +169,40 @@ def figures(seconds: list[float]) -> list[float]:
     return [cuts[9], cuts[49], cuts[89], cuts[98]]
 
 
-def main() -> None:
-    """Measures, and prints a table."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("cell", type=Path)
-    parser.add_argument("--pages", type=int, default=10)
-    parser.add_argument("--runs", type=int, default=4)
-    parser.add_argument("--speed", type=float, default=10.0)
-    asked = parser.parse_args()
-    without: list[float] = []
-    watched: list[float] = []
-    for _ in range(asked.runs):
-        without += answers(asked.cell, None, asked.speed)
-        watched += answers(asked.cell, asked.pages, asked.speed)
-    print(f"| answers | 10 % | median | 90 % | 99 % |  {len(without)} and {len(watched)} answers")
-    for name, rows in (
-        ("no live view", figures(without)),
-        (f"{asked.pages} pages", figures(watched)),
-    ):
+def measure(cell: Path, pages: int, runs: int, speed: float, watchers: int = 0) -> int:
+    """Measures, and prints a table; 1 if the slowest answers are later with pages, on a machine that is not busy."""
+    load = os.getloadavg()[0]
+    without, watched, slowest = [], [], []
+    for _ in range(runs):
+        alone = answers(cell, None, speed)
+        seen = answers(cell, None if watchers else pages, speed, watchers)
+        slowest.append(figures(seen)[-1] / figures(alone)[-1])
+        without += alone
+        watched += seen
+    print(
+        f"{os.cpu_count()} cores; load at the start {load:.1f}; {len(without)} and {len(watched)} answers\n"
+    )
+    print("| answers | 10 % | median | 90 % | 99 % |\n|---|---|---|---|---|")
+    what = f"{watchers} watchers" if watchers else f"{pages} pages"
+    for name, rows in (("nobody looks", figures(without)), (what, figures(watched))):
         print(f"| {name} | " + " | ".join(f"{1000 * v:.2f} ms" for v in rows) + " |")
     ratios = [b / a for a, b in zip(figures(without), figures(watched), strict=True)]
     print("| ratio | " + " | ".join(f"{r:.3f}" for r in ratios) + " |")
+    print(f"\n99 %, run by run: {min(slowest):.3f} .. {max(slowest):.3f} (aim: at most {MOST:g})")
+    return int(ratios[-1] > MOST and min(slowest) > MOST and load <= (os.cpu_count() or 1) / 2)
+
+
+def main() -> int:
+    """As `./dev bench --live`."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("cell", type=Path)
+    parser.add_argument("--pages", type=int, default=10)
+    parser.add_argument("--watchers", type=int, default=0)
+    parser.add_argument("--runs", type=int, default=4)
+    parser.add_argument("--speed", type=float, default=10.0)
+    asked = parser.parse_args()
+    return measure(asked.cell, asked.pages, asked.runs, asked.speed, asked.watchers)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

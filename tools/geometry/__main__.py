@@ -3,7 +3,8 @@
 ./dev geometry                       a table of all examples (docs/benchmarks.md)
 ./dev geometry --pictures DIR        the pictures of docs/geometry.md
 ./dev geometry --cells 40            random cells of two arms, two thirds of them with tracks and a turntable: what
-                                     collides in PyBullet is never said to keep apart
+                                     collides in PyBullet is never said to keep apart; in each fourth of them an arm is
+                                     placed anew, and what is proved of its new place is run as well
 """
 
 from __future__ import annotations
@@ -28,8 +29,12 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.geometry.check import Geometry, examine
 from pn2code.geometry.graph import explore_cell
 from pn2code.geometry.pictures import draw
+from pn2code.geometry.placing.look import Request, look
+from pn2code.geometry.placing.search import Wish
 from pn2code.geometry.report import text
+from pn2code.robot.robot_cell import RobotCell
 from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.placed import run_placed
 from pn2code.verdict.opened import read, with_inputs
 from pn2code.verify.exploring.limits import Limits, cores
 
@@ -100,7 +105,7 @@ def pictures(folder: Path, to: Path) -> int:
     return 0
 
 
-def strolled(cell: Path, found: Geometry, seed: int, walks: int) -> str:
+def strolled(cell: Path, arms: RobotCell, seed: int, walks: int) -> str:
     """What happens on random walks of a cell; "": nothing."""
     d = Diagnostics()
     opened = read(cell, {}, d)
@@ -110,7 +115,7 @@ def strolled(cell: Path, found: Geometry, seed: int, walks: int) -> str:
     graph = explore_cell(partition, opened.storage, Limits(), d)
     assert graph is not None
     for number in range(walks):
-        met = wander(graph, found.layouts[0][1], Random(f"{seed} {number}"), STEPS)
+        met = wander(graph, arms, Random(f"{seed} {number}"), STEPS)
         if met:
             return met
     return ""
@@ -122,6 +127,25 @@ def ran(cell: Path, out: Path) -> str:
     result = run_cell(cell, RunOptions(out, looks=False, checked=False), d)
     assert result is not None, [i.message for i in d]
     return result.record.reason
+
+
+def placed(cell: Path, robot: str, out: Path, seed: int, walks: int) -> tuple[str, str]:
+    """What `place` says of another place of an arm ("yes": it is proved), and what happens there; "": nothing."""
+    d = Diagnostics()
+    opened = read(cell, {}, d)
+    assert opened is not None
+    wish = Wish("condition", limit=0.0)
+    free = (f"{robot}.base.x,y,yaw=-200:200",)
+    request = Request(free, None, 0.3, wish, seed, generations=3, tries=2)
+    limits = Limits(threads=cores())
+    found = look(with_inputs(opened, d), request, limits, out, d)
+    assert found is not None, [i.message for i in d]
+    if found.chosen is None:
+        return "no", ""
+    options = RunOptions(out / "run", looks=False, checked=False)
+    record = run_placed(cell, found.chosen.cell, options, d)
+    assert record is not None, [i.message for i in d]
+    return "yes", record.reason or strolled(cell, found.chosen.cell, seed, walks)
 
 
 def random_cell(number: int) -> tuple[str, str]:
@@ -143,12 +167,21 @@ def random_cells(folder: Path, count: int, seed: int, walks: int, *, is_run: boo
         (cell / "cell.toml").write_text(toml)
         found = looked(cell, folder / f"{number}.runs")
         met = ran(cell, folder / f"{number}.run") if is_run else ""
-        met = met or strolled(cell, found, number, walks)
+        arms = found.layouts[0][1]
+        met = met or strolled(cell, arms, number, walks)
         key = (found.answer, "something" if met else "nothing")
         said[key] = said.get(key, 0) + 1
         if found.answer == "yes" and met:
             wrong += 1
             print(f"cell {number}: said yes, but {met}", flush=True)
+        if number % 4 == 0:
+            robot = arms.robots[-1].name
+            answer, met = placed(cell, robot, folder / f"{number}.place", number, walks)
+            key = (f"{answer} to another place", "something" if met else "nothing")
+            said[key] = said.get(key, 0) + 1
+            if met:
+                wrong += 1
+                print(f"cell {number}: {robot} was placed, but {met}", flush=True)
     for (answer, happens), times in sorted(said.items()):
         print(f"{times:4} cells: the answer is {answer}, in runs {happens} happens")
     return wrong

@@ -81,7 +81,7 @@ net Oracle
 NET = NET.replace("  colset EVEN", "  fun isEven n = n mod 2 = 0;\n  colset EVEN")
 
 _OUTSIDE = re.compile(
-    r"^(Int31|Real64|LargeReal|CharArray|Random|TextIO|BinIO|IO|OS|Time|Timer|Posix|Unix|Socket|INetSock|SMLofNJ|CommandLine|CPN'|Cpn|Comms|Conn|Output"
+    r"^(Int31|Int64|Word64|Real64|LargeReal|CharArray|Random|TextIO|BinIO|IO|OS|Time|Timer|Posix|Unix|Socket|INetSock|SMLofNJ|CommandLine|CPN'|Cpn|Comms|Conn|Output"
     r"|Replications|Queue|Date\.(now|from|local)|Internal|ModelTime\.(model_time|time)|Rand|Misc|NetHostDB|NetServDB)"
 )
 _DRAWN = {"uniform", "discrete", "bernoulli", "binomial", "normal", "exponential", "poisson", "erlang", "chisq", "student",

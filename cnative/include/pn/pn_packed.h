@@ -73,7 +73,7 @@ PN_INLINE void pn_counter_subtract(uint64_t *word, uint32_t bit, uint32_t width,
 }
 
 /* The first counter from `from` on that is not 0; `colours` if there is none. */
-PN_INLINE uint32_t pn_counter_next(const uint64_t *word, uint32_t bit, uint32_t colours, uint32_t width, uint32_t from)
+PN_SHARED uint32_t pn_counter_next(const uint64_t *word, uint32_t bit, uint32_t colours, uint32_t width, uint32_t from)
 {
     const uint32_t end = bit + (colours * width);
     uint32_t at = bit + (from * width);
@@ -86,6 +86,30 @@ PN_INLINE uint32_t pn_counter_next(const uint64_t *word, uint32_t bit, uint32_t 
         at = (at | 63U) + 1U;
     }
     return colours;
+}
+
+/* Takes from a counter if there is as much; `i` may be no colour. */
+PN_SHARED bool pn_counter_take(uint64_t *word, uint32_t bit, uint32_t width, uint32_t i, uint32_t count)
+{
+    if ((i == PN_NO_COLOUR) || (pn_counter(word, bit, width, i) < count)) {
+        return false;
+    }
+    pn_counter_subtract(word, bit, width, i, count);
+    return true;
+}
+
+/* Adds to a counter of a place, which is called `multiset` in the error when it would overflow. */
+PN_SHARED bool pn_counter_put(pn_ctx_t *cx, uint64_t *word, uint32_t bit, uint32_t width, uint32_t i, uint32_t count,
+                              const pn_multiset_t *multiset)
+{
+    if (count == 0U) {
+        return true;
+    }
+    if ((i == PN_NO_COLOUR) || (count > (pn_counter_most(width) - pn_counter(word, bit, width, i)))) {
+        return pn_multiset_fail_full(cx, multiset);
+    }
+    pn_counter_add(word, bit, width, i, count);
+    return true;
 }
 
 /* --- sums: whole multi-sets as counters, in words of their own that lie as those of the place do ------------------ */
@@ -184,24 +208,11 @@ PN_INLINE void pn_sum_subtract(uint64_t *word, uint32_t bit, uint32_t colours, u
     }                                                                                                    \
     PN_INLINE bool place##_take(marking_t *m, const value_t *v, uint32_t n)                              \
     {                                                                                                    \
-        const uint32_t i = number_of(v);                                                                 \
-        if ((i == PN_NO_COLOUR) || (place##_count_of(m, i) < n)) {                                       \
-            return false;                                                                                \
-        }                                                                                                \
-        pn_counter_subtract(m->packed, (first), (width), i, n);                                          \
-        return true;                                                                                     \
+        return pn_counter_take(m->packed, (first), (width), number_of(v), n);                            \
     }                                                                                                    \
     PN_INLINE bool place##_add(pn_ctx_t *cx, marking_t *m, const value_t *v, uint32_t n)                 \
     {                                                                                                    \
-        const uint32_t i = number_of(v);                                                                 \
-        if (n == 0U) {                                                                                   \
-            return true;                                                                                 \
-        }                                                                                                \
-        if ((i == PN_NO_COLOUR) || (n > (pn_counter_most(width) - place##_count_of(m, i)))) {            \
-            return pn_multiset_fail_full(cx, &(multiset));                                               \
-        }                                                                                                \
-        pn_counter_add(m->packed, (first), (width), i, n);                                               \
-        return true;                                                                                     \
+        return pn_counter_put(cx, m->packed, (first), (width), number_of(v), n, &(multiset));            \
     }                                                                                                    \
     PN_INLINE void place##_check(pn_ctx_t *cx, value_t *v)                                               \
     {                                                                                                    \

@@ -35,6 +35,13 @@
 #define PN_INLINE PN_MAYBE_UNUSED static inline
 #endif
 
+/* What would be copied into each transition of a large net is one function there, if it is worth a call. */
+#if defined(__GNUC__) && defined(PN_MANY)
+#define PN_SHARED __attribute__((noinline, unused)) static
+#else
+#define PN_SHARED PN_INLINE
+#endif
+
 /* Copies what an array place holds from one marking into another. */
 #define PN_COPY_PLACE(place, to, from)                                                                         \
     do {                                                                                                       \

@@ -26,9 +26,9 @@ _AGAIN_S = 0.1
 """An exception that is raised in a destructor is lost: the alarm comes again and again until it has been heard."""
 _LEAST_S = 1e-6
 """An alarm in no time at all would be none."""
-GRACE = 0.1
+GRACE = 0.03
 """A process that was told its limit, and does not end, is ended after so large a part of the limit ..."""
-GRACE_S = 0.1
+GRACE_S = 0.03
 """... and so many seconds more."""
 
 _LOADER = "<frozen importlib._bootstrap>"

@@ -106,6 +106,7 @@ class SensorConfig:
         default: what it says where there is no such file; None: the file must be there. With neither, it is drawn
             at random.
         seed: of what is drawn at random.
+        sees: the place at which it looks for a part in a run, of the kind `part` ("": any); "": it sees nothing.
     """
 
     name: str
@@ -114,6 +115,8 @@ class SensorConfig:
     default: str | int | float | bool | None
     seed: int
     origin: Origin
+    sees: str = ""
+    part: str = ""
 
 
 @frozen

@@ -504,16 +504,20 @@ def _handling(
         return None
     part = r.get(table, at, PRIMITIVE[given[0]], "")
     for name, key, section in ((part, given[0], "parts"), (place, "at", "places")):
-        known = _table(data.get(section))
-        if name and name not in known:
-            r.d.error(
-                codes.CELL_VALUE,
-                f"`{key}` names `{name}`, but there is no `[{section}.{name}]`",
-                r.at(*at, key),
-                hint=did_you_mean(name, known)
-                or f"add a table `[{section}.{name}]` (docs/robots.md)",
-            )
+        _expect_named(r, data, name, (*at, key), section)
     return Handling(given[0], part, place)
+
+
+def _expect_named(r: Tables, data: dict[str, Any], name: str, at: KeyPath, section: str) -> None:
+    """What a key names is there."""
+    known = _table(data.get(section))
+    if name and name not in known:
+        r.d.error(
+            codes.CELL_VALUE,
+            f"`{at[-1]}` names `{name}`, but there is no `[{section}.{name}]`",
+            r.at(*at),
+            hint=did_you_mean(name, known) or f"add a table `[{section}.{name}]` (docs/robots.md)",
+        )
 
 
 _NEEDS: dict[Effect, tuple[Effect, str]] = {
@@ -607,7 +611,23 @@ def _sensors(r: Tables, data: dict[str, Any]) -> Iterable[SensorConfig]:
             )
             default = None
         seed = r.get(table, at, SENSOR["seed"])
-        yield SensorConfig(name, variable, file, default, seed, r.at(*at))
+        sees, part = _seen(r, data, table, at)
+        yield SensorConfig(name, variable, file, default, seed, r.at(*at), sees, part)
+
+
+def _seen(r: Tables, data: dict[str, Any], table: dict[str, Any], at: KeyPath) -> tuple[str, str]:
+    """The place at which a sensor looks, and for which kind of parts."""
+    sees, part = (r.get(table, at, SENSOR[key], "") for key in ("sees", "part"))
+    for name, key, section in ((sees, "sees", "places"), (part, "part", "parts")):
+        _expect_named(r, data, name, (*at, key), section)
+    if part and not sees:
+        r.d.error(
+            codes.CELL_KEY,
+            "`part` says which kind of parts the sensor sees, but not where",
+            r.at(*at, "part"),
+            hint="add `sees` with the name of a place",
+        )
+    return sees, part
 
 
 def _report(r: Tables, data: dict[str, Any], config: CellConfig) -> ReportConfig:

@@ -39,8 +39,7 @@ MOTION = Section(
             "number",
             "Fraction of the axis speeds for joint moves.",
             default=0.5,
-            low=0.0,
-            above=True,
+            low=1e-4,
             high=1.0,
         ),
         Key(
@@ -49,8 +48,8 @@ MOTION = Section(
             "Acceleration of every axis.",
             default=200.0,
             unit="degrees/s²",
-            low=0.0,
-            above=True,
+            low=0.1,
+            high=1e6,
         ),
         Key(
             "joint_jerk_deg_s3",
@@ -58,8 +57,8 @@ MOTION = Section(
             "Jerk of every axis.",
             default=1000.0,
             unit="degrees/s³",
-            low=0.0,
-            above=True,
+            low=0.1,
+            high=1e8,
         ),
         Key(
             "slide_acceleration",
@@ -67,8 +66,8 @@ MOTION = Section(
             "Acceleration of every axis of an arm that slides.",
             default=2.0,
             unit="m/s²",
-            low=0.0,
-            above=True,
+            low=1e-4,
+            high=1e4,
         ),
         Key(
             "slide_jerk",
@@ -76,8 +75,8 @@ MOTION = Section(
             "Jerk of every axis of an arm that slides.",
             default=20.0,
             unit="m/s³",
-            low=0.0,
-            above=True,
+            low=1e-4,
+            high=1e6,
         ),
         Key(
             "linear_speed",
@@ -85,8 +84,8 @@ MOTION = Section(
             "Speed of the TCP on linear moves.",
             default=0.05,
             unit="m/s",
-            low=0.0,
-            above=True,
+            low=1e-5,
+            high=100.0,
         ),
         Key(
             "linear_acceleration",
@@ -94,8 +93,8 @@ MOTION = Section(
             "Acceleration of the TCP on linear moves.",
             default=0.5,
             unit="m/s²",
-            low=0.0,
-            above=True,
+            low=1e-4,
+            high=1e4,
         ),
         Key(
             "linear_jerk",
@@ -103,8 +102,8 @@ MOTION = Section(
             "Jerk of the TCP on linear moves.",
             default=5.0,
             unit="m/s³",
-            low=0.0,
-            above=True,
+            low=1e-4,
+            high=1e6,
         ),
         Key(
             "angular_speed_deg_s",
@@ -112,8 +111,8 @@ MOTION = Section(
             "Angular speed of the tool on linear moves.",
             default=30.0,
             unit="degrees/s",
-            low=0.0,
-            above=True,
+            low=1e-3,
+            high=1e4,
         ),
         Key(
             "measure_s",
@@ -122,6 +121,7 @@ MOTION = Section(
             default=1.0,
             unit="s",
             low=0.0,
+            high=1e6,
         ),
         Key(
             "sample_s",
@@ -129,8 +129,7 @@ MOTION = Section(
             "Spacing of the checks on joint moves; on lines there is one every 5 mm.",
             default=0.02,
             unit="s",
-            low=0.0,
-            above=True,
+            low=1e-3,
             high=1.0,
         ),
     )
@@ -315,8 +314,13 @@ OBJECT = Section(
 )
 
 
-def _travel(only: tuple[str, ...], unit: str, pace: tuple[float, float, float]) -> tuple[Key, ...]:
-    """How far an external axis goes, and how fast."""
+def _travel(
+    only: tuple[str, ...],
+    unit: str,
+    pace: tuple[float, float, float],
+    between: tuple[tuple[float, float], ...],
+) -> tuple[Key, ...]:
+    """How far an external axis goes, and how fast; `between`: the least and greatest of each of these."""
     words = ("speed", "acceleration", "jerk")
     units = (f"{unit}/s", f"{unit}/s\u00b2", f"{unit}/s\u00b3")
     return (
@@ -330,11 +334,11 @@ def _travel(only: tuple[str, ...], unit: str, pace: tuple[float, float, float]) 
                 f"Its greatest {word}.",
                 default=value,
                 unit=own,
-                low=0.0,
-                above=True,
+                low=least,
+                high=most,
                 only=only,
             )
-            for word, value, own in zip(words, pace, units, strict=True)
+            for word, value, own, (least, most) in zip(words, pace, units, between, strict=True)
         ),
     )
 
@@ -358,7 +362,7 @@ AXIS = Section(
             counts=(3,),
             only=("track",),
         ),
-        *_travel(("track",), "m", (0.5, 1.0, 10.0)),
+        *_travel(("track",), "m", (0.5, 1.0, 10.0), ((1e-5, 100.0), (1e-4, 1e4), (1e-4, 1e6))),
         Key(
             "pose",
             "table",
@@ -368,7 +372,9 @@ AXIS = Section(
             inner=POSE,
             only=("turntable",),
         ),
-        *_travel(("turntable",), _DEGREES, (60.0, 120.0, 600.0)),
+        *_travel(
+            ("turntable",), _DEGREES, (60.0, 120.0, 600.0), ((1e-3, 1e4), (0.1, 1e6), (0.1, 1e8))
+        ),
         Key(
             "radius",
             "number",

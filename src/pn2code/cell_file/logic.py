@@ -174,8 +174,8 @@ PRIMITIVE = Section(
             "The speed of the TCP; without it, that of `[motion]`.",
             "a number",
             unit="m/s",
-            low=0.0,
-            above=True,
+            low=1e-5,
+            high=100.0,
             only=LED,
         ),
         Key(
@@ -183,8 +183,7 @@ PRIMITIVE = Section(
             "number",
             "A fraction of the speeds of the axes that `joint_speed` of `[motion]` allows; without it, all of them.",
             "a number",
-            low=0.0,
-            above=True,
+            low=1e-4,
             high=1.0,
             only=("move_joint", "move_axes", "move_external", "move_home"),
         ),
@@ -193,8 +192,7 @@ PRIMITIVE = Section(
             "number",
             "A fraction of the acceleration that `[motion]` allows; without it, all of it.",
             "a number",
-            low=0.0,
-            above=True,
+            low=1e-4,
             high=1.0,
             only=(*WITH_AXES, "move_home"),
         ),
@@ -322,6 +320,19 @@ SENSOR = Section(
             "a value of the variable",
         ),
         Key("seed", "whole", "Of what is drawn at random.", "a whole number", default=1),
+        Key(
+            "sees",
+            "text",
+            "A name of `[places]`: in a run the sensor, of a truth value, says whether a part stands there at the time "
+            "it is asked. See *Sensors that see the scene*.",
+            "the name of a place",
+        ),
+        Key(
+            "part",
+            "text",
+            "with `sees`: Only a part of this kind, a name of `[parts]`, is seen; without it, any part.",
+            "the name of a kind of parts",
+        ),
     )
 )
 ACTION = Key(

@@ -5,15 +5,17 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from pn2code.base.deadline import Deadline, TimeIsOverError
 from pn2code.base.os_reason import os_reason
 from pn2code.base.progress_line import Line
-from pn2code.cli.nets import open_net, playing
+from pn2code.cli.nets import in_time, open_net, playing
 from pn2code.cli.options import (
     OUTPUT_FLAGS,
     Exit,
@@ -21,6 +23,7 @@ from pn2code.cli.options import (
     FormatOption,
     InputOption,
     JsonOption,
+    MaxSecondsOption,
     SetOption,
     finite,
     parse_values,
@@ -130,6 +133,7 @@ def place(
     ] = Path("place"),
     as_json: JsonOption = False,
     inputs: InputOption = None,
+    max_seconds: MaxSecondsOption = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,
 ) -> None:
@@ -151,16 +155,24 @@ def place(
     request = Request(tuple(free), layout, around, wish, seed, generations, tries)
     values = parse_values(settings)
     d = Diagnostics()
-    opened = open_net(cell, values, form, warnings=d, inputs=inputs)
+    late = "anything was found"
+    with in_time(max_seconds, cell, late, form):
+        opened = open_net(cell, values, form, warnings=d, inputs=inputs)
+    deadline = Deadline.of_command(max_seconds)
     line = Line(shown=not as_json, plain=True, first="reading the cell ...")
     record: RunRecord | None = None
     d_run = Diagnostics()
     try:
-        with playing(form), line as progress:
-            found = look(opened, request, Limits(threads=cores()), out, d, progress.stage)
+        with in_time(None, cell, late, form), playing(form), line as progress:
+            limits = Limits(deadline=deadline, threads=cores())
+            found = look(opened, request, limits, out, d, progress.stage)
             if found is not None and not d.has_errors and found.chosen is not None and run:
                 progress.stage("running the cell ...")
-                record = _ran(cell, found.chosen, layout, values, inputs, out, d_run)
+                try:
+                    with deadline.enforced():
+                        record = _ran(cell, found.chosen, layout, values, inputs, out, d_run)
+                except TimeIsOverError:
+                    found = replace(found, unfinished=_and(found.unfinished, "it was not run"))
         if found is None or d.has_errors:
             stop(d, form)
         files = _written(found, out)
@@ -183,7 +195,7 @@ def place(
 def _code(found: Placed, record: RunRecord | None, d: Diagnostics) -> int:
     """0: proved (and it ran); 1: there is none, or the run failed; 3: not known."""
     if found.chosen is None:
-        unknown = any(t.proof.answer == "unknown" for t in found.tried)
+        unknown = bool(found.unfinished) or any(t.proof.answer == "unknown" for t in found.tried)
         return Exit.INCONCLUSIVE if unknown else Exit.MODEL
     if record is not None and record.verdict != "finished":
         return Exit.MODEL
@@ -207,6 +219,10 @@ def _ran(
         out=out / "run", layout=layout, input=inputs, values=values, looks=False, checked=False
     )
     return run_placed(path, chosen.cell, options, d)
+
+
+def _and(before: str, more: str) -> str:
+    return f"{before}, and {more}" if before else more
 
 
 # --- files -------------------------------------------------------------------------------------------
@@ -249,10 +265,15 @@ def _text(
     f = found.found
     yield f"{f.looked:,} placings looked at; {len(f.ranked):,} reach everything, touch nothing and are as wished"
     yield from _table(found)
+    if found.unfinished:
+        yield f"  unfinished, the time was up: {found.unfinished} (`--max-seconds`)"
     if found.open:
         yield f"  the arms may have more to do: {found.open}"
     if not f.ranked:
-        yield from _none(found)
+        if found.unfinished:
+            yield "NOT KNOWN: nothing was found in that time from which everything is reached as wished"
+        else:
+            yield from _none(found)
         return
     for tried in found.tried:
         where = _where(found.free, tried.candidate)
@@ -262,7 +283,8 @@ def _text(
             yield "    no two arms collide, nor an arm and a part, in any interleaving that the net permits"
             yield f"    on the whole way: {_whole(tried.proof)}"
             continue
-        yield f"  does not hold, {where}: {tried.proof.trouble}"
+        holds = "not known" if tried.proof.answer == "unknown" else "does not hold"
+        yield f"  {holds}, {where}: {tried.proof.trouble}"
         if math.isfinite(tried.proof.condition):
             yield f"    on the whole way: {_whole(tried.proof)}"
     if found.chosen is None:
@@ -272,7 +294,8 @@ def _text(
             if is_open
             else "NO: none of these holds on the whole way"
         )
-        yield f"{answer}; wish for more (`--clearance`), or look at more (`--tries`)"
+        more = "give it more time" if found.unfinished else "wish for more (`--clearance`)"
+        yield f"{answer}; {more}, or look at more (`--tries`)"
     elif record is not None:
         why = f": {record.reason}" if record.reason else ""
         yield f"  ran in PyBullet: {record.verdict} after {record.time:.1f} s of the cell{why}"
@@ -369,6 +392,7 @@ def _row(found: Placed, record: RunRecord | None, files: Sequence[Path]) -> dict
             for m in found.missed
         ],
         "open": found.open or None,
+        "unfinished": found.unfinished or None,
         "run": None
         if record is None
         else {"verdict": record.verdict, "reason": record.reason or None, "time_s": record.time},

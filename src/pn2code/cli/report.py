@@ -98,6 +98,7 @@ def report(
         _seen_from(out, net),
         _layouts(config, layouts),
         backend=backend.value,
+        geometry=_swept(config, layouts, backend),
         values=settings,
         inputs=None if inputs is None else _seen_from(out, inputs),
         max_seconds=max_seconds,
@@ -157,6 +158,13 @@ def _layouts(config: CellConfig | None, wanted: list[str]) -> tuple[str, ...]:
         known = ", ".join(f"`{name}`" for name in config.layouts) or "none"
         _refuse(f"there is no layout `{unknown[0]}`; the cell's layouts: {known}")
     return tuple(dict.fromkeys(wanted)) or tuple(config.layouts) or ("",)
+
+
+def _swept(config: CellConfig | None, wanted: list[str], backend: BackendChoice) -> tuple[str, ...]:
+    """The layouts whose geometry is looked at, "" for all; none without arms, or without what measures distances."""
+    if config is None or not config.robots or backend is BackendChoice.FAKE:
+        return ()
+    return tuple(dict.fromkeys(wanted)) or ("",)
 
 
 def _prepare(out: Path) -> None:

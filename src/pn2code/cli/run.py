@@ -25,13 +25,13 @@ from pn2code.cli.options import (
     print_but_known,
     stop,
 )
+from pn2code.cli.replay_files import write_replay
 from pn2code.cli.run_trouble import trouble_told
 from pn2code.diagnostics import Diagnostics
 
 if TYPE_CHECKING:
     from pn2code.live.view import LiveView
-    from pn2code.replay.motion import Motion
-    from pn2code.run.cell import Prepared, RunResult
+    from pn2code.run.cell import Prepared
     from pn2code.run.hand import Hand
 
 EPILOG = """Examples:
@@ -214,7 +214,8 @@ def run(
         from pn2code.cli.run_cycles import rates, run_many
         from pn2code.run.cycles import Plan
 
-        run_many(cell, options, Plan(cycles, warm_up, rates(stops)), form)
+        plan = Plan(cycles, warm_up, rates(stops))
+        run_many(cell, options, plan, form, replay=replay)
         return
     album = Album(out, pictures=pictures, video=video)
     motion = Motion()
@@ -268,7 +269,7 @@ def run(
         if result is not None:
             progress.say("writing the replay page")
             try:
-                _write_replay(result, motion, out, wanted=replay)
+                write_replay(result, motion, out, wanted=replay)
             except OSError as problem:
                 typer.echo(
                     f"pn2code: cannot write the replay page in `{out}`: {os_reason(problem)}",
@@ -302,26 +303,3 @@ def _live_view(port: int, speed: float, *, may_act: bool) -> LiveView:
     if may_act:
         typer.echo(f"to play a robot or the fault: {view.act_address}")
     return view
-
-
-def _write_replay(result: RunResult, motion: Motion, out: Path, *, wanted: bool) -> None:
-    """`run.json` and `replay.html`, from what is in memory; those of an earlier run do not stay."""
-    from pn2code.net.source import read
-    from pn2code.replay import run as described
-    from pn2code.replay.description import NAME, text_of
-    from pn2code.replay.page import NAME as PAGE
-    from pn2code.replay.page import page
-
-    for name in (NAME, PAGE):
-        (out / name).unlink(missing_ok=True)
-    if not wanted:
-        return
-    document = read(Path(result.prepared.generated.partition.net.file), Diagnostics(), drawn=True)
-    if document is None:
-        typer.echo(
-            "pn2code: there is no replay page: the net's file has changed meanwhile", err=True
-        )
-        return
-    data = described.describe(result, motion, document)
-    for name, text in ((NAME, text_of(data)), (PAGE, page(data))):
-        (out / name).write_text(text, encoding="utf-8")

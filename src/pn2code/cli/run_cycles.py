@@ -10,11 +10,13 @@ import typer
 
 from pn2code.base.progress_line import Line
 from pn2code.cli.options import Exit, Format, print_but_known, stop
+from pn2code.cli.replay_files import write_replay
 from pn2code.cli.run_trouble import trouble_told
 from pn2code.diagnostics import Diagnostics
 
 if TYPE_CHECKING:
-    from pn2code.run.cell import RunOptions
+    from pn2code.replay.motion import Motion
+    from pn2code.run.cell import RunOptions, RunResult
     from pn2code.run.cycles import Cycles, Plan, Spread
     from pn2code.run.stops import Rate
 
@@ -35,16 +37,26 @@ def rates(texts: list[str]) -> dict[str, Rate]:
     return out
 
 
-def run_many(cell: Path, options: RunOptions, plan: Plan, form: Format) -> None:
+def run_many(
+    cell: Path, options: RunOptions, plan: Plan, form: Format, *, replay: bool = True
+) -> None:
     """Runs a cell so often, prints what came of it, and leaves with code 1 if a run did not come to its end."""
-    from pn2code.run.cycles import run_cycles, table
+    from pn2code.replay.motion import Motion
+    from pn2code.run.cycles import Keeping, run_cycles, table
+
+    kept: dict[Path, tuple[RunResult, Motion]] = {}
+
+    def keep(result: RunResult, motion: Motion, folder: Path) -> None:
+        kept[folder] = result, motion
 
     d = Diagnostics()
     with trouble_told(options.out):
         with Line(shown=True, plain=False, first="generating and building") as line:
-            found = run_cycles(cell, options, plan, d, line.say)
+            found = run_cycles(cell, options, plan, d, line.say, Keeping(Motion, keep))
         if found is None:
             stop(d, form)
+        for folder, (result, motion) in kept.items():
+            write_replay(result, motion, folder, wanted=replay)
         lines = "".join(f"{x}\n" for x in table(found.cycles))
         (options.out / "cycles.tsv").write_text(lines, encoding="utf-8")
         text = json.dumps(found.row(), indent=1) + "\n"
@@ -78,7 +90,9 @@ def _lines(found: Cycles, out: Path) -> list[str]:
     for c in counted:
         if c.verdict != "finished":
             lines.append(f"  cycle {c.number} {c.verdict}: {c.reason}")
-    lines.append(f"results in {out}/: cycles.tsv, cycles.json, and a slowest cycle in slowest/")
+    lines.append(
+        f"results in {out}/: cycles.tsv, cycles.json, and a slowest cycle in slowest/, with its replay page"
+    )
     return lines
 
 

@@ -37,6 +37,7 @@ from pn2code.cli.subject import Subject
 from pn2code.cli.verify_screen import closing, full, screen
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.verdict import channel_model, properties
+from pn2code.verdict.asked import Asked
 from pn2code.verdict.asked import files as asked_files
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.whole import (
@@ -78,6 +79,8 @@ EPILOG = """Examples:
   pn2code verify net.cpn --max-states 1000000 --max-seconds 60 --json
 
   pn2code verify small.cpn --draw graph.html
+
+  pn2code verify examples/welding --durations
 
   pn2code verify net.cpn --property "deadlock free" --property "always { size (Mark.Top'Buffer 1) <= 4 }"
 """
@@ -240,6 +243,14 @@ def verify(
             help="Check a cell together with its shared files (docs/protocol.md).",
         ),
     ] = True,
+    durations: Annotated[
+        bool,
+        typer.Option(
+            "--durations",
+            help="Measure how long each command of a cell takes, as `pn2code time` does, and answer properties "
+            "`within N seconds` with it (docs/time.md).",
+        ),
+    ] = False,
     unbounded_ok: Annotated[
         bool,
         typer.Option(
@@ -284,6 +295,11 @@ def verify(
             )
             refuse_wide(opened.config, int_bits)
             asked = question(opened, texts, file, d, found=found_properties)
+            if durations and opened.config is None:
+                raise typer.BadParameter(
+                    f"only a cell has durations, and there is no cell.toml beside `{net}`",
+                    param_hint="--durations",
+                )
     except TimeIsOverError:
         _stop_unread(net, d, as_json, form)
     if d.has_errors:
@@ -337,6 +353,8 @@ def verify(
             stop(d, form)
         _draw(pictures, opened, looked.found, deadline, d, wanted=bool(draw_to or plot_to))
         said = conclude(looked, opened, asked, limits, folder, d, checks)
+        if durations:
+            said = _timed(said, opened, limits, asked, folder, d, form)
         if report_to is not None:
             subject = None
             if report_to.suffix.lower() in _PAGES:
@@ -359,6 +377,25 @@ def verify(
         raise typer.Exit(Exit.MODEL if said.verdict == "no" else code_of(d))
     if said.verdict != "yes":
         raise typer.Exit(_CODES[said.verdict])
+
+
+def _timed(
+    said: Said,
+    opened: OpenNet,
+    limits: Limits,
+    asked: Asked,
+    folder: Path,
+    d: Diagnostics,
+    form: Format,
+) -> Said:
+    """The same, with answers in seconds."""
+    from pn2code.timing.verified import with_durations
+
+    with playing(form):
+        timed = with_durations(said, opened, limits, asked.properties, folder, d)
+    if timed is None:
+        stop(d, form)
+    return timed
 
 
 def _stop_unread(net: Path, d: Diagnostics, as_json: bool, form: Format) -> NoReturn:

@@ -105,7 +105,8 @@ def full(said: Said) -> str:
             parts.append(f"{path}\n  then {error_text(net, found)}")
     if said.channel_model:
         parts.append(channel_model.told(said.channel_model))
-    return "\n\n\n".join([*parts, closing(said)])
+    timed = "\n".join(_durations(said)).strip("\n")
+    return "\n\n\n".join([*parts, *([timed] if timed else ()), closing(said)])
 
 
 def _told(said: Said, trace: Trace, goal: str) -> str:
@@ -201,6 +202,7 @@ def screen(said: Said) -> str:
     wrong = sorted((i for i in items if i.kind != "good"), key=lambda i: i.kind != "bad")
     if items:
         lines += ["", *_counts(said), *_premises(said)]
+    lines += _durations(said)
     end = ["", *textwrap.wrap(_MORE, _WIDTH), *textwrap.wrap(closing(said), _WIDTH)]
     if wrong:
         has_run = any(i.file is not None or i.lines for i in wrong) or said.found.error_trace
@@ -212,6 +214,12 @@ def screen(said: Said) -> str:
     if path:
         lines += ["", *path]
     return "\n".join([*lines, *end])
+
+
+def _durations(said: Said) -> Iterator[str]:
+    for i, line in enumerate(said.durations.lines if said.durations is not None else ()):
+        yield from ([""] if i == 0 else [])
+        yield from _row("Durations" if i == 0 else "", line)
 
 
 _MORE = "`--full` prints the whole report, `--report FILE` writes it (.html or .txt)."

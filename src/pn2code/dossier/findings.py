@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from pn2code.base.frozen import frozen
+from pn2code.dossier.geometry import Table, answered, tables
 from pn2code.dossier.steps import Done
 
 Json = Mapping[str, Any]
@@ -45,6 +46,7 @@ class Chapter:
         says: a sentence.
         findings: one by one.
         messages: what it complained of.
+        tables: what else is worth reading one by one.
     """
 
     done: Done
@@ -52,6 +54,7 @@ class Chapter:
     says: str
     findings: tuple[Finding, ...] = ()
     messages: str = ""
+    tables: tuple[Table, ...] = ()
 
 
 def worst(answers: Sequence[str]) -> str:
@@ -69,7 +72,7 @@ def read(done: Done, folder: Path) -> Chapter:
     if done.code is None:
         return Chapter(done, OPEN, f"It was left out: {done.why}.")
     by_code = {0: YES, 1: NO}.get(done.code, OPEN)
-    reader = _READERS.get(done.step.verb)
+    reader = _geometry if done.step.is_geometry else _READERS.get(done.step.verb)
     said = _json(folder, done) if reader is not None else None
     if reader is None or said is None:
         says = (
@@ -78,7 +81,10 @@ def read(done: Done, folder: Path) -> Chapter:
         return Chapter(done, by_code, says, messages=done.complaint[:_MOST])
     says, findings = reader(said)
     answer = worst([by_code, *(f.answer for f in findings)])
-    return Chapter(done, answer, says, tuple(findings), done.complaint[:_MOST])
+    shown = (
+        tuple(t for row in said["layouts"] for t in tables(row)) if done.step.is_geometry else ()
+    )
+    return Chapter(done, answer, says, tuple(findings), done.complaint[:_MOST], shown)
 
 
 def _json(folder: Path, done: Done) -> Json | None:
@@ -103,6 +109,35 @@ def _checked(said: Json) -> tuple[str, list[Finding]]:
         for d in said["diagnostics"]
     ]
     return f"{counts[0].upper()}{counts[1:]}; {len(rows)} remarks.", rows
+
+
+def _geometry(said: Json) -> tuple[str, list[Finding]]:
+    if not said["layouts"]:
+        return f"Nothing is known: {said['why']}.", [Finding("geometry", OPEN, said["why"] or "")]
+    found = []
+    for row in said["layouts"]:
+        where = f"layout {row['layout']}: " if row["layout"] else ""
+        part = f" ({row['open']})" if row["open"] else ""
+        near = row["nearest"]
+        nearest = (
+            f"; they keep apart by at least {1000 * near['at_least_m']:.0f} mm" if near else ""
+        )
+        found += [
+            Finding(
+                f"{where}moves",
+                answered(row["moves_answer"]),
+                "Each move can be done from wherever the arm can be then, without touching what stands or itself"
+                f": {len(row['moves'])} moves{part}",
+            ),
+            Finding(
+                f"{where}arms keep apart",
+                answered(row["pairs_answer"]),
+                "No two arms collide, nor an arm and a part, in any interleaving that the net permits: "
+                f"{row['pairs_compared']:,} pairs of moves, {row['distances_measured']:,} distances{nearest}{part}",
+            ),
+        ]
+    states = max(row["states"] for row in said["layouts"])
+    return f"All that can be under way in the {states:,} states of the cell was swept.", found
 
 
 def _verified(said: Json) -> tuple[str, list[Finding]]:

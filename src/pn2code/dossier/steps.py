@@ -16,6 +16,7 @@ from pn2code.base.frozen import frozen
 JSON = ".json"
 PROGRAMS = "generated"
 """The folder of the programs."""
+GEOMETRY = "--geometry"
 WAIT_S = 0.1
 
 
@@ -38,6 +39,11 @@ class Step:
     said: str
     results: tuple[str, ...] = ()
     needs: tuple[str, ...] = ()
+
+    @property
+    def is_geometry(self) -> bool:
+        """Whether it looks at moves and pairs of moves."""
+        return GEOMETRY in self.arguments
 
     @property
     def command(self) -> str:
@@ -70,6 +76,7 @@ def steps(
     layouts: Sequence[str],
     *,
     backend: str,
+    geometry: Sequence[str] = (),
     values: Sequence[str] = (),
     inputs: str | None = None,
     max_seconds: float | None = None,
@@ -80,6 +87,7 @@ def steps(
         cell: its path as seen from the folder of the report, where the commands work.
         layouts: each is run; "" is that of a cell without layouts.
         backend: of the runs.
+        geometry: layouts whose moves are looked at; "" is all of them at once; none: the cell has no arms.
         values: `NAME=VALUE` of `--set`.
         inputs: of `--input`, as seen from there.
         max_seconds: of `verify`.
@@ -112,6 +120,7 @@ def steps(
             ("verification.html", "traces"),
             needs,
         ),
+        *(_swept(begun, layout, needs) for layout in geometry),
         made,
         Step(
             "Programs and net",
@@ -122,6 +131,19 @@ def steps(
             (made.name,),
         ),
         *(_run(begun, layout, backend, made.name) for layout in layouts),
+    )
+
+
+def _swept(begun: Sequence[str], layout: str, needs: tuple[str, ...]) -> Step:
+    folder = f"geometry-{layout}" if layout else "geometry"
+    chosen = ("--layout", layout) if layout else ()
+    return Step(
+        f"Geometry, layout {layout}" if layout else "Geometry",
+        "check",
+        (*begun, GEOMETRY, *chosen, "--traces", folder, "--json"),
+        f"{folder}.json",
+        (),
+        needs,
     )
 
 

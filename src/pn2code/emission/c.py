@@ -234,6 +234,7 @@ class _Emitter(Transitions):
             "orders": list(self._orders.functions.values()),
             "is_counting": any(t.counts is not None for t in net.transitions),
             "is_all_counting": all(t.counts is not None for t in net.transitions),
+            "shares_successors": any(t.get("shares_successors") for t in transitions),
             "packed_words": (packed_bits(net.places) + 63) // 64,
             "packed_size": (packed_bits(net.places) + 31) // 32 * 4,
             "transitions": transitions,

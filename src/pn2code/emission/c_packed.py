@@ -103,13 +103,14 @@ class Numbers:
                 self._make(part)
         c_type = self._types.name(d.type)
         number, colour = self._bodies(d)
+        kind = "PN_SHARED" if len(d.fields) > 1 else "PN_INLINE"
         self.functions.append(
             [
-                f"PN_INLINE uint32_t {self._number(key)}(const {c_type} *v)",
+                f"{kind} uint32_t {self._number(key)}(const {c_type} *v)",
                 "{",
                 *(f"    {line}" for line in number),
                 "}",
-                f"PN_INLINE {c_type} {self._colour(key)}(uint32_t number)",
+                f"{kind} {c_type} {self._colour(key)}(uint32_t number)",
                 "{",
                 *(f"    {line}" for line in colour),
                 "}",

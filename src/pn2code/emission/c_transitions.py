@@ -15,6 +15,7 @@ from pn2code.emission.needs import SIDE
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
 from pn2code.ir.nodes import PlaceTable, Shared
+from pn2code.lowering.passes.counting import FEW
 
 
 class Transitions(Frame):
@@ -76,7 +77,8 @@ class Transitions(Frame):
             )
         further = [f".places = &{self._names.instance(t.path, own.struct)}"] if own else []
         if not counting:
-            further += [f".successors = {stem}_successors"] if self._net.has_successors else []
+            own_stem = "net" if self._shares_successors(t) else stem
+            further += [f".successors = {own_stem}_successors"] if self._net.has_successors else []
             further += [f".words = {stem}_words"] if self._has_words else []
         if len(t.effects.affected) < len(self._net.transitions):
             further += c_rows.indices("affected", t.effects.affected)
@@ -90,6 +92,16 @@ class Transitions(Frame):
                 t, stem, further, is_others=self._is_others(t), functions=counting
             ),
         }
+
+    def _shares_successors(self, t: ir.Transition) -> bool:
+        """Whether the function that makes its successors is one for many transitions of a large net.
+
+        A copy for each of them, which needs to be compiled, is only a little faster.
+        """
+        draws = t.effects.search_draws and t.effects.fire_draws
+        is_packed = all(self._net.places[i].packed for i in t.effects.touched)
+        is_large = self._net.has_successors and len(self._net.transitions) > FEW
+        return is_large and is_packed and not draws and t.counts is None
 
     def _is_others(self, t: ir.Transition) -> bool:
         """Whether it is played by another program than the supervisor of the cell."""
@@ -198,6 +210,7 @@ class Transitions(Frame):
             "touched_multisets": [
                 self._place_names[i] for i in t.effects.touched if not self._net.places[i].packed
             ],
+            "shares_successors": self._shares_successors(t),
             "looks": t.effects.looks,
             "looks_outside": t.effects.looks_outside,
             "assigns": t.effects.assigns,

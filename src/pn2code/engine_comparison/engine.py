@@ -27,6 +27,7 @@ expressions 1,361 agreed with the evaluator (of the others three need more memor
 | a timed net in which nothing can occur any more | its clock may advance to a time that it has noted for tokens that are gone | keeps the time of the last step |
 | state spaces of timed nets, 4.0.0 | restores time stamps relative to the time of the node (those of 3.0.3 are right) | restores them correctly |
 | top-level names that its state-space sources use | the state space tool cannot be entered | a warning (`state-space-name`) |
+| an operator `cmp`, `time`, `not` or `ref` that is infix at top level | accepts the net, and cannot compile the code that it generated | a warning (`engine-infix`) |
 | a socket that is the only place instance of a fusion set | the state space tool cannot be entered (`ExnDuringExecution`) | a warning (`state-space-fusion`) |
 | a generator `Random.rand (a, b)` | gives the same numbers in each run: they depend on `a` and `b` alone | draws from the random numbers of the run, which `--seed` chooses |
 | identifiers of the file with other characters than letters, digits, `_` and `'`; those of places that begin with `P` | accepts the net, and cannot compile it, or not enter the state space tool | a warning (`engine-id`) |

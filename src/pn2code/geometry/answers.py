@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Literal
 
 from pn2code.base.frozen import frozen
@@ -70,6 +71,7 @@ class Move:
             "limit_deg": _rounded(self.limit, 4),
             "axis": self.axis or None,
             "condition": _rounded(self.condition, 3),
+            "singular": self.condition is not None and math.isinf(self.condition),
             "clearance_m": _rounded(self.scene, 5),
             "own_clearance_m": _rounded(self.itself, 5),
             "nearest": [self.apart.a, self.apart.b] if self.apart else None,

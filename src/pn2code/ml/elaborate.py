@@ -167,6 +167,11 @@ class Elaborator:
         self._hide({*spec.ids, *(label for label, _ in spec.fields)}, spec.origin)
         return colset
 
+    @property
+    def infix(self) -> frozenset[str]:
+        """The operators that are infix now, besides those of the language."""
+        return frozenset(self._fixities) - frozenset(INFIX)
+
     def announce(self, names: Callable[[], frozenset[str]]) -> None:
         """Gives the names that the net declares anywhere: hints tell of declarations in the wrong order."""
         self._ctx.announced = names
@@ -298,9 +303,7 @@ class Elaborator:
                 self._break(names, types_declared_by(dec))
                 break_modules(dec, self._ctx.top)
 
-    def _declaration(
-        self, text: SourceText, dec: s.Dec, examine: Examine = _nothing
-    ) -> None:
+    def _declaration(self, text: SourceText, dec: s.Dec, examine: Examine = _nothing) -> None:
         self._repeats.clear()
         resolved = resolve_declaration(dec, self._fixities, self._d)
         if resolved is None:

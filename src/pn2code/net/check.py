@@ -19,7 +19,7 @@ from pn2code.ml.core.terms import Exp, Lit
 from pn2code.ml.core.types import INT, Type, list_of, timed_of
 from pn2code.ml.elaborate import ColsetSpec, Elaborator, is_layered
 from pn2code.ml.parsing.parser import declared_names, odd_declaration
-from pn2code.net import engine_guards, initial_effects, reserved_words, space_names
+from pn2code.net import engine_guards, infix_names, initial_effects, reserved_words, space_names
 from pn2code.net.binding import Parts, Planner
 from pn2code.net.codes import (
     ARC_AS,
@@ -170,6 +170,8 @@ class _Checker:
                     declare=declaration.declare,
                     origin=declaration.origin,
                 )
+                if not self.is_pnml:
+                    infix_names.refuse(spec.kind, spec.name, e.infix, spec.origin, self.d)
                 if e.colset(spec) is None:
                     self.broken.add(declaration.name)
                 else:
@@ -179,7 +181,9 @@ class _Checker:
             case RawMl() if self.is_pnml:
                 e.declarations(declaration.text)
             case RawMl():
+                before = e.infix
                 e.declarations(declaration.text, reserved_words.refuse)
+                infix_names.warn(e.infix - before, declaration.origin, self.d)
                 if reserved_words.says_nothing(declaration.text):
                     self.d.warning(
                         DECLARATION_EMPTY,

@@ -251,6 +251,13 @@ ENGINE_ID = register(
     "state-space tool); nor can it enter this tool where the identifier of a place begins with `P`. Its editor writes "
     "`ID` and a number. pn2code takes any identifier.",
 )
+ENGINE_INFIX = register(
+    "engine-infix",
+    "an infix operator has the name of a function that CPN Tools uses itself",
+    "CPN Tools makes functions for each colour set (`lt`, `cmp`, `ord`, `legal`, ...), and code for each transition. "
+    "After `infix lt` at top level it refuses the enumerations, indexes, products, records and unions that follow; "
+    "with `infix cmp`, `time`, `not` or `ref` it accepts the net and cannot compile its transitions.",
+)
 RESERVED_WORD = register(
     "reserved-word",
     "a reserved word of CPN Tools is declared",

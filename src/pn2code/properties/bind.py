@@ -54,10 +54,16 @@ class Written:
 
 
 class Binder:
-    """Collects the properties of a net, and the conditions that they share."""
+    """Collects the properties of a net, and the conditions that they share.
 
-    def __init__(self, net: FlatNet, elaborator: Elaborator, d: Diagnostics) -> None:
+    `is_cell`: it is the net of a cell, whose commands take time also where the net has none.
+    """
+
+    def __init__(
+        self, net: FlatNet, elaborator: Elaborator, d: Diagnostics, *, is_cell: bool = False
+    ) -> None:
         self._net = net
+        self._is_cell = is_cell
         self._d = d
         self.names = Names(net, d)
         self._marks = Marks(net, elaborator, self.names)
@@ -189,7 +195,7 @@ class Binder:
                 hint="leave out `fair`, or `within ..`",
             )
             return None
-        if p.time is not None and not self._net.timed:
+        if p.time is not None and not self._net.timed and (written.of_net or not self._is_cell):
             self._d.error(
                 codes.FORM,
                 "the net has no time",
@@ -197,7 +203,8 @@ class Binder:
                 hint="`within 3 firings` counts steps",
             )
             return None
-        if p.time is not None and not self._net.real_time and "." in p.time:
+        is_whole = self._net.timed and not self._net.real_time
+        if p.time is not None and is_whole and "." in p.time:
             self._d.error(
                 codes.FORM,
                 f"the clock of the net counts integers, not `{p.time}`",
@@ -205,7 +212,8 @@ class Binder:
                 hint="write a whole number of units",
             )
             return None
-        return "response", m.Response(first, second, p.firings, p.time)
+        of_commands = p.time is not None and not self._net.timed
+        return "response", m.Response(first, second, p.firings, p.time, of_commands)
 
     def _fair(self, fair: Sequence[t.Fair], written: Written) -> tuple[m.Fairness, ...] | None:
         more = [parse_fair(text, self._d) for text in written.fair]

@@ -9,8 +9,8 @@ from typing import Final
 
 KEYWORDS: Final = (
     "deadlock", "free", "except", "bound", "always", "never", "reachable", "mutex", "every", "is", "followed", "by",
-    "within", "firings", "time", "ctl", "ltl", "assuming", "strong", "weak", "all", "true", "false", "dead", "initial",
-    "enabled", "fires", "tokens", "and", "or", "not",
+    "within", "firings", "time", "seconds", "ctl", "ltl", "assuming", "strong", "weak", "all", "true", "false", "dead",
+    "initial", "enabled", "fires", "tokens", "and", "or", "not",
     "A", "E", "AX", "EX", "AF", "EF", "AG", "EG", "X", "F", "G", "U", "R", "W",
 )  # fmt: skip
 
@@ -31,7 +31,7 @@ mutex: "mutex" item ("," item)+
 ?item: name | formula
 response: "every" formula "is" "followed" "by" formula (within | assuming)?
 within: "within" INT "firings" -> within_firings
-      | "within" (INT | REAL) "time" -> within_time
+      | "within" (INT | REAL) ("time" | "seconds") -> within_time
 ctl: "ctl" formula
 ltl: "ltl" formula assuming?
 assuming: "assuming" fair ("," fair)*

@@ -158,12 +158,16 @@ class Response:
 
     The events are `Atom("fires", t)`, the step that is taken, or one of several such; or conditions on nodes: that
     such a node is entered.
+
+    Args:
+        of_commands: the net has no time, so that only the commands of its cell take some (`verify --durations`).
     """
 
     first: Formula
     second: Formula
     firings: int | None
     time: str | None
+    of_commands: bool = False
 
 
 Asked = Invariant | Bound | Branching | Linear | Response

@@ -18,6 +18,10 @@ from pn2code.properties.ltl import Automaton, automaton
 _UNARY = {"EX": "ex", "AX": "ax", "EF": "ef", "AF": "af", "EG": "eg", "AG": "ag"}
 
 
+MANY = 1_000_000_000
+"""Firings: as good as no limit."""
+
+
 @record
 class Questions:
     """The lines in the making; equal items are one."""
@@ -49,6 +53,12 @@ class Questions:
                 found = automaton(formula, negated=True)
                 self.asked.append("? lasso")
                 self.asked += self._automaton(found, fair)
+            case m.Response(
+                first, second, _, _, True
+            ):  # of a net without time nothing can be asked
+                self.asked.append(
+                    f"? within-firings {self._event(first)} {self._event(second)} {MANY}"
+                )
             case m.Response(first, second, firings, time):
                 limit = f"firings {firings}" if firings is not None else f"time {time}"
                 word, value = limit.split(" ")

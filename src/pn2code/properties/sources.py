@@ -159,10 +159,15 @@ def _located(value: str, texts: Sequence[SourceText], number: int, at: Origin) -
 
 
 def bind(
-    written: Sequence[Written], net: FlatNet, elaborator: Elaborator, d: Diagnostics
+    written: Sequence[Written],
+    net: FlatNet,
+    elaborator: Elaborator,
+    d: Diagnostics,
+    *,
+    is_cell: bool = False,
 ) -> Properties:
     """What the properties mean of a net; those that are wrong are reported and left out."""
-    binder = Binder(net, elaborator, d)
+    binder = Binder(net, elaborator, d, is_cell=is_cell)
     known: dict[str, Origin] = {}
     for one in written:
         if one.name in known:

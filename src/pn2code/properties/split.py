@@ -157,8 +157,8 @@ class _Translator:
         match p.asked:
             case m.Linear(formula, fair):
                 return self._linear(self.formula(formula), fair)
-            case m.Response(first, second, firings, time):
-                return m.Response(self.formula(first), self.formula(second), firings, time)
+            case m.Response(first, second) as response:
+                return replace(response, first=self.formula(first), second=self.formula(second))
             case other:
                 return other
 

@@ -33,6 +33,8 @@ FaultKind = Literal[
 
 # Conditioning (1 m) above this: an axis that is too fast is so because of a singularity.
 SINGULAR_CONDITION = 50.0
+LONGEST = 3600.0
+"""s: a move that takes longer is no move."""
 # Steps in which a linear move is checked when it is planned, s and m, whichever are more.
 _CHECK_TIME = 0.01
 _CHECK_LENGTH = 0.002
@@ -145,7 +147,7 @@ class Law:
 
     def __init__(self, velocity: float, acceleration: float, jerk: float) -> None:
         # Whoever only looks where arms stand needs no time laws.
-        from ruckig import InputParameter, Result, Ruckig, Trajectory
+        from ruckig import InputParameter, Result, Ruckig, RuckigError, Trajectory
 
         request = InputParameter(1)
         request.current_position = [0.0]
@@ -154,7 +156,18 @@ class Law:
         request.max_acceleration = [acceleration]
         request.max_jerk = [jerk]
         self._law = Trajectory(1)
-        result = Ruckig(1).calculate(request, self._law)
+        try:
+            result = Ruckig(1).calculate(request, self._law)
+        except RuckigError:
+            raise MotionFault(
+                "bad-command",
+                "no time law was found: a speed, acceleration or jerk is far too small or too large",
+            ) from None
+        if self._law.duration > LONGEST:
+            raise MotionFault(
+                "bad-command",
+                f"the move would take longer than {LONGEST / 3600.0:g} h: its speed, acceleration or jerk is too small",
+            )
         # `Working` is what an offline calculation answers when all is well.
         if result not in (Result.Working, Result.Finished):
             raise MotionFault("bad-command", f"no time law was found ({result.name})")

@@ -166,6 +166,16 @@ class Parts:
         del self.present[there.name]
         return PartChange("removes", there.name, pose_of(there.frame))
 
+    def is_seen(self, place: str, kind: str = "") -> bool:
+        """Whether a part (of a kind; "": of any) stands at a place, as it would be found there to be removed."""
+        spot = matrix_of(self.cell.places[place])
+        return any(
+            not p.holder
+            and kind in ("", p.kind.name)
+            and difference(p.frame, spot)[0] <= p.kind.tolerance
+            for p in self.present.values()
+        )
+
     def _at(self, place: str, kind: PartKind) -> Part | None:
         """The part that stands at a place: those of the kind first."""
         spot = matrix_of(self.cell.places[place])

@@ -87,7 +87,7 @@ class Data:
                     "which robot scripts do not have",
                     places[p].origins[0],
                     notes=[f"{self.machine.owner.phrase} uses the place"],
-                    hint="use units, booleans, integers, reals, strings, enumerations, "
+                    hint="use units, booleans, integers, times, reals, strings, enumerations, "
                     "and records and products of these",
                 )
                 return False

@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import field
 from pathlib import Path
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.codes import CELL_VALUE
@@ -25,15 +25,18 @@ from pn2code.input_files import folder_of
 from pn2code.run.cell import (
     Prepared,
     RunOptions,
+    RunResult,
     prepare,
     run_once,
     sensors_of,
     summary_of,
     write_results,
 )
+from pn2code.run.engine import Observer
 from pn2code.run.record import RunRecord
 from pn2code.run.stops import Rate, Stops
 
+Watcher = TypeVar("Watcher", bound=Observer)
 FINISHED = "finished"
 DEFAULT_SEED = 1
 
@@ -50,6 +53,19 @@ class Plan:
     cycles: int
     warm_up: int = 0
     stops: Mapping[str, Rate] = field(default_factory=dict)
+
+
+@frozen(eq=False)
+class Keeping(Generic[Watcher]):
+    """What is done with the cycles that are kept, beside their results.
+
+    Args:
+        watcher: makes an observer for each run.
+        keep: is told of each result that is kept, with its observer and its folder.
+    """
+
+    watcher: Callable[[], Watcher]
+    keep: Callable[[RunResult, Watcher, Path], None]
 
 
 @frozen
@@ -192,6 +208,7 @@ def run_cycles(
     plan: Plan,
     d: Diagnostics,
     say: Callable[[str], None] = lambda _text: None,
+    keeping: Keeping[Watcher] | None = None,
 ) -> Cycles | None:
     """Runs the cell so often; None when it could not start.
 
@@ -213,18 +230,25 @@ def run_cycles(
             return None
         for number in range(1, plan.warm_up + plan.cycles + 1):
             say(f"cycle {number:,} of {plan.warm_up + plan.cycles:,}")
-            record = run_once(prepared, options, inputs, sensors, d, [], stops)
+            watcher = None if keeping is None else keeping.watcher()
+            seen: list[Observer] = [] if watcher is None else [watcher]
+            record = run_once(prepared, options, inputs, sensors, d, seen, stops)
             if record is None:
                 return None
             summary = summary_of(record, prepared)
             made = _cycle(number, number > plan.warm_up, record, summary)
             cycles.append(made)
+            folder: Path | None = None
             if made.is_counted and made.verdict == FINISHED and made.seconds > slowest:
                 slowest = made.seconds
-                _keep(record, summary, prepared, options.out / "slowest")
+                folder = options.out / "slowest"
             if made.is_counted and made.verdict != FINISHED and not has_failed:
                 has_failed = True
-                _keep(record, summary, prepared, options.out / "failed")
+                folder = options.out / "failed"
+            if folder is not None:
+                _keep(record, summary, prepared, folder)
+                if keeping is not None and watcher is not None:
+                    keeping.keep(RunResult(record, summary, prepared), watcher, folder)
     return Cycles(prepared.generated.partition.net.name, prepared.config.layout, tuple(cycles))
 
 
@@ -260,7 +284,7 @@ def _clear(out: Path, prepared: Prepared) -> None:
     """What was kept of earlier runs does not stay."""
     name = f"{prepared.generated.partition.net.name}.trace.jsonl"
     for folder in (out / "slowest", out / "failed"):
-        for file in (name, "rows.tsv", "messages.tsv", "summary.json"):
+        for file in (name, "rows.tsv", "messages.tsv", "summary.json", "run.json", "replay.html"):
             (folder / file).unlink(missing_ok=True)
         with suppress(OSError):
             folder.rmdir()

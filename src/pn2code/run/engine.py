@@ -78,6 +78,7 @@ from pn2code.tdl.requests import (
     MessageConsumed,
     MessageWritten,
     Request,
+    Scalar,
     Sense,
 )
 from pn2code.trace.growing import GrowingTrace
@@ -398,7 +399,13 @@ class Engine:
 
     def _sense(self, robot: RobotRunner, request: Sense) -> Said | None:
         """What a sensor says; None: that is not known yet."""
-        return Said(self.sensors.ask(robot.name, request.sensor))
+        return Said(self._sensor_says(robot, request))
+
+    def _sensor_says(self, robot: RobotRunner, request: Sense) -> Scalar | None:
+        looks = self.sensors.seen.get(request.sensor)
+        if looks is not None:
+            return self.parts.parts.is_seen(*looks)
+        return self.sensors.ask(robot.name, request.sensor)
 
     def _told(self, robot: RobotRunner, request: Sense, said: Said) -> Request:
         """A sensor has said something: what the script wants next."""

@@ -143,7 +143,7 @@ class RealtimeEngine(Engine):
         return True
 
     def _sense(self, robot: RobotRunner, request: Sense) -> Said | None:
-        own = self.sensors.ask(robot.name, request.sensor)
+        own = self._sensor_says(robot, request)
         if self.hand is None:
             return Said(own)
         return self.hand.asked(

@@ -1,5 +1,7 @@
 """What sensors say in a run: the values of a file, over and over, a default, or drawn at random from a seed.
 
+Those that see the scene are told what is there by whoever knows it (`sees`).
+
     sensors = load(config, partition.net, folders, seed, d)
     sensors.ask("robot1", "grip")       # -> "held"
 
@@ -51,9 +53,14 @@ class _Sensor:
 
 @record
 class Sensors:
-    """All sensors of a cell."""
+    """All sensors of a cell.
+
+    Args:
+        seen: the place, and the kind of parts ("": any), at which a sensor looks.
+    """
 
     _sensors: dict[str, _Sensor] = field(default_factory=dict)
+    seen: dict[str, tuple[str, str]] = field(default_factory=dict)
 
     def ask(self, who: str, sensor: str) -> Value | None:
         """What a sensor says to a robot or device; None: there is no such sensor."""
@@ -73,16 +80,28 @@ def load(
     before = len(d.errors)
     colsets = {v.name: v.colset for t in net.transitions for v in t.variables}
     out: dict[str, _Sensor] = {}
+    seen: dict[str, tuple[str, str]] = {}
     for sensor in config.sensors:
         colset = colsets.get(sensor.variable)
         scalars = scalars_of(colset) if colset is not None else None
         if colset is None or scalars is None or len(scalars) != 1:
             continue  # no program asks it: said when the programs were made
+        if sensor.sees and scalars[0].kind is not ScalarKind.BOOL:
+            d.error(
+                CELL_VALUE,
+                f"sensor `{sensor.name}` sees whether a part is at `{sensor.sees}`, but its variable is of colour set "
+                f"`{scalars[0].colset}`",
+                sensor.origin,
+                hint="let the variable be a truth value (a colour set `bool`)",
+            )
+            continue
+        if sensor.sees:
+            seen[sensor.name] = (sensor.sees, sensor.part)
         script = _script(sensor, scalars, tuple(folders), d)
         is_drawn = not sensor.file and sensor.default is None
         choices = _choices(sensor, scalars[0], d) if is_drawn else ()
         out[sensor.name] = _Sensor(sensor.seed if seed is None else seed, script, choices)
-    return Sensors(out) if len(d.errors) == before else None
+    return Sensors(out, seen) if len(d.errors) == before else None
 
 
 def _script(

@@ -108,13 +108,14 @@ class Anyhow:
             self.successors.append([])
         return self._numbers[key]
 
-    def _ends(self) -> frozenset[int]:
+    def ends(self) -> frozenset[int]:
+        """The states in which the supervisor has come to a final place."""
         over = self.graph.over
         return frozenset(i for i, (state, _) in enumerate(self.nodes) if state in over)
 
     def least(self) -> int | None:
         """The least that a cycle can take; None: there is no way to an end."""
-        ends = self._ends()
+        ends = self.ends()
         elements = self.graph.elements
         totals: list[int] = []
         for owner in range(1, len(self.graph.partition.owners)):
@@ -130,7 +131,7 @@ class Anyhow:
 
     def most(self) -> tuple[Way | None, list[int]]:
         """The way on which most is done, and, where there is none, the elements of a repetition that takes time."""
-        ways = Ways(self.successors, self._ends())
+        ways = Ways(self.successors, self.ends())
         return ways.longest(), [self._arc(a, b) for a, b in _pairs(ways.cycle)]
 
     def _arc(self, node: int, target: int) -> int:

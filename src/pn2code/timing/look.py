@@ -61,6 +61,14 @@ class Times:
         }
 
 
+@frozen(eq=False)
+class Measured:
+    """All that was gone through in one layout: with planned times, and in whatever order things end."""
+
+    search: Search
+    anyhow: Anyhow
+
+
 def look(
     opened: OpenNet,
     layout: str | None,
@@ -68,6 +76,7 @@ def look(
     folder: Path | None,
     d: Diagnostics,
     stage: Callable[[str], None] = lambda _text: None,
+    measured: Callable[[Measured], None] = lambda _layout: None,
 ) -> Times | None:
     """Measures everything; None after an error that was reported.
 
@@ -78,6 +87,7 @@ def look(
         folder: where a fastest and a slowest run are written; None: nowhere.
         d: gets the errors.
         stage: hears in words what is done.
+        measured: hears of each layout what was gone through.
     """
     config = opened.config
     if config is None:
@@ -105,7 +115,9 @@ def look(
     made = []
     for name, cell in cells:
         stage("measuring commands and cycles ...")
-        made.append(_Look(graph, cell, config, name, folder, opened).layout())
+        one = _Look(graph, cell, config, name, folder, opened)
+        made.append(one.layout())
+        measured(Measured(one.search, one.anyhow))
     return Times(tuple(made), timeout)
 
 

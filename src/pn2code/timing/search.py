@@ -128,9 +128,10 @@ class Search:
         ending = self.endings.setdefault(", ".join(places[p].name for p in finals), Ending())
         ending.nodes.append(node)
         if ending.best is None:
-            ending.best = Way(now, tuple(self._way(node)))
+            ending.best = Way(now, tuple(self.way(node)))
 
-    def _way(self, node: int) -> list[tuple[int, int]]:
+    def way(self, node: int) -> list[tuple[int, int]]:
+        """The first way to a situation: node and mark of each arc."""
         out = []
         while node > 0:
             parent, mark = self._from[node]

@@ -60,7 +60,8 @@ def gather(
     typed = opened.examined.typed
     if not written or typed is None or typed.elaborator is None:
         return Asked()
-    properties = sources.bind(written, opened.flat, typed.elaborator, d)
+    is_cell = opened.config is not None
+    properties = sources.bind(written, opened.flat, typed.elaborator, d, is_cell=is_cell)
     _check_effects(opened, properties, d)
     try:
         splits = tuple(Split.of(opened.flat, properties, x) for x in groups(properties))

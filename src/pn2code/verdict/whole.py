@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from pn2code.base.deadline import NEVER, Deadline, TimeIsOverError
 from pn2code.base.frozen import frozen
@@ -59,6 +59,17 @@ class Checks:
     channel_model: bool = True
 
 
+class Durations(Protocol):
+    """How long commands and cycles take, as it is printed."""
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """For the screen."""
+
+    def row(self) -> dict[str, Any]:
+        """For programs."""
+
+
 @frozen
 class Looked:
     """What was explored; the runs that properties have led to have no names yet.
@@ -89,6 +100,7 @@ class Said:
         errors: how many errors of the net are said besides.
         deadline: when it is over no run is played any more.
         config: of the cell; None: the net is none.
+        durations: what was measured of the commands; None: it was not asked for.
     """
 
     net: FlatNet
@@ -100,6 +112,7 @@ class Said:
     errors: int = 0
     deadline: Deadline = NEVER
     config: CellConfig | None = None
+    durations: Durations | None = None
 
     @property
     def kinds(self) -> list[str]:
@@ -130,6 +143,8 @@ class Said:
             row["cell"] = self.control.row()
         if self.channel_model:
             row["medium"] = [a.row() for a in self.channel_model]
+        if self.durations is not None:
+            row["durations"] = self.durations.row()
         return row
 
 

@@ -53,9 +53,9 @@ def test_a_deadline() -> None:
     assert (deadline.left, deadline.is_over(), deadline.is_long_over()) == (10.0, False, False)
     clock.now += 10.0
     assert (deadline.left, deadline.is_over(), deadline.is_long_over()) == (0.0, True, False)
-    clock.now += 1.0
+    clock.now += 0.3
     assert not deadline.is_long_over()
-    clock.now += 0.5
+    clock.now += 0.1
     assert deadline.is_long_over()
     assert (NEVER.left, NEVER.is_over(), NEVER.is_long_over()) == (None, False, False)
     assert Deadline.after(None, clock).left is None

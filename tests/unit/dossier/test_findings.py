@@ -90,3 +90,57 @@ def test_a_run_with_figures_and_warnings(tmp_path: Path) -> None:
 
 def test_worst() -> None:
     assert [worst(x) for x in ([], [YES], [YES, OPEN], [OPEN, NO, YES])] == [OPEN, YES, OPEN, NO]
+
+
+MOVE = {
+    "robot": "r", "transition": "Cell.R.Go", "command": "joint", "answer": "yes", "problem": "", "limit_deg": 40.0,
+    "axis": 3, "condition": 5.0, "singular": False, "clearance_m": 0.09, "own_clearance_m": None,
+    "nearest": ["r/tool", "table"],
+}  # fmt: skip
+PAIR = {
+    "robots": ["r", "s"], "doing": ["r: <joint>", "s: linear"], "answer": "no", "says": "", "links": ["r/a", "s/b"],
+    "distance_m": -0.0021, "run": {"trace": "geometry/touch.trace.jsonl"},
+}  # fmt: skip
+LAYOUT = {
+    "layout": "good", "moves_answer": "yes", "pairs_answer": "yes", "open": None, "states": 1234, "pairs_compared": 20,
+    "distances_measured": 5000, "nearest": {"links": None, "distance_m": None, "at_least_m": 0.021},
+    "moves": [MOVE], "pairs": [],
+}  # fmt: skip
+
+
+def geometry(tmp_path: Path, code: int, *layouts: dict[str, Any], why: str | None = None) -> Any:
+    (tmp_path / "x.json").write_text(json.dumps({"layouts": layouts, "why": why}))
+    return read(Done(Step("x", "check", ("--geometry",), "x.json"), code), tmp_path)
+
+
+def test_moves_with_their_margins_the_worst_first(tmp_path: Path) -> None:
+    near = {**MOVE, "transition": "Cell.R.Near", "clearance_m": 0.004}
+    through = {**MOVE, "transition": "Cell.R.Through", "condition": None, "singular": True}
+    cannot = {**MOVE, "transition": "Cell.R.Far", "answer": "no", "problem": "is out of reach"}
+    layout = {**LAYOUT, "moves_answer": "no", "moves": [MOVE, near, cannot, through]}
+    c = geometry(tmp_path, 1, layout)
+    assert (c.answer, [f.answer for f in c.findings]) == (NO, [NO, YES])
+    assert "1,234 states" in c.says and "at least 21 mm" in c.findings[1].says
+    (table,) = c.tables
+    assert [row[1] for row in table.rows] == [
+        "Cell.R.Far",
+        "Cell.R.Through",
+        "Cell.R.Near",
+        "Cell.R.Go",
+    ]
+    assert table.rows[0][3] == "no: is out of reach" and table.rows[1][5] == "singular"
+    assert list(table.rows[2][4:]) == ["40.0 deg (A3)", "5.0", "4.0 mm", "-", "r/tool and table"]
+
+
+def test_pairs_that_do_not_keep_apart(tmp_path: Path) -> None:
+    unsure = {**PAIR, "answer": "unknown", "links": None, "says": "too close to tell", "run": None}
+    c = geometry(tmp_path, 1, {**LAYOUT, "pairs_answer": "no", "pairs": [PAIR, unsure]})
+    assert c.answer == NO
+    rows = [list(row) for row in c.tables[1].rows]
+    assert rows[0][2:] == ["no", "-2.1 mm", "r/a and s/b", "geometry/touch.trace.jsonl"]
+    assert rows[1][2:] == ["not known", "-2.1 mm", "too close to tell", "-"]
+
+
+def test_a_geometry_that_is_not_known(tmp_path: Path) -> None:
+    assert geometry(tmp_path, 3, why="too many states").answer == OPEN
+    assert geometry(tmp_path, 3, {**LAYOUT, "pairs_answer": "unknown"}).answer == OPEN

@@ -16,7 +16,7 @@ from pn2code.robot.commands import (
     Wait,
 )
 from pn2code.robot.executor import RobotExecutor
-from pn2code.robot.motion import Line, MotionFault, Still, plan_lin, plan_ptp
+from pn2code.robot.motion import Law, Line, MotionFault, Still, plan_lin, plan_ptp
 from pn2code.robot.transforms import difference, matrix_of
 
 NANOMETRE = 1e-9  # m: 1e-6 mm, what is promised for poses and lines
@@ -300,3 +300,25 @@ def test_the_branch_can_be_prescribed():
     e.begin(MoveJoint(pose_mm(5750, 5802.2, 2160.9, -105)), 0.0)
     e.finish()
     assert str(arm_kinematics().branch_of(e.q)) == "front/up/minus"
+
+
+@pytest.mark.parametrize(
+    ("pace", "says"),
+    [
+        ((1e-9, 1.0, 1.0), "longer than 1 h"),
+        ((1.0, 1e-9, 1.0), "longer than 1 h"),
+        ((1.0, 1.0, 1e-12), "longer than 1 h"),
+        ((1e-300, 1.0, 1.0), "far too small or too large"),
+        ((1e300, 1e300, 1e300), "far too small or too large"),
+    ],
+)
+def test_a_move_that_never_ends_is_no_move(pace, says):
+    """A line would be planned in samples of 10 ms."""
+    with pytest.raises(MotionFault, match=says) as caught:
+        Law(*pace)
+    assert caught.value.kind == "bad-command"
+
+
+def test_a_line_that_takes_years_is_refused_before_it_is_planned(executor):
+    with pytest.raises(MotionFault, match="longer than 1 h"):
+        executor.begin(MoveLinear(pose_mm(0.0, 0.0, -10.0), "tool", 1e-9), 0.0)

@@ -93,8 +93,16 @@ MISTAKES = [
         "robot-value",
         "`robots.robot1.base` must be a table",
     ),
-    (put("motion", "joint_speed", value=1.5), "robot-value", "a number above 0 to 1 is expected"),
-    (put("motion", "linear_speed", value=0), "robot-value", "a number above 0 is expected"),
+    (
+        put("motion", "joint_speed", value=1.5),
+        "robot-value",
+        "a number from 0.0001 to 1 is expected",
+    ),
+    (
+        put("motion", "linear_speed", value=0),
+        "robot-value",
+        "a number from 1e-05 to 100 is expected",
+    ),
     (put("motion", "linear_sped", value=1), "robot-key", "unknown key `linear_sped`"),
     (put("motion", "sample_s", value=True), "robot-value", "`motion.sample_s` is `True`"),
     (put("scene", "panel", "radius", value=-1.0), "robot-value", "`scene.panel.radius` is `-1.0`"),

@@ -29,11 +29,11 @@ def ring(colset: str, token: str, places: int) -> str:
     ("colset", "token", "places", "expected"),
     [
         ("UNIT", "1`()", programs.MANY, programs.HOST),
-        ("UNIT", "1`()", programs.MANY + 1, programs.PACKED),
+        ("UNIT", "1`()", programs.MANY + 1, programs.LARGE),
         ("WORDS", '1`["a"]', programs.MANY + 1, programs.LARGE),
     ],
 )
-def test_counters_are_always_optimized(
+def test_large_nets_are_optimized_for_the_compiler(
     colset: str, token: str, places: int, expected: programs.Host
 ) -> None:
     net = flat(ring(colset, token, places))

@@ -14,7 +14,7 @@ class Machine:
         self.used: float | None = 5.0
 
     def grace(self) -> Grace:
-        """Of a process with a limit of 10 s, hence a grace of 1.1 s."""
+        """Of a process with a limit of 10 s, hence a grace of 0.33 s."""
         return Grace(Deadline.after(10.0, lambda: self.now), lambda: self.used)
 
 
@@ -28,29 +28,37 @@ def test_a_process_that_computes_on_is_ended() -> None:
     grace = machine.grace()
     assert not at(machine, grace, 9.9, 9.0)
     assert not at(machine, grace, 10.0, 9.0)
-    assert not at(machine, grace, 11.0, 10.0)
-    assert at(machine, grace, 11.2, 10.2)
+    assert not at(machine, grace, 10.3, 9.3)
+    assert at(machine, grace, 10.4, 9.4)
 
 
 def test_a_process_that_waits_for_the_processor_has_more_time() -> None:
     machine = Machine()
     grace = machine.grace()
     assert not at(machine, grace, 10.0, 4.0)
-    assert not at(machine, grace, 12.0, 5.0)
-    assert at(machine, grace, 12.1, 5.2)
+    assert not at(machine, grace, 10.6, 4.2)
+    assert at(machine, grace, 10.65, 4.4)
 
 
 def test_a_process_that_does_nothing_is_ended_in_the_end() -> None:
     machine = Machine()
     grace = machine.grace()
     assert not at(machine, grace, 10.0, 4.0)
-    assert not at(machine, grace, 10.0 + MOST * 1.1 - 0.1, 4.0)
-    assert at(machine, grace, 10.0 + MOST * 1.1 + 0.1, 4.0)
+    assert not at(machine, grace, 10.0 + MOST * 0.33 - 0.05, 4.0)
+    assert at(machine, grace, 10.0 + MOST * 0.33 + 0.05, 4.0)
+
+
+def test_no_limit_is_overrun_by_a_fifth() -> None:
+    """Whatever the process does, and with time left for the report."""
+    for seconds in (1.0, 3.0, 60.0):
+        machine = Machine()
+        grace = Grace(Deadline.after(seconds, lambda machine=machine: machine.now), lambda: None)  # type: ignore[misc]
+        assert at(machine, grace, 1.13 * seconds, None)
 
 
 def test_where_the_processor_time_is_not_known_the_clock_decides() -> None:
     machine = Machine()
     grace = machine.grace()
-    assert not at(machine, grace, 11.0, None)
-    assert at(machine, grace, 11.2, None)
+    assert not at(machine, grace, 10.3, None)
+    assert at(machine, grace, 10.4, None)
     assert not Grace(NEVER, lambda: None).is_over()

@@ -7,10 +7,12 @@ found.chosen                # Tried(candidate, proof); None: none was found, or 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
+from pn2code.base.deadline import NEVER, CommandIsOverError, Deadline, TimeIsOverError
 from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
 from pn2code.diagnostics import Diagnostics
@@ -38,6 +40,8 @@ _UNLIKE = 100.0
 """Placings that are looked at as a whole differ by so many of the units in which they are written: 0.1 m, 10 deg."""
 _ROUNDS = 3
 """What an arm has to do may depend on where it stands: so often the search begins again with what it then has to do."""
+_SEARCHING = 0.6
+"""Of the time that is left: for the search, before the proof."""
 
 
 @frozen
@@ -95,6 +99,7 @@ class Placed:
         found: by the search; tried: as a whole, in this order.
         missed: what cannot be reached, if nothing was found.
         open: why the arms may have more to do; "": they have not.
+        unfinished: what there was no time for; "": nothing.
     """
 
     config: CellConfig
@@ -105,6 +110,7 @@ class Placed:
     tried: tuple[Tried, ...]
     missed: tuple[Missed, ...]
     open: str = ""
+    unfinished: str = ""
 
     @property
     def chosen(self) -> Tried | None:
@@ -124,6 +130,7 @@ def look(
 
     Raises:
         FreeError: `request.free` names nothing of the cell.
+        CommandIsOverError: the time of `limits` was over before anything was searched.
     """
     config = cell_of(opened, d)
     if config is None or not is_there(config, d):
@@ -134,13 +141,17 @@ def look(
         return None
     ((name, cell),) = cells
     free = parse(request.free, cell, request.around)
-    graph = told(opened, config, partition, limits, d, stage)
+    deadline = limits.deadline
+    with deadline.enforced(CommandIsOverError):
+        graph = told(opened, config, partition, replace(limits, deadline=NEVER), d, stage)
     if graph is None:
         return None
     options = Options(folder, "place", opened.initial, None, stage)
-    placing = _Placing(graph, cell, free, request, options)
+    placing = _Placing(graph, cell, free, request, options, deadline)
     found, tried, missed = placing.run()
-    return Placed(config, name, cell, free, found, tuple(tried), missed, placing.open)
+    return Placed(
+        config, name, cell, free, found, tuple(tried), missed, placing.open, placing.unfinished
+    )
 
 
 class _Placing:
@@ -153,15 +164,18 @@ class _Placing:
         free: tuple[Free, ...],
         request: Request,
         options: Options,
+        deadline: Deadline = NEVER,
     ) -> None:
         self.graph, self.cell, self.free = graph, cell, free
+        self.deadline, self.unfinished = deadline, ""
         self.request, self.options = request, options
         self.robots = tuple(dict.fromkeys(f.robot for f in free))
         self.open = ""
 
     def run(self) -> tuple[Found, list[Tried], tuple[Missed, ...]]:
         """The last round's answer."""
-        tasks, plans, _ = self._tasks(self.cell)
+        with self.deadline.enforced(CommandIsOverError):
+            tasks, plans, _ = self._tasks(self.cell)
         for round_ in range(_ROUNDS):
             judge = Judge(self.cell, tasks, plans, self.free)
             try:
@@ -170,10 +184,17 @@ class _Placing:
             finally:
                 judge.close()
             tried = self._prove(found)
-            if any(t.proof.meets for t in tried) or round_ == _ROUNDS - 1:
+            is_proved = any(t.proof.meets for t in tried)
+            if is_proved or self.unfinished or round_ == _ROUNDS - 1:
                 break
             best = found.ranked[0] if found.ranked else found.nearest
-            there, its_plans, is_whole = self._tasks(moved(self.cell, self.free, best.values))
+            try:
+                with self.deadline.enforced():
+                    more = self._tasks(moved(self.cell, self.free, best.values))
+            except TimeIsOverError:
+                self.unfinished = "whether the arms have more to do from there was not looked at"
+                break
+            there, its_plans, is_whole = more
             # From there an arm may be told more than from where it stands, where it perhaps got stuck.
             new = there if is_whole else {r: _both(tasks[r], there[r]) for r in tasks}
             if all(_covers(tasks[r], new[r]) for r in tasks):
@@ -197,16 +218,32 @@ class _Placing:
     def _search(self, judge: Judge) -> Found:
         r = self.request
         search = Search(
-            judge, r.wish, seed=r.seed, generations=r.generations, stage=self.options.stage
+            judge,
+            r.wish,
+            seed=r.seed,
+            generations=r.generations,
+            stage=self.options.stage,
+            deadline=self.deadline.share(_SEARCHING),
         )
-        return search.run()
+        found = search.run()
+        if search.is_unfinished:
+            self.unfinished = "the search was broken off"
+        return found
 
     def _prove(self, found: Found) -> list[Tried]:
         tried: list[Tried] = []
         for candidate in unlike(found.ranked[:5000], self.free, _UNLIKE)[: self.request.tries]:
             cell = moved(self.cell, self.free, candidate.values)
-            proof = prove(self.graph, cell, self.options, self.request.wish, self.robots)
+            try:
+                with self.deadline.enforced():
+                    proof = prove(self.graph, cell, self.options, self.request.wish, self.robots)
+            except TimeIsOverError:
+                proof = Proof("unknown", "the time was up before it was looked at as a whole")
+                what = "the best that was found was not looked at as a whole"
+                self.unfinished = f"{self.unfinished}, and {what}" if self.unfinished else what
             tried.append(Tried(candidate, cell, proof))
+            if proof.trouble.startswith("the time was up"):
+                break
             if proof.meets:
                 break
         return tried

@@ -17,6 +17,7 @@ from typing import Literal
 import numpy as np
 from scipy.optimize import differential_evolution
 
+from pn2code.base.deadline import NEVER, Deadline, TimeIsOverError
 from pn2code.base.frozen import frozen
 from pn2code.geometry.placing.free import DIGITS, Free, bounds_of, rounded
 from pn2code.geometry.placing.judging import Judge, Values
@@ -134,6 +135,7 @@ class Search:
         wish: what is wanted.
         generations: at most so many.
         stage: hears in words how far it is.
+        deadline: when it ends with what it has found, which `is_unfinished` then says.
     """
 
     def __init__(
@@ -144,8 +146,10 @@ class Search:
         seed: int = 1,
         generations: int = 50,
         stage: Callable[[str], None] = lambda _text: None,
+        deadline: Deadline = NEVER,
     ) -> None:
-        self.judge, self.wish = judge, wish
+        self.judge, self.wish, self._deadline = judge, wish, deadline
+        self.is_unfinished = False
         self._seed, self._generations, self._stage = seed, generations, stage
         self._seen: dict[tuple[float, ...], Candidate] = {}
 
@@ -172,19 +176,23 @@ class Search:
             before = best[-1 - _PATIENCE]
             return before - best[-1] < _WORTHWHILE * abs(before)
 
-        differential_evolution(
-            scored,
-            [tuple(b) for b in bounds],
-            init=_first(bounds, start, people, self._seed),
-            maxiter=self._generations,
-            tol=1e-3,
-            rng=self._seed,
-            polish=False,
-            updating="deferred",
-            vectorized=True,
-            callback=told,
-        )
-        seen = list(self._seen.values())
+        try:
+            with self._deadline.enforced():
+                differential_evolution(
+                    scored,
+                    [tuple(b) for b in bounds],
+                    init=_first(bounds, start, people, self._seed),
+                    maxiter=self._generations,
+                    tol=1e-3,
+                    rng=self._seed,
+                    polish=False,
+                    updating="deferred",
+                    vectorized=True,
+                    callback=told,
+                )
+        except TimeIsOverError:
+            self.is_unfinished = True
+        seen = list(self._seen.values()) or [here]
         goal = self.wish.goal
         meeting = sorted(
             (c for c in seen if c.meets), key=lambda c: (c.good(goal), c.badness, c.values)

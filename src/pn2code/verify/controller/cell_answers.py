@@ -39,7 +39,10 @@ _CHOICES = (
 )
 _NEXT = "it is about the very next step, but between two occurrences the programs take steps of their own"
 _INITIAL = "when the net returns to its initial marking, the programs are not at their start again"
-_WAITS = "the net knows neither how long moves take nor how late the supervisor is"
+_WAITS = (
+    "the net knows neither how long moves take nor how late the supervisor is (`--durations` measures "
+    "moves)"
+)
 
 
 _ORDERS = (
@@ -210,6 +213,9 @@ def _one(of_net: Answer, of_cell: Answer, partition: Partition) -> Answer:
     if of_cell.answer == "inconclusive" and kept and can_more(partition) and of_net.answer == "yes":
         return replace(of_net, kept=True, cell=True)
     found = replace(of_cell, about=of_net.about, kept=kept, cell=True)
+    asked = of_net.about.asked
+    if isinstance(asked, m.Response) and asked.of_commands:
+        return found  # without time everything of the closed net happens at once
     if of_net.answer == found.answer or of_net.answer == "inconclusive":
         return found
     return replace(found, net=of_net.answer, net_why=reason(partition))

@@ -36,8 +36,8 @@ _REACHED = (
 )
 _PARTS = (
     "tools find the parts that they take, hold them until they release them, and put them down where they can stand, "
-    "and nothing is where a part comes into the cell (`pn2code check --geometry` looks at it, but not at where parts "
-    "stand; a run shows that, too)"
+    "and nothing is where a part comes into the cell (`pn2code check --geometry` looks at it, and so "
+    "does a run)"
 )
 IN_TURNS = (
     "the programs are looked at in turns, so that each run is seen in one of its orders: the states are those of the "

@@ -37,9 +37,6 @@ QUICK = replace(HOST, net=("-O0",))
 """For small spaces: compiled in a fifth of the time. Only the net is slower, up to three times; the explorer is not."""
 LARGE = replace(HOST, net=("-DPN_MANY", "-Og"))
 """For nets of many transitions: a quarter of the compiler's time, and the explorer is as fast (docs/benchmarks.md)."""
-PACKED = replace(HOST, net=("-DPN_MANY", "-O1"))
-"""For those whose places are counters, small functions that have to be inlined: three fifths of the time of `-O2`, and
-the explorer executes 2 % more instructions (docs/benchmarks.md)."""
 MANY = 40
 """Transitions of a net that is worth to be compiled quickly first."""
 FIRST_STATES = 100_000
@@ -178,8 +175,7 @@ def _host(net: ir.NetIR) -> Host:
     """What a net is compiled with for a large space: by those of its transitions that have code, not only tables."""
     if sum(t.counts is None for t in net.transitions) <= MANY:
         return HOST
-    counters = sum(1 for p in net.places if p.packed is not None)
-    return PACKED if 2 * counters > len(net.places) else LARGE
+    return LARGE
 
 
 @contextmanager

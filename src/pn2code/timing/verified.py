@@ -1,0 +1,234 @@
+"""What `verify` says in seconds, once it is known how long each command takes (`pn2code verify CELL --durations`).
+
+    said = with_durations(said, opened, limits, folder, d)
+    said.durations.layouts[0].cycle.most        # as `pn2code time` has it
+    said.answers                                # those with `within N time` are answered
+
+Properties that say within which time an event is followed by another one are answered over all runs in which each
+command takes its planned time (`timing.search`). The answer rests on that; where it also holds in whatever order
+commands end, if none takes more than its planned time (`timing.anyhow`), it rests on this only.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from pn2code.base.deadline import TimeIsOverError
+from pn2code.base.frozen import frozen
+from pn2code.diagnostics import Diagnostics
+from pn2code.geometry.runs import write
+from pn2code.properties import meaning as m
+from pn2code.semantics.evaluation.files import Files
+from pn2code.semantics.game.token_game import Game
+from pn2code.timing.answers import seconds_down, seconds_up
+from pn2code.timing.doings import NS
+from pn2code.timing.look import Measured, Times, look
+from pn2code.timing.search import TIE
+from pn2code.timing.waits import Is, Wait, longest_wait
+from pn2code.verdict.opened import OpenNet
+from pn2code.verdict.whole import Said, stem
+from pn2code.verify.answers.properties import Answer, Evidence, Verdict
+from pn2code.verify.answers.reasons import clause
+from pn2code.verify.exploring.limits import Limits
+
+PLANNED = "each command takes its planned time, and messages and the supervisor none (docs/time.md)"
+AT_MOST = "no command takes more than its planned time, and messages and the supervisor none (docs/time.md)"
+NO_FAULT = "no fault stops a run"
+_WHY = {
+    "idle": "something that takes no time can go on for ever before it",
+    "ends": "the cell can come to its end before it",
+}
+
+
+@frozen(eq=False)
+class Durations:
+    """What was measured, for the screen and for programs."""
+
+    times: Times
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """For the screen."""
+        if self.times.why:
+            return (f"not known: {self.times.why}",)
+        out = []
+        for x in self.times.layouts:
+            where = f"layout `{x.name}`, " if x.name else ""
+            c = x.cycle
+            if c.why:
+                out.append(f"{where}cycle: not known: {c.why}")
+            for e in c.endings if not c.why else ():
+                best = "not known" if e.least is None else f"{seconds_down(e.least)} s"
+                worst = "no limit" if e.most is None else f"{seconds_up(e.most)} s"
+                out.append(f"{where}cycle to `{e.places.split('.')[-1]}`: {best} to {worst}")
+            out += [f"{where}{other}" for other in c.others]
+        return tuple(out)
+
+    def row(self) -> dict[str, Any]:
+        """For programs."""
+        return self.times.row()
+
+
+def with_durations(
+    said: Said, opened: OpenNet, limits: Limits, asked: m.Properties, folder: Path, d: Diagnostics
+) -> Said | None:
+    """The same with answers in seconds; None after an error that was reported.
+
+    Args:
+        said: what is known without durations.
+        opened: the cell.
+        limits: of the exploration.
+        asked: all properties.
+        folder: where runs are written.
+        d: gets the errors.
+    """
+    measured: list[Measured] = []
+    try:
+        with limits.deadline.enforced():
+            times = look(opened, None, limits, None, d, measured=measured.append)
+            if times is None:
+                return None
+            judge = _Judge(said, opened, asked, times, measured, folder)
+            answers = tuple(judge.answer(a) for a in said.answers)
+    except TimeIsOverError:
+        times = Times((), 0.0, clause("seconds"))
+        answers = tuple(
+            replace(a, why=clause("seconds")) if is_timed(a) else a for a in said.answers
+        )
+    return replace(said, answers=answers, durations=Durations(times))
+
+
+def is_timed(a: Answer) -> bool:
+    """Whether the property is about a cell, and says within which time."""
+    return (
+        a.cell
+        and not a.about.of_net
+        and isinstance(a.about.asked, m.Response)
+        and a.about.asked.time is not None
+    )
+
+
+class _Judge:
+    """Answers one property after the other."""
+
+    def __init__(
+        self,
+        said: Said,
+        opened: OpenNet,
+        asked: m.Properties,
+        times: Times,
+        measured: Sequence[Measured],
+        folder: Path,
+    ) -> None:
+        self.said, self.opened, self.asked = said, opened, asked
+        self.times, self.measured, self.folder = times, measured, folder
+
+    def answer(self, a: Answer) -> Answer:
+        """The answer in seconds; another one stays as it is."""
+        if not is_timed(a):
+            return a
+        if self.times.why:
+            return replace(a, why=self.times.why)
+        found = [self._in(a, number) for number in range(len(self.measured))]
+        for kind in ("no", "inconclusive"):
+            for one in found:
+                if one.answer == kind:
+                    return one
+        return max(found, key=lambda x: (PLANNED in x.assumes, x.value or 0.0))
+
+    def _in(self, a: Answer, number: int) -> Answer:
+        """In one layout."""
+        one, layout = self.measured[number], self.times.layouts[number]
+        where = f"in layout `{layout.name}`: " if layout.name else ""
+        asked = a.about.asked
+        assert isinstance(asked, m.Response) and asked.time is not None
+
+        def open_(why: str) -> Answer:
+            return Answer(a.about, "inconclusive", where + why, cell=True)
+
+        if layout.cycle.why:
+            return open_(layout.cycle.why)
+        first, second = self._event(one, asked.first), self._event(one, asked.second)
+        if first is None or second is None:
+            return open_("of events with durations only `fires(..)` is looked at")
+        limit = math.floor(float(asked.time) * NS)
+        search = one.search
+        wait = longest_wait(search.successors, first, second, search.ends)
+        if wait.ns is None:
+            stops = [*search.faults, *(["a script may stop the cell"] if search.halts else [])]
+            if wait.why in _WHY or (wait.why == "never" and stops):
+                return open_(_WHY.get(wait.why) or f"a run may stop before it: {stops[0]}")
+            return self._shown(a, one, wait, "no", None)
+        if wait.ns - TIE > limit:
+            return self._shown(a, one, wait, "no", wait.ns)
+        if wait.ns + TIE > limit:
+            return open_("the longest wait is as long as that, to a millisecond")
+        control = self.said.control
+        others = [control.stops] if control is not None and control.stops else []
+        others += [x for x in layout.cycle.others if "go on for ever" not in x]
+        if others:
+            return open_(f"where it comes, it comes in time, but {others[0]}")
+        anyhow = one.anyhow
+        slow = Wait(None, "open")
+        if not anyhow.why:
+            slow = longest_wait(anyhow.successors, first, second, anyhow.ends())
+        is_kept = slow.ns is not None and slow.ns + TIE <= limit
+        value = math.ceil((wait.ns + TIE) / (NS // 1000)) / 1000 if wait.way else 0.0
+        assumes = (AT_MOST if is_kept else PLANNED, NO_FAULT)
+        return Answer(a.about, "yes", value=value, cell=True, assumes=assumes)
+
+    def _event(self, one: Measured, f: m.Formula) -> Is | None:
+        """Whether an element is the event; None: the event is not one of steps alone."""
+        graph = one.search.graph
+        atoms = list(m.atoms(f))
+        if any(x.kind not in ("fires", "fires so") for x in atoms) or not _is_or(f):
+            return None
+        game = Game(graph.partition.net, graph.storage, files=Files(None))
+        known: dict[int, bool] = {}
+
+        def is_one(mark: int) -> bool:
+            if mark < 0:
+                return False
+            if mark not in known:
+                e = graph.elements[mark]
+                known[mark] = not e.is_step and e.owner >= 0 and any(
+                    self._is(x, game, one, mark) for x in atoms
+                )  # fmt: skip
+            return known[mark]
+
+        return is_one
+
+    def _is(self, atom: m.Atom, game: Game, one: Measured, mark: int) -> bool:
+        graph = one.search.graph
+        e = graph.elements[mark]
+        if atom.kind == "fires":
+            return atom.number == e.transition
+        condition = self.asked.steps[atom.number]
+        if condition.transition != e.transition:
+            return False
+        return game.evaluator.value(condition.exp, graph.binding(e)) is True
+
+    def _shown(
+        self, a: Answer, one: Measured, wait: Wait, verdict: Verdict, ns: int | None
+    ) -> Answer:
+        """With the run of the longest wait, or of one that has no end."""
+        search = one.search
+        elements = [x for _, x in search.way(wait.before) if x >= 0]
+        elements += [x for _, x in wait.way if x >= 0]
+        slug = re.sub(r"[^A-Za-z0-9_.]+", "-", a.about.name).strip("-.")[:60] or "property"
+        file = self.folder / f"{stem(self.opened)}.{slug}.trace.jsonl"
+        run = write(search.graph, elements, (), file, self.opened.initial)
+        evidence = None if run.file is None else Evidence(run.file, run.steps, None)
+        value = None if ns is None else max(0, ns - TIE) // (NS // 1000) / 1000
+        return Answer(
+            a.about, verdict, "", evidence, value=value, cell=True, assumes=(PLANNED,)
+        )  # fmt: skip
+
+
+def _is_or(f: m.Formula) -> bool:
+    return isinstance(f, m.Atom) or (f.operator == "or" and all(map(_is_or, f.parts)))

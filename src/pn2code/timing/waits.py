@@ -1,0 +1,137 @@
+"""How long one event can be waited for after another, in a graph with times on its arcs.
+
+    found = longest_wait(successors, first, second, ends)
+    found.ns                # 32_280_000_000: no wait is longer, and some run waits so long
+    found.why               # "never", "repeats", "idle", "ends": there is no longest wait, or it is not known
+
+An arc is an event by its mark; the event is at its end, after its time has gone by.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Sequence
+
+from pn2code.base.components import components
+from pn2code.base.frozen import frozen
+from pn2code.timing.longest import Arc, Ways
+
+Is = Callable[[int], bool]
+
+
+@frozen
+class Wait:
+    """The longest wait.
+
+    Args:
+        ns: how long; 0, if the first event never is; None: `why` says why.
+        why: "never": after it the cell can come to where the second event is not possible any more; "repeats":
+            something that takes time can go round before it; "idle": something that takes none can; "ends": the cycle
+            can be over before it.
+        before: the node in which the first event of that wait is possible; -1: it is none.
+        way: node and mark of each arc from there, the first event included, to the second one (of "never": to where it
+            is not possible any more, of "repeats": once round).
+    """
+
+    ns: int | None
+    why: str = ""
+    before: int = -1
+    way: tuple[tuple[int, int], ...] = ()
+
+
+def longest_wait(
+    successors: Sequence[Sequence[Arc]], first: Is, second: Is, ends: Collection[int]
+) -> Wait:
+    """The longest time from an event to the next one of the other kind.
+
+    Args:
+        successors: (node, ns, mark) of each node's arcs; node 0 is the start.
+        first, second: whether the mark of an arc is such an event.
+        ends: the nodes in which the cycle may be over.
+    """
+    begun: dict[int, tuple[int, int]] = {}
+    for node, arcs in enumerate(successors):
+        for target, _, mark in arcs:
+            if first(mark):
+                begun.setdefault(target, (node, mark))
+    if not begun:
+        return Wait(0)
+    inside = _until(successors, begun, second)
+    numbers = {node: i for i, node in enumerate(inside, 1)}
+    last = len(inside) + 1
+    graph: list[list[Arc]] = [[(numbers[node], 0, -1) for node in begun]]
+    for node in inside:
+        graph.append(
+            [
+                (last if second(mark) else numbers[target], ns, mark)
+                for target, ns, mark in successors[node]
+            ]
+        )
+    graph.append([])
+    ways = Ways(graph, {last})
+
+    def told(way: Sequence[tuple[int, int]], why: str, ns: int | None = None) -> Wait:
+        node = inside[way[0][0] - 1]
+        before, mark = begun[node]
+        after = [(-1 if n == last else inside[n - 1], m) for n, m in way[1:]]
+        return Wait(ns, why, before, ((node, mark), *after))
+
+    lost = next((i for i in range(1, last) if not ways.leading[i]), 0)
+    if lost:
+        return told(_way(graph, {lost}), "never")
+    if ways.cycle:
+        there = _way(graph, {ways.cycle[0]})
+        return told([*there, *_round(graph, ways.cycle)], "repeats")
+    found = ways.longest()
+    assert found is not None
+    if _goes_round(graph):
+        return Wait(None, "idle")
+    if any(node in ends for node in inside):
+        return Wait(None, "ends")
+    return told(found.way, "", found.ns)
+
+
+def _goes_round(graph: Sequence[Sequence[Arc]]) -> bool:
+    after = [[target for target, *_ in arcs] for arcs in graph]
+    loops = any(node in after[node] for node in range(len(graph)))
+    return loops or any(len(c) > 1 for c in components(range(len(graph)), after.__getitem__))
+
+
+def _until(
+    successors: Sequence[Sequence[Arc]], begun: Collection[int], second: Is
+) -> tuple[int, ...]:
+    """All nodes in which the second event is still waited for."""
+    found = dict.fromkeys(begun)
+    todo = list(found)
+    while todo:
+        for target, _, mark in successors[todo.pop()]:
+            if not second(mark) and target not in found:
+                found[target] = None
+                todo.append(target)
+    return tuple(found)
+
+
+def _way(graph: Sequence[Sequence[Arc]], goals: Collection[int]) -> list[tuple[int, int]]:
+    """A way with few arcs from node 0: node and mark of each."""
+    before: dict[int, tuple[int, int]] = {}
+    todo = [0]
+    for node in todo:
+        if node in goals:
+            out: list[tuple[int, int]] = []
+            while node:
+                parent, mark = before[node]
+                out.append((node, mark))
+                node = parent
+            return out[::-1]
+        for target, _, mark in graph[node]:
+            if target and target not in before:
+                before[target] = (node, mark)
+                todo.append(target)
+    raise AssertionError("it is reached")
+
+
+def _round(graph: Sequence[Sequence[Arc]], cycle: Sequence[int]) -> list[tuple[int, int]]:
+    out = []
+    for node, target in zip(cycle, [*cycle[1:], *cycle[:1]], strict=True):
+        _, mark = max((ns, mark) for to, ns, mark in graph[node] if to == target)
+        out.append((target, mark))
+    return out

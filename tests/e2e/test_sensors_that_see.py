@@ -1,0 +1,80 @@
+"""A sensor that sees the scene says what is there when it is asked; proofs leave open what it says."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from helpers.carrying_cell import NET, TOML, write
+from pn2code.cell.divide import divide
+from pn2code.cell.load import load
+from pn2code.diagnostics import Diagnostics
+from pn2code.run.cell import RunOptions, run_cell
+from pn2code.run.sensors import load as load_sensors
+from pn2code.verdict.opened import read
+
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
+
+CHANGES = (
+    ("  var n : PART;", "  colset ANSWER = product PART * BOOL;\n  var n : PART;\n  var there : BOOL;"),
+    ("    place Done : PART\n    trans Accept", "    place Done : PART\n    place Asked : ANSWER\n    trans Accept"),
+    ("    trans Place code", "    trans Look\n      in Told : n\n      out Asked : (n, there)\n"
+     "    trans Skip\n      in Asked : (n, false)\n      out Done : n\n    trans Place code"),
+    ("      in Told : n\n      out Done : n", "      in Asked : (n, true)\n      out Done : n"),
+    ("    trans Feed code", "    trans Forget guard [n <> 1]\n      in Busy : n\n      out fed : n\n"
+     "      out Idle : ()\n    trans Feed guard [n = 1] code"),
+)  # fmt: skip
+SENSOR = '[sensors.eye]\nvariable = "there"\nsees = "infeed"\npart = "box"\n'
+
+
+def cell(folder: Path, sensor: str = SENSOR) -> Path:
+    net = NET
+    for old, new in CHANGES:
+        assert old in net, old
+        net = net.replace(old, new, 1)
+    return write(folder, net, TOML + sensor)
+
+
+def test_it_says_whether_a_part_is_there(tmp_path: Path) -> None:
+    """The feeder brings one box; a sensor that guessed would sooner or later have air gripped."""
+    d = Diagnostics()
+    options = RunOptions(tmp_path / "run", backend="fake", looks=False, checked=False)
+    found = run_cell(cell(tmp_path / "cell"), options, d)
+    assert found is not None, [i.message for i in d]
+    assert found.record.verdict == "finished", found.record.reason
+    said = [e["value"] for e in found.record.events if e.get("event") == "sense"]
+    assert said == [True, False] and list(found.summary["parts"]) == ["box.1"]
+
+
+def test_what_it_says_is_left_open(tmp_path: Path) -> None:
+    opened = read(cell(tmp_path / "cell"), {}, Diagnostics())
+    assert opened is not None and opened.config is not None
+    partition = divide(opened.flat, opened.config, Diagnostics())
+    assert partition is not None
+    look = next(t for t in partition.net.transitions if t.short == "Look")
+    assert [v.name for v in look.variables] == ["n", "there"]
+    sensors = load_sensors(opened.config, opened.flat, (), None, Diagnostics())
+    assert sensors is not None and sensors.seen == {"eye": ("infeed", "box")}
+
+
+@pytest.mark.parametrize(
+    ("sensor", "says"),
+    [
+        (SENSOR.replace("infeed", "infed"), "`sees` names `infed`, but there is no `[places.infed]`"),
+        (SENSOR.replace('"box"', '"bix"'), "`part` names `bix`, but there is no `[parts.bix]`"),
+        (SENSOR.replace('sees = "infeed"\n', ""), "which kind of parts the sensor sees, but not where"),
+    ],
+)  # fmt: skip
+def test_mistakes_are_told(sensor: str, says: str, tmp_path: Path) -> None:
+    d = Diagnostics()
+    load(cell(tmp_path / "cell", sensor) / "cell.toml", d)
+    assert any(says in e.message for e in d.errors), [e.message for e in d.errors]
+
+
+def test_only_a_truth_value_can_be_seen(tmp_path: Path) -> None:
+    d = Diagnostics()
+    opened = read(cell(tmp_path / "cell", SENSOR.replace('"there"', '"n"')), {}, d)
+    assert opened is not None and opened.config is not None
+    assert load_sensors(opened.config, opened.flat, (), None, d) is None
+    assert any("its variable is of colour set `PART`" in e.message for e in d.errors)

@@ -1,0 +1,125 @@
+"""`verify CELL --durations`: properties in seconds, answered by what commands take."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import pytest
+from tools.adversary import times, waits, wander
+from typer.testing import CliRunner
+
+from helpers.netbuilder import cpn
+from helpers.timed_runs_cell import NET, write
+from pn2code.cli.main import app
+from pn2code.diagnostics import Diagnostics
+from pn2code.net.front import load
+from pn2code.timing.doings import NS
+from pn2code.timing.look import Measured
+from pn2code.timing.waits import Wait
+from pn2code.trace.replay import replay
+
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
+
+END = "every fires(Sup'Start) is followed by fires(Sup'End) within {} seconds"
+PLANNED, AT_MOST = "each command takes its planned time", "no command takes more than its planned"
+
+
+def verified(folder: Path, *texts: str, options: tuple[str, ...] = ("--durations",)) -> Any:
+    asked = [x for text in texts for x in ("--property", text)]
+    more = ["--json", "--no-medium", "--traces", str(folder / "traces"), *options]
+    done = CliRunner().invoke(app, ["verify", str(folder), *asked, *more])
+    assert done.stdout, done.output
+    return json.loads(done.stdout)
+
+
+def test_seconds(tmp_path: Path) -> None:
+    """The drill takes 2 s, perhaps twice; the press takes 3 s: at most 4 s, in whatever order 7 s."""
+    said = verified(
+        write(tmp_path),
+        *(END.format(x) for x in ("4.1", "7.5", "3.9", "4")),
+        "every fires(Drill'Inspect, {v = bad}) is followed by fires(Drill'Inspect) within 9 seconds",
+        "every fires(Sup'End) is followed by fires(Sup'Start) within 9 seconds",
+        "every {length (Mark.Sup'Ready 1) = 1} is followed by fires(Sup'End) within 9 seconds",
+        "every fires(Sup'Start) is followed by fires(Sup'Good) || fires(Sup'Again) within 2.1 seconds",
+    )
+    close, far, early, same, again, back, of_marking, first = said["properties"]
+    assert (close["answer"], close["value"]) == ("yes", 4.001)
+    assert any(x.startswith(PLANNED) for x in close["assumes"])
+    assert far["answer"] == "yes" and any(x.startswith(AT_MOST) for x in far["assumes"])
+    assert (early["answer"], early["value"]) == ("no", 3.999)
+    assert same["answer"] == "inconclusive" and "to a millisecond" in same["why"]
+    assert again["answer"] == back["answer"] == "no"
+    assert of_marking["answer"] == "inconclusive" and "only `fires(..)`" in of_marking["why"]
+    assert (first["answer"], first["value"]) == ("yes", 2.001)
+    net = load(tmp_path / "cell.cpn", Diagnostics())
+    assert net is not None
+    for shown in (early, again, back):
+        assert replay(Path(shown["evidence"]["trace"]), net).ok
+    assert "Top.Supervisor.Again" in Path(early["evidence"]["trace"]).read_text(encoding="utf-8")
+    (layout,) = said["durations"]["layouts"]
+    assert (layout["cycle"]["least_s"], layout["cycle"]["most_s"]) == (2.999, 4.001)
+
+
+def test_what_can_be_repeated_takes_as_long_as_it_likes(tmp_path: Path) -> None:
+    (said,) = verified(write(tmp_path, again="0"), END.format(100000))["properties"]
+    assert said["answer"] == "no" and said["evidence"] is not None
+
+
+def test_who_may_stop_is_not_promised_anything(tmp_path: Path) -> None:
+    """The press answers after 3 s, which is too late."""
+    toml = (write(tmp_path) / "cell.toml").read_text(encoding="utf-8")
+    text = toml.replace('["Finished"]', '["Finished"]\nreply_timeout_s = 2.5')
+    (tmp_path / "cell.toml").write_text(text, encoding="utf-8")
+    (said,) = verified(tmp_path, END.format(9))["properties"]
+    assert said["answer"] == "inconclusive" and "reply_timeout_s" in said["why"]
+
+
+def test_without_durations_nothing_is_known_of_seconds(tmp_path: Path) -> None:
+    (said,) = verified(write(tmp_path), END.format(9), options=())["properties"]
+    assert said["answer"] == "inconclusive" and "--durations" in said["why"] and not said["net"]
+
+
+def test_the_screen_has_the_cycle(tmp_path: Path) -> None:
+    cell = str(write(tmp_path))
+    options = ["--durations", "--no-medium", "--property", END.format(3.9)]
+    done = CliRunner().invoke(app, ["verify", cell, *options, "-o", str(tmp_path / "runs")])
+    assert done.exit_code == 1
+    assert "Durations            cycle to `Finished`: 2.999 s to 4.001 s" in done.stdout
+    assert "NO property 1" in done.stdout and "Cell" not in done.stderr
+
+
+def test_a_net_alone_has_no_seconds(tmp_path: Path) -> None:
+    cell = write(tmp_path)
+    (tmp_path / "cell.toml").unlink()
+    done = CliRunner().invoke(app, ["verify", str(cell / "cell.cpn"), "--durations"])
+    assert done.exit_code == 2 and "only a cell has durations" in " ".join(done.stderr.split())
+    done = CliRunner().invoke(app, ["verify", str(cell / "cell.cpn"), "--property", END.format(9)])
+    assert done.exit_code == 1 and "the net has no time" in done.stderr
+
+
+def test_time_stamps_are_not_followed(tmp_path: Path) -> None:
+    """A watchdog of the net itself: nothing is said in seconds."""
+    text = NET.replace("AGAIN", "n + 1").replace(
+        "colset VERDICT", "colset TUNIT = unit timed;\n  colset VERDICT"
+    )
+    text = text.replace("    place Done2\n", "    place Done2 : TUNIT\n")
+    text = text.replace("      out Done2 : ()", "      out Done2 : ()@+1")
+    cell = write(tmp_path)
+    (cell / "cell.cpn").write_bytes(cpn(text))
+    (said,) = verified(cell, END.format(9))["properties"]
+    assert said["answer"] == "inconclusive" and "time stamps" in said["why"]
+
+
+def test_a_false_wait_would_be_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Runs of the programs beside what is said of them."""
+    cell = write(tmp_path, said="bad")
+    measured: list[Measured] = []
+    built = wander.prepare(cell, Diagnostics())
+    assert times.cycle_of(cell, measured) is not None and built is not None
+    runs = list(times.runs_of(built, 1))
+    assert not list(waits.contradictions(measured[0], Random(1), runs))
+    monkeypatch.setattr(waits, "longest_wait", lambda *_: Wait(NS))
+    assert any("at most 1.0" in x for x in waits.contradictions(measured[0], Random(1), runs))
