@@ -243,7 +243,7 @@ def test_messages_to_several_readers_come_one_after_the_other(
     assert found.answer == answer, found.says
 
 
-# A answers with data and a flag; the supervisor asks B as soon as it has the data, and may hear B before the flag is there.
+# A answers with data and a flag; the supervisor asks B as soon as it has the data, and may hear B before the flag.
 EAGER = """net cell
   standard
   val P_HIGH = 100;
