@@ -237,7 +237,7 @@ def test_an_answer_rests_on_arcs_where_there_are_some(tmp_path: Path) -> None:
         (
             '{ command = "move_joint", acceleration = 1.5 }',
             {},
-            "`acceleration` is 1.5, but must be above zero, at most 1, and finite",
+            "`acceleration` is 1.5, but must be at least 0.0001, at most 1, and finite",
         ),
         ('{ command = "move_joint", approach = 0.1 }', {}, "unknown key `approach`"),
     ],

@@ -100,8 +100,8 @@ def test_speeds_that_are_not_possible(
 @pytest.mark.parametrize(
     ("key", "speed", "message"),
     [
-        (", speed = 0", "", "`speed` is 0, but must be above zero"),
-        (", speed = 30", "", "`speed` is 30, but must be above zero, at most 1, and finite"),
+        (", speed = 0", "", "`speed` is 0, but must be at least 0.0001, at most 1, and finite"),
+        (", speed = 30", "", "`speed` is 30, but must be at least 0.0001, at most 1, and finite"),
         (", speed = 0.3", "5.0", "`moveJoint` takes a speed, and the entry has one, too"),
     ],
 )

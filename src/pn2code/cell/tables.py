@@ -177,15 +177,25 @@ class Tables:
         value = self.get(table, path, key, default)
         if key.within(value):
             return float(value)
-        least = "above zero" if key.above else "zero or more"
-        most = f", at most {key.high:.10g}" if math.isfinite(key.high) else ""
         self.d.error(
             codes.CELL_VALUE,
-            f"`{key.name}` is {value}, but must be {least}{most}, and finite",
+            f"`{key.name}` is {value}, but must be {_bounds(key)}finite",
             self.at(*path, key.name),
             hint=key.meaning,
         )
         return default if key.default is None else float(cast(float, key.default))
+
+
+def _bounds(key: Key) -> str:
+    """The bounds of a number, in words."""
+    words: list[str] = []
+    if math.isfinite(key.low) and key.low:
+        words.append(f"{'above' if key.above else 'at least'} {key.low:.10g}")
+    elif math.isfinite(key.low):
+        words.append("above zero" if key.above else "zero or more")
+    if math.isfinite(key.high):
+        words.append(f"at most {key.high:.10g}")
+    return ", ".join([*words, "and "]) if words else ""
 
 
 _TYPES: dict[str, type | tuple[type, ...]] = {
