@@ -168,7 +168,7 @@ def test_a_missing_tool_is_said_before_anything_is_explored(
         raise AssertionError("nothing may be explored")
 
     monkeypatch.setattr("pn2code.pipeline.prove", never)
-    monkeypatch.setattr("pn2code.verdict.whole.explore", never)
+    monkeypatch.setattr("pn2code.verdict.closed.explore", never)
     cell = write(tmp_path / "cell", toml=TOML + changed(ROBOT, "counterpoint", "gripper.urdf"))
     done = run(verb, cell)
     assert done.exit_code == 1, done.output

@@ -104,6 +104,8 @@ NEVER = {
     "./dev site -o site": "runs of three cells in PyBullet; test_site has its first page",
     "./dev bench --against CHECKOUT": "the same, and another checkout",
     "./dev bench --database-15": "the same, and gigabytes",
+    "./dev contest --every 4 --seconds 60 --examinations StateSpace ReachabilityFireability CTLCardinality "
+    "CTLFireability LTLFireability": "hours; test_contest_command does it for one net",
     "./dev contest --seconds 10 --examinations ReachabilityDeadlock UpperBounds --log contest.jsonl": "hours; "
     "test_contest_command does it for one net",
     'make CC="python3 -m ziglang cc -target aarch64-linux-musl" supervisor supervisor.traced simulate': "test_aarch64 "

@@ -243,6 +243,92 @@ def test_messages_to_several_readers_come_one_after_the_other(
     assert found.answer == answer, found.says
 
 
+# A answers with data and a flag; the supervisor asks B as soon as it has the data, and may hear B before the flag.
+EAGER = """net cell
+  standard
+  val P_HIGH = 100;
+  var k: INT;
+  page Top
+    place toA : INT
+    place info : INT
+    place fromA : INT
+    place toB : INT
+    place fromB : INT
+    subst Supervisor = Sup (toA -> toA, info -> info, fromA -> fromA, toB -> toB, fromB -> fromB)
+    subst A = PA (ask -> toA, tell -> info, say -> fromA)
+    subst B = PB (hear -> toB, say -> fromB)
+  page Sup
+    place toA port out : INT
+    place info port in : INT
+    place fromA port in : INT
+    place toB port out : INT
+    place fromB port in : INT
+    place Start = 1
+    place Asked
+    place Armed
+    place Lost
+    place Finished
+    trans Ask
+      in Start : ()
+      out toA : 1
+      out Asked : ()
+    trans Go
+      in Asked : ()
+      in info : k
+      out toB : k
+      out Armed : ()
+    trans Both priority P_HIGH
+      in Armed : ()
+      in fromA : k
+      in fromB : k
+      out Finished : ()
+    trans Only
+      in Armed : ()
+      in fromB : k
+      out Lost : ()
+  page PA
+    place ask port in : INT
+    place tell port out : INT
+    place say port out : INT
+    place Waiting = 1
+    trans Accept
+      in Waiting : ()
+      in ask : k
+      out Waiting : ()
+      out tell : k
+      out say : k
+  page PB
+    place hear port in : INT
+    place say port out : INT
+    place Waiting = 1
+    trans Echo
+      in Waiting : ()
+      in hear : k
+      out Waiting : ()
+      out say : k
+"""
+WITH_FLAG = EAGER.replace("      in info : k\n", "      in info : k\n      in fromA : k\n").replace(
+    "      in fromA : k\n      in fromB : k\n", "      in fromB : k\n"
+)
+"""Here it asks B when the flag is there, too; nobody then notices which of the two came first."""
+
+
+def with_data() -> str:
+    """Its cell.toml: one of the messages is data."""
+    flags = chain("toA", "fromB", "toB", "fromA")
+    return flags.replace(
+        "[devices.A]",
+        '[[channel]]\nplace = "info"\nfile = "info.robcad"\nkind = "data"\n[devices.A]',
+    )
+
+
+@pytest.mark.parametrize(("text", "answer"), [(EAGER, "no"), (WITH_FLAG, "yes")])
+def test_a_flag_may_come_long_after_its_data(text: str, answer: str, tmp_path: Path) -> None:
+    """Where the supervisor acts on data alone it notices: the writer may be slow between the two files."""
+    found = examined(write(tmp_path / "cell", text, with_data())).checks["non-blocking"]
+    assert found.answer == answer, found.says
+
+
 def test_devices_talk_to_each_other(tmp_path: Path) -> None:
     """The supervisor makes the files of channels that are none of its own."""
     folder = write(tmp_path / "cell", CHAIN, chain("toA", "fromB", "fromA", "link"))

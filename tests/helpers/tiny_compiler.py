@@ -1,8 +1,8 @@
 """What need not be quick is compiled by `tcc`, where it is there: ten times as fast as by gcc without optimization.
 
-Only where nothing but its answers is looked at: nets of explorers, simulators and the programs that `conform` asks, and
-what `make` builds with `CFLAGS=-O0`. What `tcc` does not accept is compiled as usual, which also says what is wrong
-with it. That C compiles without warnings is looked at elsewhere (`helpers.compiled`, `e2e/test_warnings_of_nets.py`).
+Only what is generated, and only where nothing but its answers is looked at: nets of explorers, and what `make` builds
+with `CFLAGS=-O0`; the runtime is compiled by gcc. What `tcc` does not accept is compiled as usual, which also says what
+is wrong with it. That C compiles without warnings is looked at elsewhere (`helpers.compiled`).
 """
 
 from __future__ import annotations
@@ -26,13 +26,13 @@ MARK = "-DPN_TESTED"
 
 SUPPORT = "libtcc1.a"
 """What its objects call where gcc has instructions of its own, as for a double of an unsigned number."""
-WHOLE = ("simulate", "conform")
-"""Hosts whose runtime it compiles, too; those of others use what it does not know."""
+STRICT = ("-Werror", "-Wimplicit-function-declaration")
+"""Functions of gcc that it does not have are refused, instead of being missed when all is linked."""
 SCRIPT_NAME = "quick-cc"
 SCRIPT = """#!/bin/sh
 case " $* " in
     *" -fsanitize"* | *" --coverage "*) ;;
-    *" -c "*) {tiny} -w "$@" 2>/dev/null && exit 0 ;;
+    *" -c "*" net.c " | *" -c "*" cell_config.c ") {tiny} {strict} "$@" 2>/dev/null && exit 0 ;;
     *" -o "*) exec {usual} "$@" {support} ;;
 esac
 exec {usual} "$@"
@@ -63,7 +63,9 @@ class QuickMake:
         library = support(tiny) if tiny else None
         if library is not None and usual is not None and not script_at.exists():
             with tempfile.NamedTemporaryFile("w", dir=folder, delete=False) as script:
-                script.write(SCRIPT.format(tiny=tiny, usual=usual, support=library))
+                script.write(
+                    SCRIPT.format(tiny=tiny, strict=" ".join(STRICT), usual=usual, support=library)
+                )
             Path(script.name).chmod(0o755)
             Path(script.name).replace(script_at)
 
@@ -94,10 +96,9 @@ def use(changed: pytest.MonkeyPatch) -> tuple[str, ...]:
 
     def compiled(builder: programs._Builder, room: Path, *arguments: str, d: Diagnostics) -> bool:
         is_net = arguments[-2:] == ("-c", "net.c") and builder.host.name == "explore"
-        is_whole = builder.host.name in WHOLE and "-c" in arguments and not os.environ.get("CC")
         is_quick = {"-O0", MARK} <= set(builder.flags) and not builder.interrupted()
-        if is_quick and (is_net or is_whole):
-            command = [tiny, "-w", *builder.flags, *arguments]
+        if is_quick and is_net:
+            command = [tiny, *STRICT, *builder.flags, *arguments]
             done = subprocess.run(command, cwd=room, capture_output=True, check=False)
             if done.returncode == 0:
                 return True

@@ -69,23 +69,18 @@ from pn2code.cell.partition import Partition
 from pn2code.channel_model.rules import Rules
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import ArcKind, FlatTransition
-from pn2code.properties.questions import Questions
 from pn2code.verify.controller import messages
 from pn2code.verify.controller.by_turns import loosened
-from pn2code.verify.controller.left_over import nothing_left
+from pn2code.verify.controller.left_over import questions
 from pn2code.verify.controller.running import (
     SUPERVISOR,
     NotModelledError,
     Running,
-    chunks,
 )
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.programs import Generated, Sizes
 from pn2code.verify.exploring.result import Exploration
-
-ENDLESS = 1_000_000_000
-"""A run is that long, or goes on for ever."""
 
 
 @frozen
@@ -201,18 +196,3 @@ def _explored(
     if found is None or not found.complete or not found.seen.arcs or found.error is not None:
         return None
     return (running, found) if len(found.answers) == asked.count("? ") else None
-
-
-def questions(running: Running) -> str:
-    """The lines for the explorer: how programs choose, and what has to be answered with "yes"."""
-    lines = [x for x in running.lines(first=True) if not x.startswith("instant ")]
-    lines += chunks("instant 0", range(len(running.net.transitions)))
-    q = Questions()
-    ends = [running.stopped, *([] if running.unsure is None else [running.unsure])]
-    q.asked += [
-        f"? restless 0 {ENDLESS}",
-        *(f"? bound {place} 0 0" for place in ends),
-        *(f"? bound {c.place} 0 1" for c in running.partition.channels),
-        f"? invariant {nothing_left(q, running)}",
-    ]
-    return "".join(f"{line}\n" for line in lines) + q.text()

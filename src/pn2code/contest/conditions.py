@@ -53,6 +53,8 @@ class TooLargeError(Exception):
 
 MOST_PARTS = 200_000
 """Comparisons of a condition."""
+MOST_CHARACTERS = 400_000
+"""Of a question in the engine's own words, of which conditions are made: with more of them that would take too long."""
 
 
 def at_most(factors: Mapping[int, int], limit: int) -> Condition:

@@ -33,7 +33,10 @@ def smaller_for(
         until: when to stop, on the monotonic clock.
     """
     try:
-        asked = {f: conditions.parsed(tables.formula(f), tables.pre) for f in leaves(formula)}
+        texts = {f: tables.formula(f) for f in leaves(formula)}
+        if sum(map(len, texts.values())) > conditions.MOST_CHARACTERS:
+            return None
+        asked = {f: conditions.parsed(text, tables.pre) for f, text in texts.items()}
         reduced = reduced_for(tables, list(asked.values()), until=until, goal=_goal(kind, formula))
         made = reduced.tables
         if len(made.pre) > _GAIN * len(tables.pre) and len(made.initial) > _GAIN * len(

@@ -117,6 +117,8 @@ def question(number: int, part: Part, tables: Tables) -> Question | None:
     if part.kind not in ("reach", "bound"):
         return None
     words = part.text.split(" ", 1)[1]
+    if len(words) > conditions.MOST_CHARACTERS:
+        return None
     try:
         if part.kind == "reach":
             return Question(number, "reach", conditions.parsed(words, tables.pre))

@@ -10,6 +10,7 @@ place is the sum of its colours, a coloured transition is enabled if one of its 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import field
 from types import MappingProxyType
 
 from pn2code.base.frozen import frozen
@@ -41,6 +42,7 @@ class Tables:
         post: by transition, what it puts.
         places: id of a place in the file -> its places here.
         transitions: id of a transition in the file -> its transitions here.
+        enabled: that one of some transitions is enabled, in the engine's own words, once it was asked for.
     """
 
     initial: tuple[int, ...]
@@ -48,6 +50,7 @@ class Tables:
     post: tuple[Mapping[int, int], ...]
     places: Mapping[str, tuple[int, ...]]
     transitions: Mapping[str, tuple[int, ...]]
+    enabled: dict[tuple[str, ...], str] = field(default_factory=dict, compare=False, repr=False)
 
     def fits(self) -> bool:
         """Whether the engine can read it: reductions multiply weights, and put the tokens of places together."""
@@ -127,8 +130,9 @@ class Tables:
             case AtMost(left, right):
                 return self._comparison(left, right)
             case Fireable(names):
-                found = sorted({t for name in names for t in self._of(self.transitions, name)})
-                return f"enabled {len(found)} {' '.join(map(str, found))}".rstrip()
+                if names not in self.enabled:
+                    self.enabled[names] = self._one_enabled(names)
+                return self.enabled[names]
             case Op("not", (part,)):
                 return f"not {self.formula(part, written)}"
             case Op("and" | "or" as operator, parts):
@@ -136,6 +140,10 @@ class Tables:
             case Op("A" | "E" as path, (Op("X" | "F" | "G" | "U" as operator, parts),)):
                 return f"{path}{operator} {self._all(parts, written)}"
         raise FormulaError(f"{f} is not a formula of CTL")
+
+    def _one_enabled(self, names: Sequence[str]) -> str:
+        found = sorted({t for name in names for t in self._of(self.transitions, name)})
+        return f"enabled {len(found)} {' '.join(map(str, found))}".rstrip()
 
     def _all(self, parts: Sequence[Formula], written: Mapping[Formula, str]) -> str:
         return " ".join(self.formula(p, written) for p in parts)

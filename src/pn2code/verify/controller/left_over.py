@@ -11,7 +11,10 @@ supervisor that has finished would take a message that comes later. Where progra
 from __future__ import annotations
 
 from pn2code.properties.questions import Questions
-from pn2code.verify.controller.running import SUPERVISOR, Running
+from pn2code.verify.controller.running import SUPERVISOR, Running, chunks
+
+ENDLESS = 1_000_000_000
+"""A run is that long, or goes on for ever."""
 
 
 def nothing_left(asked: Questions, running: Running) -> int:
@@ -23,3 +26,18 @@ def nothing_left(asked: Questions, running: Running) -> int:
             found = asked.line(f"and {found} {empty}")
     going = asked.line(f"not {asked.line('dead')}")
     return asked.line(f"or {going} {found}")
+
+
+def questions(running: Running) -> str:
+    """How programs choose, and what has to be answered with "yes" for files to do no harm (`channel_model.by_cell`)."""
+    lines = [x for x in running.lines(first=True) if not x.startswith("instant ")]
+    lines += chunks("instant 0", range(len(running.net.transitions)))
+    q = Questions()
+    ends = [running.stopped, *([] if running.unsure is None else [running.unsure])]
+    q.asked += [
+        f"? restless 0 {ENDLESS}",
+        *(f"? bound {place} 0 0" for place in ends),
+        *(f"? bound {c.place} 0 1" for c in running.partition.channels),
+        f"? invariant {nothing_left(q, running)}",
+    ]
+    return "".join(f"{line}\n" for line in lines) + q.text()

@@ -16,7 +16,8 @@ taken. Added are flags of which others know nothing:
   something: those before it were looked at earlier, and may have been filled since.
 * A robot takes only messages that are *out*. What it writes is there at once, as nothing tells that from writing a
   little later, unless one reader gets two messages of one kind (`NotModelledError`). Only where a transition writes to
-  several readers, its messages are *out* one after the other: the first reader may act before the next is written to.
+  several readers, or somebody acts on data without the flag that is written after them, its messages are *out* one
+  after the other: who has the first one may act before the next is written.
 * When the supervisor has finished, a robot ends where it notices that (docs/protocol.md, I9): as likely before its next
   message as after it. One step ends them all, since any of them may have been slow until then.
 * Where a script stops, the cell stops: nothing happens after the step that says so. What others do until they hear of
@@ -477,7 +478,7 @@ class _Composer:
             self._step(SUPERVISOR, "ends the robots", at + 1, *arcs)
 
     def _writing(self) -> None:
-        """What a robot writes to several readers goes out in its order, before the robot does anything else."""
+        """What is written in an order that shows goes out in this order, before its robot does anything else."""
         first = min([t.priority for t in self.partition.net.transitions] or [0])
         for i, c in enumerate(reversed(self.staged), 1):
             out = self.out[c.place]
@@ -619,9 +620,21 @@ def _staged(partition: Partition) -> Iterator[Channel]:
     found: set[int] = set()
     for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True):
         put = {a.place for a in t.arcs if a.kind is ArcKind.OUTPUT and a.place in channels}
-        if owner != SUPERVISOR and len({channels[place].reader for place in put}) > 1:
+        if owner == SUPERVISOR or len(put) < 2:
+            continue
+        if len({channels[place].reader for place in put}) > 1 or _acts_early(partition, put):
             found |= put
     return (c for c in partition.channels if c.place in found)
+
+
+def _acts_early(partition: Partition, put: set[int]) -> bool:
+    """Whether somebody needs one of these messages, and not all that are written after it."""
+    order = [c.place for c in partition.channels if c.place in put]
+    for t in partition.net.transitions:
+        taken = {a.place for a in t.arcs if a.kind is ArcKind.INPUT and a.place in put}
+        if taken and not taken.issuperset(order[min(map(order.index, taken)) :]):
+            return True
+    return False
 
 
 def _meek(partition: Partition) -> Iterator[int]:
