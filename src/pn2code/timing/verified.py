@@ -242,10 +242,11 @@ class _Judge:
 def _ends(search: Search, second: Is) -> frozenset[int]:
     """The situations after which the event may not come any more, as the supervisor has finished.
 
-    A robot ends where it hears of that: what is under way then it does to its end, but nothing that follows.
+    A robot ends where it hears of that: what is under way then it does to its end, but nothing that follows. For what a
+    device does nobody waits.
     """
     over = search.graph.over
-    return frozenset(
+    return frozenset(search.ends).union(
         i
         for i, (state, _, under_way) in enumerate(search.situations)
         if state in over and not any(second(element) for _, element, _ in under_way)
