@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +23,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.verdict.opened import OpenNet
 from pn2code.verify.exploring import net_by_counts
 from pn2code.verify.exploring.explore import ExploreOptions, explore
-from pn2code.verify.exploring.limits import Limits
+from pn2code.verify.exploring.limits import Approximation, Limits, Reduction
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
@@ -191,6 +192,22 @@ def test_whoever_would_speak_after_the_end_is_noticed(tmp_path: Path) -> None:
     rows = by_cell.rows(partition, net.storage, limits, options)
     assert [answer for line, answer in rows if line.startswith("? bound")] == ["yes"] * 3
     assert rows[-1][0].startswith("? invariant") and rows[-1][1] == "no"
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [{"reductions": (Reduction.PARTIAL_ORDER,)}, {"approximation": Approximation.BITSTATE}],
+)
+def test_what_is_asked_for_the_closed_net_changes_nothing(
+    tmp_path: Path, asked: dict[str, Any]
+) -> None:
+    net = opened(written(tmp_path, parts=2))
+    partition = divide(net.flat, net.config, Diagnostics())
+    assert partition is not None
+    limits, options = Limits(threads=1, traces=0), ExploreOptions(quick=True)
+    plain = by_cell.shown(partition, Rules(), net.storage, limits, options)
+    other = by_cell.shown(partition, Rules(), net.storage, replace(limits, **asked), options)
+    assert plain is not None and other == plain
 
 
 def test_other_rules_are_looked_at_with_the_files(tmp_path: Path) -> None:

@@ -14,12 +14,15 @@ from typer.testing import CliRunner
 from helpers.netbuilder import cpn
 from helpers.timed_runs_cell import NET, write
 from pn2code.cli.main import app
-from pn2code.diagnostics import Diagnostics
+from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.net.front import load
+from pn2code.properties.meaning import Atom, Property, Response
+from pn2code.timing import verified as seconds
 from pn2code.timing.doings import NS
-from pn2code.timing.look import Measured
+from pn2code.timing.look import Measured, Times
 from pn2code.timing.waits import Wait
 from pn2code.trace.replay import replay
+from pn2code.verify.answers.properties import Answer
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
@@ -75,6 +78,78 @@ def test_who_may_stop_is_not_promised_anything(tmp_path: Path) -> None:
     (tmp_path / "cell.toml").write_text(text, encoding="utf-8")
     (said,) = verified(tmp_path, END.format(9))["properties"]
     assert said["answer"] == "inconclusive" and "reply_timeout_s" in said["why"]
+
+
+ARM = """[robots.press]
+instance = "Press"
+model = "kr120_r2500"
+tool = "vacuum_gripper"
+base = { x = 0.0, y = 0.0, z = 0.0, yaw = 0.0 }
+home = [0.0, -90.0, 90.0, 0.0, 90.0, 0.0]
+"""
+
+
+PRESSED = "every fires(Sup'Start) is followed by fires(Press'Press) within 9 seconds"
+
+
+@pytest.mark.parametrize(
+    ("drills", "has_arm", "answer"),
+    [
+        (False, True, "inconclusive"),  # the supervisor may finish before the press begins
+        (True, True, "yes"),  # it finishes after 2 s, and an arm that is at work goes on
+        (True, False, "no"),  # for a device nobody waits
+    ],
+)
+def test_the_end_of_the_cell_may_come_first(
+    tmp_path: Path, drills: bool, has_arm: bool, answer: str
+) -> None:
+    """The press answers before it presses: it may hear that the supervisor has finished, and then it does not."""
+    answered = NET.replace(
+        "      in f : ()\n      out Told : ()\n    trans Press code",
+        "      in f : ()\n      out Told : ()\n      out d : ()\n    trans Press code",
+    ).replace("      out Waiting : ()\n      out d : ()", "      out Waiting : ()")
+    assert answered.count("out d : ()") == 1
+    toml = (write(tmp_path) / "cell.toml").read_text(encoding="utf-8")
+    if has_arm:
+        toml = toml.replace('[devices.press]\ninstance = "Press"\n', ARM)
+    (tmp_path / "cell.toml").write_text(toml, encoding="utf-8")
+    net = answered.replace("AGAIN", "n + 1")
+    net = net if drills else net.replace("code action drill ()", "")
+    (tmp_path / "cell.cpn").write_bytes(cpn(net))
+    timed, finished = verified(tmp_path, PRESSED, END.format(9))["properties"]
+    assert timed["answer"] == answer
+    assert (answer == "inconclusive") == ("come to its end before it" in (timed["why"] or ""))
+    assert finished["answer"] == "yes"
+
+
+def test_what_stops_the_supervisor_counts_where_its_checks_are_not_told(tmp_path: Path) -> None:
+    cell = write(tmp_path)
+    more = NET.replace("AGAIN", "n + 1").replace(
+        "    place Ready", "    place Log\n    place Ready"
+    )
+    more = more.replace("      out Busy1 : 0\n", "      out Busy1 : 0\n      out Log : 2`()\n")
+    (cell / "cell.cpn").write_bytes(cpn(more))
+    with (cell / "cell.toml").open("a", encoding="utf-8") as file:
+        file.write("[capacity]\nLog = 1\n")
+    for options in ((), ("--no-controller",)):
+        (said,) = verified(cell, END.format(9), options=("--durations", *options))["properties"]
+        assert said["answer"] == "inconclusive" and "the supervisor stops" in said["why"]
+
+
+def test_of_several_layouts_the_longest_wait_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    response = Response(Atom("fires", 0), Atom("fires", 1), None, "9")
+    about = Property("p", "", "", "response", True, response, (), Origin("cell.toml"))
+    of_layout = (
+        Answer(about, "yes", value=7.0, cell=True, assumes=(seconds.AT_MOST,)),
+        Answer(about, "yes", value=2.0, cell=True, assumes=(seconds.PLANNED,)),
+    )
+    monkeypatch.setattr(seconds._Judge, "_in", lambda _self, _a, i: of_layout[i])
+    nobody: Any = None
+    judge = seconds._Judge(nobody, nobody, nobody, Times((), 1.0), [nobody, nobody], tmp_path)
+    found = judge.answer(Answer(about, "inconclusive", cell=True))
+    assert found.value == 7.0 and found.assumes == (seconds.PLANNED,)
 
 
 def test_without_durations_nothing_is_known_of_seconds(tmp_path: Path) -> None:

@@ -190,7 +190,9 @@ def _explored(
         quick=False,
     )
     d = Diagnostics()  # what is wrong with this net the whole space tells
-    found = explore(running.net, storage, replace(limits, graph=True, traces=0), d, own)
+    # Turns are a reduction of their own, and what was asked for is about the closed net.
+    limits = replace(limits, graph=True, traces=0, approximation=None, reductions=())
+    found = explore(running.net, storage, limits, d, own)
     if found is None or not found.complete or not found.seen.arcs or found.error is not None:
         return None
     return (running, found) if len(found.answers) == asked.count("? ") else None

@@ -51,6 +51,7 @@ from pn2code.verdict.whole import (
     trace_folder,
 )
 from pn2code.verify.codes import REPORT_UNWRITABLE, TIME_OVER
+from pn2code.verify.controller.control_types import Control
 from pn2code.verify.exploring.explore import ExploreOptions
 from pn2code.verify.exploring.limits import (
     COUNTS_FROM,
@@ -354,7 +355,7 @@ def verify(
         _draw(pictures, opened, looked.found, deadline, d, wanted=bool(draw_to or plot_to))
         said = conclude(looked, opened, asked, limits, folder, d, checks)
         if durations:
-            said = _timed(said, opened, limits, asked, folder, d, form)
+            said = _timed(said, looked.control, opened, limits, asked, folder, d, form)
         if report_to is not None:
             subject = None
             if report_to.suffix.lower() in _PAGES:
@@ -381,6 +382,7 @@ def verify(
 
 def _timed(
     said: Said,
+    control: Control | None,
     opened: OpenNet,
     limits: Limits,
     asked: Asked,
@@ -392,7 +394,7 @@ def _timed(
     from pn2code.timing.verified import with_durations
 
     with playing(form):
-        timed = with_durations(said, opened, limits, asked.properties, folder, d)
+        timed = with_durations(said, control, opened, limits, asked.properties, folder, d)
     if timed is None:
         stop(d, form)
     return timed

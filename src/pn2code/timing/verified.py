@@ -1,6 +1,6 @@
 """What `verify` says in seconds, once it is known how long each command takes (`pn2code verify CELL --durations`).
 
-    said = with_durations(said, opened, limits, folder, d)
+    said = with_durations(said, control, opened, limits, asked, folder, d)
     said.durations.layouts[0].cycle.most        # as `pn2code time` has it
     said.answers                                # those with `within N time` are answered
 
@@ -28,12 +28,13 @@ from pn2code.semantics.game.token_game import Game
 from pn2code.timing.answers import seconds_down, seconds_up
 from pn2code.timing.doings import NS
 from pn2code.timing.look import Measured, Times, look
-from pn2code.timing.search import TIE
+from pn2code.timing.search import TIE, Search
 from pn2code.timing.waits import Is, Wait, longest_wait
 from pn2code.verdict.opened import OpenNet
 from pn2code.verdict.whole import Said, stem
 from pn2code.verify.answers.properties import Answer, Evidence, Verdict
 from pn2code.verify.answers.reasons import clause
+from pn2code.verify.controller.control_types import Control
 from pn2code.verify.exploring.limits import Limits
 
 PLANNED = "each command takes its planned time, and messages and the supervisor none (docs/time.md)"
@@ -75,12 +76,19 @@ class Durations:
 
 
 def with_durations(
-    said: Said, opened: OpenNet, limits: Limits, asked: m.Properties, folder: Path, d: Diagnostics
+    said: Said,
+    control: Control | None,
+    opened: OpenNet,
+    limits: Limits,
+    asked: m.Properties,
+    folder: Path,
+    d: Diagnostics,
 ) -> Said | None:
     """The same with answers in seconds; None after an error that was reported.
 
     Args:
         said: what is known without durations.
+        control: what is known of the supervisor and the programs, whether or not it is told; None: nothing.
         opened: the cell.
         limits: of the exploration.
         asked: all properties.
@@ -93,7 +101,7 @@ def with_durations(
             times = look(opened, None, limits, None, d, measured=measured.append)
             if times is None:
                 return None
-            judge = _Judge(said, opened, asked, times, measured, folder)
+            judge = _Judge(control, opened, asked, times, measured, folder)
             answers = tuple(judge.answer(a) for a in said.answers)
     except TimeIsOverError:
         times = Times((), 0.0, clause("seconds"))
@@ -118,14 +126,14 @@ class _Judge:
 
     def __init__(
         self,
-        said: Said,
+        control: Control | None,
         opened: OpenNet,
         asked: m.Properties,
         times: Times,
         measured: Sequence[Measured],
         folder: Path,
     ) -> None:
-        self.said, self.opened, self.asked = said, opened, asked
+        self.control, self.opened, self.asked = control, opened, asked
         self.times, self.measured, self.folder = times, measured, folder
 
     def answer(self, a: Answer) -> Answer:
@@ -139,7 +147,8 @@ class _Judge:
             for one in found:
                 if one.answer == kind:
                     return one
-        return max(found, key=lambda x: (PLANNED in x.assumes, x.value or 0.0))
+        weakest = max(found, key=lambda x: PLANNED in x.assumes)
+        return replace(weakest, value=max(x.value or 0.0 for x in found))
 
     def _in(self, a: Answer, number: int) -> Answer:
         """In one layout."""
@@ -158,18 +167,18 @@ class _Judge:
             return open_("of events with durations only `fires(..)` is looked at")
         limit = math.floor(float(asked.time) * NS)
         search = one.search
-        wait = longest_wait(search.successors, first, second, search.ends)
+        wait = longest_wait(search.successors, first, second, _ends(search, second))
         if wait.ns is None:
-            stops = [*search.faults, *(["a script may stop the cell"] if search.halts else [])]
-            if wait.why in _WHY or (wait.why == "never" and stops):
-                return open_(_WHY.get(wait.why) or f"a run may stop before it: {stops[0]}")
+            faults = [*search.faults, *(["a script may stop the cell"] if search.halts else [])]
+            if wait.why in _WHY or (wait.why == "never" and faults):
+                return open_(_WHY.get(wait.why) or f"a run may stop before it: {faults[0]}")
             return self._shown(a, one, wait, "no", None)
         if wait.ns - TIE > limit:
             return self._shown(a, one, wait, "no", wait.ns)
         if wait.ns + TIE > limit:
             return open_("the longest wait is as long as that, to a millisecond")
-        control = self.said.control
-        others = [control.stops] if control is not None and control.stops else []
+        stops = self.control.stops if self.control is not None else ""
+        others = [stops] if stops else []
         others += [x for x in layout.cycle.others if "go on for ever" not in x]
         if others:
             return open_(f"where it comes, it comes in time, but {others[0]}")
@@ -228,6 +237,20 @@ class _Judge:
         return Answer(
             a.about, verdict, "", evidence, value=value, cell=True, assumes=(PLANNED,)
         )  # fmt: skip
+
+
+def _ends(search: Search, second: Is) -> frozenset[int]:
+    """The situations after which the event may not come any more, as the supervisor has finished.
+
+    A robot ends where it hears of that: what is under way then it does to its end, but nothing that follows. For what a
+    device does nobody waits.
+    """
+    over = search.graph.over
+    return frozenset(search.ends).union(
+        i
+        for i, (state, _, under_way) in enumerate(search.situations)
+        if state in over and not any(second(element) for _, element, _ in under_way)
+    )
 
 
 def _is_or(f: m.Formula) -> bool:
