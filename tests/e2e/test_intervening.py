@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterator
+import shutil
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from helpers.browser import launched, opened
-from helpers.lively import Running, running
-from helpers.played import Talk
+from helpers.lively import Person, Running, running, token_of
 from helpers.processes import pn2code
+
+LONG_MS = 300_000
+"""For a page on a busy machine."""
 
 
 @pytest.fixture(scope="module")
@@ -20,32 +23,6 @@ def chromium() -> Iterator[Any]:
     """The browser of this file."""
     with launched() as found:
         yield found
-
-
-def token_of(run: Running) -> str:
-    """What the terminal has printed for those who take part."""
-    line = run.process.stdout.readline()
-    assert line.startswith(f"to play a robot or the fault: {run.url}#act="), line
-    return line.split("#act=")[1].strip()
-
-
-class Person(Talk):
-    """A page of somebody who takes part."""
-
-    def act(self, do: str, **more: Any) -> None:
-        self.text(json.dumps({"do": "act", "wish": {"do": do, **more}}))
-
-    def until(self, is_so: Callable[[dict[str, Any]], Any]) -> dict[str, Any]:
-        """Waits until the hand is told to be so."""
-        while True:
-            for update in self.hear("updates")["updates"]:
-                if is_so(update["hand"]):
-                    return dict(update["hand"])
-
-    def asked(self, sensor: str) -> dict[str, Any]:
-        """Waits for a question."""
-        told = self.until(lambda h: any(q["sensor"] == sensor for q in h["questions"]))
-        return next(q for q in told["questions"] if q["sensor"] == sensor)
 
 
 def lines_of(run: Running) -> list[dict[str, Any]]:
@@ -78,6 +55,8 @@ def test_what_a_person_says_is_done_and_recorded(root: Path, tmp_path: Path) -> 
             person.until(lambda h: not h["questions"])
             person.act("go", party="robot")
             person.until(lambda h: not h["held"])
+            person.act("hold", party="belt")
+            person.until(lambda h: "belt" in h["held"])
             person.text(json.dumps({"do": "stop", "token": run.stop_token}))
             person.hear("over")
         code, said = run.wait()
@@ -88,10 +67,16 @@ def test_what_a_person_says_is_done_and_recorded(root: Path, tmp_path: Path) -> 
     summary = json.loads((run.out / "summary.json").read_text(encoding="utf-8"))
     texts = [h["text"] for h in summary["by_hand"]]
     assert any(f"verdict: {other}, chosen by a person" in text for text in texts)
-    assert any(text.startswith("held for") for text in texts)
+    held = [(h["robot"], h["text"].split()[1]) for h in summary["by_hand"] if "held" in h["text"]]
+    assert held == [("robot", "from"), ("robot", "for"), ("belt", "from"), ("belt", "for")]
+    assert texts[-1].endswith(" s, until the run ended")
+    standing = [x for x in lines_of(run) if x.get("event") in ("hold", "stand")]
+    assert [(x["robot"], x["event"]) for x in standing] == [
+        ("robot", "hold"), ("robot", "stand"), ("belt", "hold"), ("belt", "stand"),
+    ]  # fmt: skip
     replayed = pn2code("replay", run.out / "sorting.trace.jsonl", cell)
     assert "each enabled when its turn came" in replayed.stdout
-    assert "a person has chosen 2 of" in replayed.stdout
+    assert "a person has chosen 3 of" in replayed.stdout
     events = json.loads((run.out / "run.json").read_text(encoding="utf-8"))["happenings"]["events"]
     assert any(e["text"] == f"sensor verdict: {other}, chosen by a person" for e in events)
 
@@ -99,24 +84,38 @@ def test_what_a_person_says_is_done_and_recorded(root: Path, tmp_path: Path) -> 
 def test_in_the_page_a_person_answers_and_lets_a_device_fail(
     root: Path, chromium: Any, tmp_path: Path
 ) -> None:
-    more = ("--intervene", "--patience", "500", "--speed", "3")
+    cell = tmp_path / "cell"
+    shutil.copytree(root / "examples/sorting", cell)
+    toml = cell / "cell.toml"
+    text = toml.read_text(encoding="utf-8")
+    changed = text.replace("[supervisor]", "[supervisor]\nreply_timeout_s = 3600", 1)
+    assert changed != text
+    toml.write_text(changed, encoding="utf-8")
+    more = ("--intervene", "--patience", "1000", "--speed", "3")
     with (
-        running(root / "examples/sorting", tmp_path / "run", *more) as run,
+        running(cell, tmp_path / "run", *more) as run,
+        Person(run) as other,
         opened(chromium) as browser,
     ):
+        # Somebody is there from the beginning, so the question stays open until the browser has the page.
+        token = token_of(run)
+        other.join(token)
+        other.act("way", party="robot", sensor="gripper", way="own")
         page = browser.page
-        page.goto(f"{run.url}#act={token_of(run)}")
-        page.wait_for_selector("body[data-ready=true]")
-        assert "act=" not in page.url
-        question = page.get_by_role("group", name="Question of belt")
-        question.get_by_text("belt asks sensor verdict").wait_for()
-        question.get_by_role("button", name="bad", exact=True).click()
-        question.wait_for(state="hidden")
-        page.get_by_role("tab", name="Intervene").click()
-        page.get_by_role("button", name="Hold: belt").click()
-        page.get_by_role("button", name="Go on: belt").wait_for()
-        page.get_by_role("button", name="Fail: belt").click()
-        page.get_by_text("The run has ended: failed").wait_for()
+        page.set_default_timeout(LONG_MS)
+        with other.listening():
+            page.goto(f"{run.url}#act={token}")
+            page.wait_for_selector("body[data-ready=true]")
+            assert "act=" not in page.url
+            question = page.get_by_role("group", name="Question of belt")
+            question.get_by_text("belt asks sensor verdict").wait_for()
+            question.get_by_role("button", name="bad", exact=True).click()
+            question.wait_for(state="hidden")
+            page.get_by_role("tab", name="Intervene").click()
+            page.get_by_role("button", name="Hold: belt").click()
+            page.get_by_role("button", name="Go on: belt").wait_for()
+            page.get_by_role("button", name="Fail: belt").click()
+            page.get_by_text("The run has ended: failed").wait_for()
         code, said = run.wait()
         assert code == 1 and "as a person at the live page wanted" in said.replace("\n", " ")
         assert browser.errors == []

@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 import signal
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import pytest
 
-from helpers.lively import Running, running
+from helpers.lively import Person, Running, running, token_of
 from helpers.played import Refused, Talk
 from helpers.processes import pn2code
 
@@ -125,8 +126,13 @@ def test_a_run_is_told_from_its_beginning_to_its_end(root: Path, tmp_path: Path)
 
 
 def test_the_run_goes_on_when_its_server_is_killed(root: Path, tmp_path: Path) -> None:
-    with running(root / "examples/minimal", tmp_path / "run", "--speed", "4") as run:
-        with Talk(run):
+    more = ("--intervene", "--speed", "3")
+    with running(root / "examples/minimal", tmp_path / "run", *more) as run:
+        with Person(run) as person:
+            # The run cannot end before the server does, since who holds the robot is there until then.
+            person.join(token_of(run))
+            person.act("hold", party="robot")
+            person.until(lambda h: h["held"])
             pid = child_of(run.process.pid)
             signal_to(pid)
         code, said = run.wait()
@@ -138,10 +144,19 @@ def test_the_run_goes_on_when_its_server_is_killed(root: Path, tmp_path: Path) -
 def child_of(parent: int) -> int:
     """The process of the server: the child that runs Python."""
     for task in Path(f"/proc/{parent}/task").iterdir():
-        for pid in (task / "children").read_text().split():
-            if b"pn2code.live.server" in Path(f"/proc/{pid}/cmdline").read_bytes():
-                return int(pid)
+        with suppress(OSError):  # a thread or another process has ended meanwhile
+            for pid in (task / "children").read_text().split():
+                if b"pn2code.live.server" in read(Path(f"/proc/{pid}/cmdline")):
+                    return int(pid)
     raise AssertionError("there is no server")
+
+
+def read(file: Path) -> bytes:
+    """What is in a file of /proc; nothing if its process has ended."""
+    try:
+        return file.read_bytes()
+    except OSError:
+        return b""
 
 
 def signal_to(pid: int) -> None:

@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import json
+import math
 import re
 import shutil
-from collections.abc import Iterator
-from contextlib import contextmanager
+import socket
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
 from pathlib import Path
+from typing import Any
 
-from helpers.played import PATIENCE_S, Served
+from helpers.played import PATIENCE_S, Served, Talk
 from helpers.processes import Talking
 
 HOSTILE = "<img src=x onerror=alert(1)>"
@@ -48,6 +53,54 @@ def running(cell: Path, out: Path, *arguments: str) -> Iterator[Running]:
     finally:
         process.kill()
         process.communicate(PATIENCE_S)
+
+
+def token_of(run: Running) -> str:
+    """What the terminal has printed for those who take part."""
+    line = run.process.stdout.readline()
+    assert line.startswith(f"to play a robot or the fault: {run.url}#act="), line
+    return line.split("#act=")[1].strip()
+
+
+class Person(Talk):
+    """A page of somebody who takes part."""
+
+    def join(self, token: str) -> None:
+        """Says that it takes part."""
+        self.text(json.dumps({"do": "join", "token": token}))
+        assert self.hear("act") == {"act": "joined"}
+
+    @contextmanager
+    def listening(self) -> Iterator[None]:
+        """While the block lasts, all that is told is taken and forgotten."""
+        thread = threading.Thread(target=self._forget, daemon=True)
+        thread.start()
+        try:
+            yield
+        finally:
+            with suppress(OSError):
+                self._socket.shutdown(socket.SHUT_RDWR)
+            thread.join()
+
+    def _forget(self) -> None:
+        with suppress(OSError):  # the server has gone, or nobody listens any more
+            while True:
+                self._read(math.inf)
+
+    def act(self, do: str, **more: Any) -> None:
+        self.text(json.dumps({"do": "act", "wish": {"do": do, **more}}))
+
+    def until(self, is_so: Callable[[dict[str, Any]], Any]) -> dict[str, Any]:
+        """Waits until the hand is told to be so."""
+        while True:
+            for update in self.hear("updates")["updates"]:
+                if is_so(update["hand"]):
+                    return dict(update["hand"])
+
+    def asked(self, sensor: str) -> dict[str, Any]:
+        """Waits for a question."""
+        told = self.until(lambda h: any(q["sensor"] == sensor for q in h["questions"]))
+        return next(q for q in told["questions"] if q["sensor"] == sensor)
 
 
 def hostile(example: Path, folder: Path) -> Path:

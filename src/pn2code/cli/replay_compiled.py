@@ -15,7 +15,7 @@ from pn2code.simulate.recorded import repeat, repeat_occurrences
 from pn2code.simulate.run import Outcome
 from pn2code.trace.followed import Followed
 from pn2code.trace.json_text import BadJson, parse_json
-from pn2code.trace.lines import digest_problem, form_problem
+from pn2code.trace.lines import digest_problem, form_problem, is_by_hand
 from pn2code.trace.replay_end import Ending, end_problem
 from pn2code.trace.script import TraceRefusedError
 from pn2code.verdict.opened import OpenNet, as_traced
@@ -64,7 +64,7 @@ def _checked(trace: Path) -> int:
             wrong = form_problem(line, is_first=is_first)
             if wrong is not None:
                 raise TraceRefusedError(wrong, number)
-            by_hand += not is_first and "by" in line
+            by_hand += not is_first and is_by_hand(line)
             is_first = False
     return by_hand
 

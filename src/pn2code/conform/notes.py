@@ -63,7 +63,7 @@ class RunNotes:
         robot = str(line.get("robot"))
         if robot not in self._actions:
             return f"there is no robot or device `{robot}`"
-        if line["event"] in ("stand", "message"):
+        if line["event"] in ("hold", "stand", "message"):
             return None  # it only takes time; of messages the net knows that they arrive
         if line["event"] == "tool":
             begun, duration = float(line["t"]), float(line["duration"])

@@ -102,6 +102,9 @@ def noted(line: Mapping[str, Any]) -> Json | None:
         case "sense":
             text = f"sensor {line['sensor']}: {line['value']}{_chosen(line)}"
             return {"t": line["t"], "kind": "sense", "party": line["robot"], "text": text}
+        case "hold":
+            text = f"stands from here on{_chosen(line)}"
+            return {"t": line["t"], "kind": "stand", "party": line["robot"], "text": text}
         case "stand":
             began = f" since {line['t'] - line['duration']:.2f} s" if _chosen(line) else ""
             text = f"stands for {line['duration']:.2f} s{began}{_chosen(line)}"

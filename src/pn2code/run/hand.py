@@ -84,6 +84,9 @@ class Body(Protocol):
     def go_on(self, party: str, seconds: float) -> None:
         """It goes on where it was; it has stood so long."""
 
+    def stood(self, party: str, seconds: float) -> None:
+        """The run has ended while it stood, and it has stood so long."""
+
     def fail(self, party: str) -> None:
         """What it is doing fails."""
 
@@ -202,6 +205,13 @@ class Hand:
         for party, (_, until) in list(self._held.items()):
             if now >= until or not self._wishes.present():
                 self._release(party, body)
+
+    def ended(self, body: Body) -> None:
+        """The run has ended: tells who stands still, and since when."""
+        now = self._clock()
+        for party, (since, _) in self._held.items():
+            body.stood(party, now - since)
+        self._held.clear()
 
     def _release(self, party: str, body: Body) -> None:
         since, _ = self._held.pop(party)

@@ -89,6 +89,8 @@ class RealtimeEngine(Engine):
 
     def _close(self) -> RunRecord:
         """Waits for the supervisor's last words, then puts both traces into one order."""
+        if self.hand is not None:
+            self.hand.ended(self)
         self.supervisor.close()
         self._read_trace()
         merged = merge(self.partition, (self.fired, self.noted))
@@ -169,8 +171,12 @@ class RealtimeEngine(Engine):
     def stand(self, party: str) -> None:
         """A robot or device stands still, in the middle of what it does."""
         robot = self._named(party)
-        if robot is not None and robot.motion is not None:
+        if robot is None:
+            return
+        if robot.motion is not None:
             self._put(robot, paused(robot.motion, self.now))
+        self.record.events.append({"t": self.now, "event": "hold", "robot": party, "by": BY})
+        self._interfered(party, "held from here on")
 
     def go_on(self, party: str, seconds: float) -> None:
         """It goes on where it was; it has stood so long (s of the wall clock)."""
@@ -179,11 +185,18 @@ class RealtimeEngine(Engine):
             return
         if robot.motion is not None:
             self._put(robot, resumed(robot.motion, self.now))
+        self._has_stood(party, seconds)
+
+    def stood(self, party: str, seconds: float) -> None:
+        """It still stands at the end of the run."""
+        self._has_stood(party, seconds, ", until the run ended")
+
+    def _has_stood(self, party: str, seconds: float, until: str = "") -> None:
         lasted = seconds * self.speed
         self.record.events.append(
             {"t": self.now, "event": "stand", "robot": party, "duration": lasted, "by": BY}
         )
-        self._interfered(party, f"held for {lasted:.2f} s")
+        self._interfered(party, f"held for {lasted:.2f} s{until}")
 
     def _put(self, robot: RobotRunner, motion: Motion) -> None:
         robot.motion = robot.executor.motion = motion

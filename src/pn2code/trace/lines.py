@@ -21,6 +21,7 @@ _NOTES: Mapping[str, Mapping[str, type]] = {
     "end": {"t": float, "event": str, "why": str},
     "tool": {"t": float, "event": str, "robot": str, "action": str, "duration": float},
     "part": {"t": float, "event": str, "robot": str, "effect": str, "part": str},
+    "hold": {"t": float, "event": str, "robot": str, "by": str},
     "stand": {"t": float, "event": str, "robot": str, "duration": float},
     "sense": {"t": float, "event": str, "robot": str, "sensor": str, "value": object},
     "message": {"t": float, "event": str, "robot": str, "channel": str, "fate": str},
@@ -33,6 +34,11 @@ _MORE: Mapping[str, Mapping[str, type]] = {
     "message": {"by": str, "seconds": float},
 }
 """Members that a line may have; all others it must have."""
+
+
+def is_by_hand(line: Mapping[str, Any]) -> bool:
+    """Whether a note says what a person has chosen. A hold is counted when it ends, by its `stand`."""
+    return "by" in line and line.get("event") != "hold"
 
 
 def form_problem(line: Mapping[str, Any], *, is_first: bool) -> str | None:

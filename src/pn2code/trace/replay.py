@@ -46,6 +46,7 @@ from pn2code.trace.json_text import BadJson, parse_json
 from pn2code.trace.lines import (
     digest_problem,
     form_problem,
+    is_by_hand,
     is_number,
     order_problem,
     origin_problem,
@@ -269,7 +270,7 @@ def replay_lines(
                 markings.append(game.marking)
                 steps += 1
             else:
-                by_hand += "by" in line
+                by_hand += is_by_hand(line)
                 if notes is not None:
                     _refuse(notes.note(line) or time_problem(line, latest))
                     latest = max(latest, _time_of(line))

@@ -51,6 +51,9 @@ class Person:
     def go_on(self, party: str, seconds: float) -> None:
         self.done.append(("go on", party, seconds))
 
+    def stood(self, party: str, seconds: float) -> None:
+        self.done.append(("stood", party, seconds))
+
     def fail(self, party: str) -> None:
         self.done.append(("fail", party))
 
@@ -178,6 +181,15 @@ def test_a_robot_is_held_and_goes_on(held: Held) -> None:
         ("stand", "robot1"), ("go on", "robot1", 4.0), ("stand", "belt"), ("go on", "belt", 2.5),
         ("stand", "robot1"), ("go on", "robot1", 0.0),
     ]  # fmt: skip
+
+
+def test_a_hold_that_outlasts_the_run_is_told(held: Held) -> None:
+    held.person.now = 1.0
+    held.wish("hold", party="belt")
+    held.person.now = 4.0
+    held.hand.ended(held.person)
+    held.hand.ended(held.person)
+    assert held.person.done == [("stand", "belt"), ("stood", "belt", 3.0)]
 
 
 def test_messages_and_failures_are_passed_on(held: Held) -> None:
