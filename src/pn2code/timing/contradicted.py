@@ -16,7 +16,7 @@ from dataclasses import replace
 from pn2code.base.frozen import frozen
 from pn2code.channel_model.check import Answer as OfMedium
 from pn2code.timing.answers import Layout, seconds_up
-from pn2code.timing.look import PLANNED, Times
+from pn2code.timing.look import AT_ONCE, PLANNED, Times
 from pn2code.verdict.whole import Said
 from pn2code.verify.answers.properties import Answer
 from pn2code.verify.controller.control_types import IN_TIME, Check
@@ -45,7 +45,7 @@ def weighed(said: Said, premises: Premises, times: Times) -> Said:
         found[premises.reached] = _Weighed("moves", stops[0], premises.reached)
     checks: tuple[Check, ...] = ()
     if premises.replies.premise:
-        replies = _replies(times)
+        replies = _replies(times, f"{PLANNED}, and {AT_ONCE}" if premises.sensors else PLANNED)
         if replies is not None:
             found[premises.replies.premise] = replies
             checks = (_in_time(replies, premises),)
@@ -65,7 +65,7 @@ def _in(layout: Layout, clause: str) -> str:
     return f"in layout `{layout.name}`: {clause}" if layout.name else clause
 
 
-def _replies(times: Times) -> _Weighed | None:
+def _replies(times: Times, planned: str) -> _Weighed | None:
     """Of the premise that answers come in time; None: nothing was measured."""
     limit = f"nobody owes an answer for longer than `reply_timeout_s`, {times.reply_timeout_s:g} s"
     late = [_in(x, why) for x in times.layouts for why in x.cycle.late]
@@ -74,7 +74,7 @@ def _replies(times: Times) -> _Weighed | None:
     known = [x.cycle.reply for x in times.layouts if x.cycle.reply is not None]
     if len(known) < len(times.layouts) or not known:
         return None
-    return _Weighed("", "", f"{limit} ({seconds_up(max(known))} s at most, if {PLANNED})")
+    return _Weighed("", "", f"{limit} ({seconds_up(max(known))} s at most, if {planned})")
 
 
 def _in_time(replies: _Weighed, premises: Premises) -> Check:

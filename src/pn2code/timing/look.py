@@ -33,6 +33,7 @@ from pn2code.verify.controller.running import NotModelledError
 from pn2code.verify.exploring.limits import Limits
 
 PLANNED = "each command takes its planned time, and messages and the supervisor none (docs/time.md)"
+AT_ONCE = "sensors and people answer at once"
 _OPEN = {
     "timed": "the net is timed, and when its time stamps are reached is not followed",
     "armless": "a robot has no arm in cell.toml, so that nobody knows how long its moves take",

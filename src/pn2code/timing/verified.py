@@ -28,7 +28,7 @@ from pn2code.semantics.game.token_game import Game
 from pn2code.timing.answers import seconds_down, seconds_up
 from pn2code.timing.contradicted import weighed
 from pn2code.timing.doings import NS
-from pn2code.timing.look import PLANNED, Measured, Times, look
+from pn2code.timing.look import AT_ONCE, PLANNED, Measured, Times, look
 from pn2code.timing.search import TIE, Search
 from pn2code.timing.waits import Is, Wait, longest_wait
 from pn2code.verdict.opened import OpenNet
@@ -39,7 +39,6 @@ from pn2code.verify.controller.control_types import Control
 from pn2code.verify.exploring.limits import Limits
 
 AT_MOST = "no command takes more than its planned time, and messages and the supervisor none (docs/time.md)"
-AT_ONCE = "sensors and people answer at once"
 NO_FAULT = "no fault stops a run"
 _WHY = {
     "idle": "something that takes no time can go on for ever before it",
