@@ -84,8 +84,7 @@ class Look:
         if touching and explore is not None:
             self.options.stage("looking for a place that guards the zone ...")
             zones = Zones(found, self.comparison, explore).proposals(bad, touching)
-        stopped = any(self.doing.activities[n].fault for n, _ in found.activities)
-        is_apart = not stopped and not any(p.answer == "no" for p in pairs)
+        is_apart = not found.stopped and not any(p.answer == "no" for p in pairs)
         return Layout(
             self.layout,
             len(self.graph.arcs),
@@ -98,7 +97,7 @@ class Look:
             reason(found.why),
             tuple(zones or ()),
             self.comparison.nearest() if is_apart else None,
-            stopped,
+            found.stopped,
         )
 
     # --- moves -----------------------------------------------------------------------------------
