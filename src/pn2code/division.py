@@ -5,14 +5,23 @@ This is the part of the pipeline that `check` shares with `generate`; it loads n
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
 from pn2code.cell.config import CellConfig
 from pn2code.cell.divide import divide
 from pn2code.cell.load import load as load_cell
 from pn2code.cell.names import check_names
 from pn2code.cell.partition import Partition
 from pn2code.cell.primitives import check_primitives
-from pn2code.diagnostics import Diagnostics
+from pn2code.cell.taken import kinds_taken
+from pn2code.diagnostics import Diagnostics, Span
 from pn2code.net.flat import FlatNet
+
+if TYPE_CHECKING:
+    from pn2code.robot.robot_cell import RobotCell
+
+Taken = Mapping[str, Mapping[str, Span]]
 
 
 def divided(
@@ -35,16 +44,54 @@ def divided(
     if partition is not None:
         check_primitives(partition, config, d)
     check_names(net, config, d)
-    check_geometry(config, d, to_run=to_run)
+    taken = kinds_taken(partition, config) if partition is not None else None
+    check_geometry(config, d, to_run=to_run, taken=taken)
     return partition if len(d.errors) == before else None
 
 
-def check_geometry(config: CellConfig, d: Diagnostics, *, to_run: bool) -> None:
-    """Reports what is wrong with the robots and the scene, in all layouts."""
+def check_geometry(
+    config: CellConfig, d: Diagnostics, *, to_run: bool, taken: Taken | None = None
+) -> None:
+    """Reports what is wrong with the robots and the scene, in all layouts.
+
+    Args:
+        config: the cell.
+        d: gets the errors.
+        to_run: whether each robot must say where it stands.
+        taken: the kinds of parts that each robot takes; None: that is not known, and no load is looked at.
+    """
     from pn2code.robot import scene  # loads NumPy, which nets without a cell do not need
 
     for layout in config.layouts or {"": ""}:
         cell = config if layout == config.layout else load_cell(config.path, d, layout=layout)
         if cell is None:
             continue
-        scene.load(cell.geometry, cell.folder, cell.locator.origin, d, partial=not to_run)
+        at = cell.locator.origin
+        stands = scene.load(cell.geometry, cell.folder, at, d, partial=not to_run)
+        if stands is not None and taken is not None:
+            _check_loads(stands, cell, taken, f" in layout `{layout}`" if layout else "", d)
+
+
+def _check_loads(
+    stands: RobotCell, config: CellConfig, taken: Taken, where: str, d: Diagnostics
+) -> None:
+    """What each robot carries, with all that its pages take, is not too much."""
+    from pn2code.robot import codes
+
+    for robot in stands.robots:
+        own = taken.get(robot.name, {})
+        for kind, span in own.items():
+            if kind not in robot.carries:
+                d.error(
+                    codes.ROBOT_PAYLOAD,
+                    f"robot `{robot.name}` takes a part `{kind}`, which `carries` of it does not name",
+                    span,
+                    hint=f'add "{kind}" to `carries` of robot `{robot.name}` in cell.toml',
+                )
+        if problem := robot.overload(stands.parts, own):
+            d.error(
+                codes.ROBOT_PAYLOAD,
+                problem + where,
+                config.locator.origin("robots", robot.name, "model"),
+                hint="choose another arm, or a lighter tool or part (`mass` of the kind of parts, kg)",
+            )

@@ -20,6 +20,8 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.pipeline import Generated, generate
 from pn2code.robot.model import MODELS
 from pn2code.run.cell import RunOptions, RunResult, run_cell
+from pn2code.verdict.opened import read
+from pn2code.verdict.programs import partition_of
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 
@@ -207,3 +209,11 @@ def test_check_names_a_tool_and_a_part_that_are_too_heavy(tmp_path: Path) -> Non
         text = " ".join(done.output.split())
         assert (done.exit_code == 0) == (not says), text
         assert says in text and ("robot-payload" in text) == bool(says)
+        # Whoever makes or explores the programs refuses it as well.
+        found = Diagnostics()
+        assert (generate(where, found, checked=False) is None) == bool(says)
+        assert {e.code for e in found.errors} == ({"robot-payload"} if says else set())
+        opened = read(where, {}, found := Diagnostics())
+        assert opened is not None and opened.config is not None
+        assert (partition_of(opened, opened.config, found) is None) == bool(says)
+        assert {e.code for e in found.errors} == ({"robot-payload"} if says else set())

@@ -19,6 +19,7 @@ from helpers.two_arm_cells import two_arm_cell
 from pn2code.cell.divide import divide
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
+from pn2code.geometry import report
 from pn2code.geometry.answers import Layout
 from pn2code.geometry.check import examine
 from pn2code.geometry.compare import Comparison
@@ -156,6 +157,11 @@ def test_air_that_is_gripped(tmp_path: Path) -> None:
     found = looked(cell, tmp_path / "runs")
     assert found.of_moves == "no"
     assert any("grips air" in m.problem for m in found.moves)
+    # What would come after it was not looked at: of pairs nothing is certain.
+    assert not found.pairs and (found.of_pairs, found.open, found.nearest) == ("unknown", "", None)
+    assert "looked at as far as runs get: a move before is impossible" in report.text(
+        [found], full=False
+    )
 
 
 def test_a_part_that_is_released_in_the_air(tmp_path: Path) -> None:

@@ -363,7 +363,7 @@ def test_cells_that_fail_one_check(
 ) -> None:
     plan = Plan(firings=1 if name == "long" else 10, folder=tmp_path, stem="x")
     found = checks(tmp_path / name, net, plan)
-    left_out = (*answers, control_types.CAPACITY, control_types.REACH)
+    left_out = (*answers, control_types.CAPACITY, control_types.REACH, control_types.IN_TIME)
     others = {n: "yes" for n in control_types.TITLES if n not in left_out}
     assert {c.name: c.answer for c in found.values()} == {**others, **answers}
     (wrong,) = [c for c in found.values() if c.fails]

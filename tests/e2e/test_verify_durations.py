@@ -11,6 +11,7 @@ import pytest
 from tools.adversary import times, waits, wander
 from typer.testing import CliRunner
 
+from helpers import meeting_cell
 from helpers.netbuilder import cpn
 from helpers.timed_runs_cell import NET, write
 from pn2code.cli.main import app
@@ -51,6 +52,7 @@ def test_seconds(tmp_path: Path) -> None:
     close, far, early, same, again, back, of_marking, first = said["properties"]
     assert (close["answer"], close["value"]) == ("yes", 4.001)
     assert any(x.startswith(PLANNED) for x in close["assumes"])
+    assert "sensors and people answer at once" in close["assumes"]
     assert far["answer"] == "yes" and any(x.startswith(AT_MOST) for x in far["assumes"])
     assert (early["answer"], early["value"]) == ("no", 3.999)
     assert same["answer"] == "inconclusive" and "to a millisecond" in same["why"]
@@ -78,6 +80,34 @@ def test_who_may_stop_is_not_promised_anything(tmp_path: Path) -> None:
     (tmp_path / "cell.toml").write_text(text, encoding="utf-8")
     (said,) = verified(tmp_path, END.format(9))["properties"]
     assert said["answer"] == "inconclusive" and "reply_timeout_s" in said["why"]
+
+
+def test_who_may_be_late_by_moves_makes_nothing_certain(tmp_path: Path) -> None:
+    """Each round is answered after more than 3 s: moves take most of that, which the net does not know."""
+    cell = tmp_path / "cell"
+    cell.mkdir()
+    text = meeting_cell.NET.replace("      TAKE\n", "").replace("      GIVE\n", "")
+    (cell / "cell.cpn").write_bytes(cpn(text))
+    ends, safe = "ctl AF tokens(Sup'Finished) = 1", "bound Rob1'Waiting 1 <= 1"
+    found = {}
+    for timeout in (3, 60):
+        toml = meeting_cell.TOML.replace(
+            'final = ["Finished"]', f'final = ["Finished"]\nreply_timeout_s = {timeout}'
+        )
+        (cell / "cell.toml").write_text(toml, encoding="utf-8")
+        for options in ((), ("--durations",)):
+            said = verified(cell, ends, safe, options=options)
+            checks = {c["check"]: c for c in said["controller"]}
+            answers = [checks["non-blocking"], *said["properties"], checks.get("in-time")]
+            found[timeout, bool(options)] = [a and a["answer"] for a in answers]
+            late = bool(options) and timeout == 3
+            assert late == any("may come after" in str(a and a["says"]) for a in answers[::3])
+            assumed = " ".join(answers[0]["assumes"])
+            assert ("how long moves" in assumed) == (not options)
+            assert ("s at most, if each command" in assumed) == (bool(options) and not late)
+    assert found[3, False] == found[60, False] == ["yes", "yes", "yes", None]
+    assert found[3, True] == ["unknown", "inconclusive", "yes", "unknown"]
+    assert found[60, True] == ["yes", "yes", "yes", "yes"]
 
 
 ARM = """[robots.press]

@@ -122,6 +122,8 @@ def _geometry(said: Json) -> tuple[str, list[Finding]]:
         nearest = (
             f"; they keep apart by at least {1000 * near['at_least_m']:.0f} mm" if near else ""
         )
+        if row.get("pairs_open"):
+            nearest = f"; {row['pairs_open']}"
         found += [
             Finding(
                 f"{where}moves",

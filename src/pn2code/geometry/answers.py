@@ -18,6 +18,7 @@ class Nearest:
     least: float
 
 
+STOPPED = "looked at as far as runs get: a move before is impossible"
 Verdict = Literal["yes", "no", "unknown"]
 _WORST: tuple[Verdict, ...] = ("no", "unknown", "yes")
 
@@ -166,6 +167,7 @@ class Layout:
         states, situations: that were seen; looked: pairs of legs that were compared, and `queries` distances measured.
         open: why not all situations are known; "": they are.
         nearest: the pair of arms that comes nearest, if all keep apart.
+        stopped: whether runs stop at a move that is impossible, so that nobody looked at what would come after it.
     """
 
     name: str
@@ -179,6 +181,7 @@ class Layout:
     open: str = ""
     proposals: tuple[Proposal, ...] = ()
     nearest: Nearest | None = None
+    stopped: bool = False
 
     @property
     def of_moves(self) -> Verdict:
@@ -190,7 +193,12 @@ class Layout:
     def of_pairs(self) -> Verdict:
         """Whether no two arms, and no arm and part, collide in any interleaving that the net permits."""
         found = worst([p.answer for p in self.pairs])
-        return "unknown" if self.open and found == "yes" else found
+        return "unknown" if (self.open or self.stopped) and found == "yes" else found
+
+    @property
+    def pairs_open(self) -> str:
+        """Why not all pairs are known although all situations are; "": they are."""
+        return STOPPED if self.stopped else ""
 
     @property
     def answer(self) -> Verdict:
@@ -205,6 +213,7 @@ class Layout:
             "moves_answer": self.of_moves,
             "pairs_answer": self.of_pairs,
             "open": self.open or None,
+            "pairs_open": self.pairs_open or None,
             "states": self.states,
             "situations": self.situations,
             "pairs_compared": self.looked,

@@ -84,6 +84,7 @@ class Look:
         if touching and explore is not None:
             self.options.stage("looking for a place that guards the zone ...")
             zones = Zones(found, self.comparison, explore).proposals(bad, touching)
+        is_apart = not found.stopped and not any(p.answer == "no" for p in pairs)
         return Layout(
             self.layout,
             len(self.graph.arcs),
@@ -95,7 +96,8 @@ class Look:
             time.perf_counter() - began,
             reason(found.why),
             tuple(zones or ()),
-            self.comparison.nearest() if not any(p.answer == "no" for p in pairs) else None,
+            self.comparison.nearest() if is_apart else None,
+            found.stopped,
         )
 
     # --- moves -----------------------------------------------------------------------------------

@@ -51,6 +51,8 @@ def _verdicts(layout: Layout) -> Iterator[str]:
         f"{_ANSWERS[layout.of_pairs]:>9}  no two arms collide, nor an arm and a part, in any interleaving that the net "
         f"permits ({resolution})"
     )
+    if layout.pairs_open:
+        yield f"           {layout.pairs_open}"
     if layout.of_pairs == "yes" and layout.nearest is not None:
         near = layout.nearest.where
         seen = (
@@ -127,11 +129,7 @@ def _bad_move(m: Move) -> Iterator[str]:
 
 def _bad_pair(p: Pair) -> Iterator[str]:
     yield ""
-    names = " and ".join(
-        f"`{t}`" if t else f"{robot} at rest" if robot else "a part"
-        for t, robot in zip(p.transitions, p.robots, strict=True)
-    )
-    yield f"{_ANSWERS[p.answer]}: {names} may be under way at once"
+    yield f"{_ANSWERS[p.answer]}: {_at_once(p)}"
     for robot, does in zip(p.robots, p.doing, strict=True):
         yield f"  {robot or 'part'}: {does}"
     yield f"  {p.says}"
@@ -140,8 +138,26 @@ def _bad_pair(p: Pair) -> Iterator[str]:
         yield f"  picture: {p.picture}"
 
 
+def _at_once(p: Pair) -> str:
+    """That both may be so at the same time; an arm at rest and a part stand."""
+    moving = [f"`{t}`" for t in p.transitions if t]
+    standing = [
+        f"{robot} at rest" if robot else "a part"
+        for t, robot in zip(p.transitions, p.robots, strict=True)
+        if not t
+    ]
+    if not standing:
+        return f"{' and '.join(moving)} may be under way at once"
+    if not moving:
+        return f"{' and '.join(standing)} may stand there at once"
+    return f"{moving[0]} may be under way while {standing[0].removesuffix(' at rest')} stands there"
+
+
 def _run(run: Run | None) -> Iterator[str]:
     if run is None:
+        return
+    if not run.steps:
+        yield f"  it is so at the start: {run.file or 'the run could not be written'}"
         return
     last = {1: "the last of them", 2: "the last two of them"}.get(run.under_way, "")
     which = f" ({last} under way)" if last else ""

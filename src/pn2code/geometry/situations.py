@@ -104,6 +104,11 @@ class Situations:
                 if found == before:
                     todo.append(found)
 
+    @property
+    def stopped(self) -> bool:
+        """Whether runs stop at something impossible, so that nobody has gone through what would come after it."""
+        return any(self.doing.activities[number].fault for number, _ in self.activities)
+
     def way(self, situation: int) -> list[int]:
         """The elements that lead to a situation, from the start."""
         out = []

@@ -98,6 +98,11 @@ class Zones:
             return f"with it, {reason(found.why)}", ""
         if self._can_meet(found, zone, bad):
             return "with it, arms can still collide", ""
+        if found.stopped:
+            return (
+                "with it, arms keep apart as far as runs get: a move is impossible, mend that first",
+                "",
+            )
         end = "the cell comes to its end from each of them"
         if not graph.partition.final_places:
             end = "there is no deadlock"

@@ -366,8 +366,7 @@ class RobotExecutor:
             if not axis.lower - 1e-9 <= a.position <= axis.upper + 1e-9:
                 raise MotionFault(
                     "joint-limit",
-                    f"{arm.called(i)} would be at {arm.shown(i, a.position)} {arm.unit(i)}, outside "
-                    f"{arm.shown(i, axis.lower)} .. {arm.shown(i, axis.upper)}",
+                    f"{arm.called(i)} would be at {arm.beyond(i, a.position, axis.lower, axis.upper)}",
                 )
             q[i] = a.position
         return q

@@ -20,12 +20,11 @@ from pn2code.robot import looks
 from pn2code.robot.commands import Pose
 from pn2code.robot.looks import Look
 from pn2code.robot.panel import FLANGE, cut, frame, stand_parts, stand_places, stringers
+from pn2code.robot.pedestal import WIDEST, half_width
 from pn2code.robot.robot_cell import CellRobot, PanelConfig, RobotCell
 from pn2code.robot.scene_objects import SceneObject
 from pn2code.robot.transforms import Array, matrix_of, pose_of
 
-_HALF = 0.46
-"""m: half as wide is what a robot stands on."""
 _RAIL = (0.32, 0.34, 0.37, 1.0)
 
 
@@ -71,7 +70,7 @@ def bodies(cell: RobotCell) -> tuple[Body, ...]:
         if robot.axes.tracks:
             out += _rail(robot)
         elif robot.base.z > 0.05:
-            out.append(_pedestal(robot.name, robot.base))
+            out.append(_pedestal(robot))
     if scene.panel is not None:
         out += panel_bodies(scene.panel)
     out += [body_of(o) for o in scene.objects]
@@ -118,12 +117,13 @@ def _stands_at(robot: CellRobot) -> Array:
     )
 
 
-def _pedestal(robot: str, base: Pose) -> Body:
+def _pedestal(robot: CellRobot) -> Body:
     """What a robot whose base is above the floor stands on."""
-    half = _HALF
+    base, half = robot.base, half_width(robot)
     pose = matrix_of(Pose(base.x, base.y, base.z / 2.0, 0.0, 0.0, base.rz))
     solids = (_box(pose, (2 * half, 2 * half, base.z)),)
-    return Body(f"{robot}_pedestal", solids, partial(looks.pedestal, half, base), None, (robot,))
+    draw = partial(looks.pedestal, half, base)
+    return Body(f"{robot.name}_pedestal", solids, draw, None, (robot.name,))
 
 
 def _rail(robot: CellRobot) -> Iterator[Body]:
@@ -139,7 +139,7 @@ def _rail(robot: CellRobot) -> Iterator[Body]:
     yaw = robot.base.rz
     across = np.array([[math.cos(yaw), math.sin(yaw)], [-math.sin(yaw), math.cos(yaw)]])
     flat = places[:, :2] @ across.T
-    low, high = flat.min(axis=0) - _HALF, flat.max(axis=0) + _HALF
+    low, high = flat.min(axis=0) - WIDEST, flat.max(axis=0) + WIDEST
     x, y = across.T @ ((low + high) / 2.0)
     size = (*(high - low).tolist(), top)
     pose = Pose(float(x), float(y), top / 2.0, 0.0, 0.0, yaw)

@@ -1,6 +1,6 @@
 """Whether a part that has been put down lies on something, and overlaps nothing.
 
-    overlap(backend, "box.1")        # Trouble("is 3.0 mm deep in `table`", margin=-0.002) or None
+    overlap(backend, "box.1")        # Trouble("is 3.0 mm deep in `table` (at most 1 mm)", margin=-0.002) or None
     unsupported(backend, "box.1")    # Trouble("`floor`, the nearest thing below it, is 50.0 mm away ...", ...) or None
 
 Only a backend that measures distances can say so; of another one the answer is None.
@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from pn2code.base.frozen import frozen
 from pn2code.robot.backend import Backend
+from pn2code.robot.digits import told_apart
 from pn2code.robot.robot_cell import PART_CONTACT
 
 REST_GAP = 0.005
@@ -38,7 +39,9 @@ def overlap(backend: Backend, name: str, within: float = 0.0) -> Trouble | None:
     margin = around[0].distance + PART_CONTACT
     if margin >= within:
         return None
-    return Trouble(f"is {-1000.0 * around[0].distance:.1f} mm deep in `{around[0].name}`", margin)
+    depth, most = -1000.0 * around[0].distance, 1000.0 * PART_CONTACT
+    shown, _ = told_apart(depth, most)
+    return Trouble(f"is {shown} mm deep in `{around[0].name}` (at most {most:g} mm)", margin)
 
 
 def unsupported(backend: Backend, name: str, within: float = 0.0) -> Trouble | None:

@@ -20,6 +20,7 @@ from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes, urdf
+from pn2code.robot.digits import told_apart
 from pn2code.robot.transforms import Array
 from pn2code.robot.urdf import Coupling, Joint, Urdf
 
@@ -89,14 +90,20 @@ class Arm:
 
     def outside(self, axis: int, q: Array) -> str:
         """For people: where an axis is that is outside its limits, and what these are."""
-        shown = [self.shown(axis, v) for v in (q[axis], self.lower[axis], self.upper[axis])]
+        said = (float(q[axis]), self.lower[axis], self.upper[axis])
         unit = self.unit(axis)
         for i, j, c in self.coupled():
             value = q[i] + c.factor * q[j]
             if i == axis and not c.lower - 1e-9 <= value <= c.upper + 1e-9:
-                shown = [self.shown(axis, v) for v in (value, c.lower, c.upper)]
+                said = (float(value), c.lower, c.upper)
                 unit += f" (counted with axis {j - self.tracks + 1})"
-        return f"{shown[0]} {unit}, outside {shown[1]} .. {shown[2]}"
+        return self.beyond(axis, *said, unit)
+
+    def beyond(self, axis: int, value: float, lower: float, upper: float, unit: str = "") -> str:
+        """For people: a position and the limits that it is outside of, with the digits that tell them apart."""
+        numbers = (v * self._factor(axis) for v in (value, lower, upper))
+        at, low, high = told_apart(*numbers, digits=2)
+        return f"{at} {unit or self.unit(axis)}, outside {low} .. {high}"
 
     def slides(self, axis: int) -> bool:
         """Whether an axis slides: a track, or an axis of the arm itself."""
@@ -105,8 +112,10 @@ class Arm:
 
     def shown(self, axis: int, value: float, digits: int = 2) -> str:
         """A position of an axis for people, without its unit: degrees, or mm of what slides."""
-        factor = 1000.0 if self.slides(axis) else math.degrees(1.0)
-        return f"{value * factor:.{digits}f}"
+        return f"{value * self._factor(axis):.{digits}f}"
+
+    def _factor(self, axis: int) -> float:
+        return 1000.0 if self.slides(axis) else math.degrees(1.0)
 
     def unit(self, axis: int) -> str:
         """`deg`, or `mm` of what slides."""

@@ -21,6 +21,7 @@ import numpy as np
 from pn2code.base.frozen import frozen
 from pn2code.robot.backend import Backend, Clearance
 from pn2code.robot.commands import Pose
+from pn2code.robot.digits import told_apart
 from pn2code.robot.executor import MotionKind
 from pn2code.robot.kinematics import Conditioning
 from pn2code.robot.motion import FaultKind
@@ -238,10 +239,8 @@ class Monitor:
         if gap.allowed is None and gap.distance <= 0.0:
             what = f"`{gap.a}` and `{gap.b}` collide ({depth:.1f} mm deep at {where} mm)"
         elif gap.allowed is not None and -gap.distance > gap.allowed:
-            what = (
-                f"`{gap.a}` is {depth:.1f} mm deep in `{gap.b}` at {where} mm, "
-                f"but only {1000.0 * gap.allowed:.1f} mm are allowed"
-            )
+            deep, most = told_apart(depth, 1000.0 * gap.allowed)
+            what = f"`{gap.a}` is {deep} mm deep in `{gap.b}` at {where} mm, but only {most} mm are allowed"
         else:
             return None
         message = f"robot `{gap.robot}`: {what}, at TCP pose {describe(pose)}"

@@ -118,7 +118,11 @@ def _loaded(
     carries = robot.carries if "carries" in t.data else taken
     for name in robot.carries:
         if name not in kinds:
-            t.wrong("carries", "a list of kinds of parts", did_you_mean(name, tuple(kinds)))
+            known = ", ".join(f"`{k}`" for k in kinds)
+            otherwise = f"known kinds: {known}" if known else f"add `[parts.{name}]`"
+            t.wrong_name(
+                "carries", name, "kind of parts", did_you_mean(name, tuple(kinds), otherwise)
+            )
     robot = replace(robot, carries=carries)
     rating = robot.arm.urdf.rating
     if rating is None or not rating.derating:
@@ -229,12 +233,12 @@ def _home(t: Table, name: str, arm: Arm, numbers: tuple[float, ...]) -> tuple[fl
 def _outside(arm: Arm, axis: int, home: Array, said: float) -> str:
     """In the units of the file."""
     if arm.slides(axis):
-        return f"{said:g} m, outside {arm.lower[axis]:g} .. {arm.upper[axis]:g}"
+        return f"{said:.12g} m, outside {arm.lower[axis]:g} .. {arm.upper[axis]:g}"
     low, high, how = arm.lower[axis], arm.upper[axis], ""
     if low - 1e-9 <= home[axis] <= high + 1e-9:
         coupled = next(c for i, _, c in arm.coupled() if i == axis)
         low, high, how = coupled.lower, coupled.upper, f" (counted with `{coupled.other}`)"
-    return f"{said:g} degrees{how}, outside {math.degrees(low):g} .. {math.degrees(high):g}"
+    return f"{said:.12g} degrees{how}, outside {math.degrees(low):g} .. {math.degrees(high):g}"
 
 
 def _scene(

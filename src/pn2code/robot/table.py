@@ -61,6 +61,15 @@ class Table:
             hint=hint,
         )
 
+    def wrong_name(self, key: str, name: str, what: str, hint: str = "") -> None:
+        """Report that a name in the list of a key is none of what it should be (in words)."""
+        self.d.error(
+            codes.ROBOT_VALUE,
+            f"{self._words(key)} names `{name}`, which is no {what}",
+            self.at(key),
+            hint=hint,
+        )
+
     @property
     def _word(self) -> str:
         """That of the key which decides what others there are; "" where there is none."""

@@ -99,6 +99,9 @@ class Cycle:
         at_most: ns, in whatever order things end, if no command takes more than its time.
         others: what runs may do that do not come to the end.
         situations: how many there are.
+        reply: ns, the longest time that somebody owes an answer; None: nobody owes any, or there is no longest.
+        late: whose answer may come later than the supervisor waits for it, each as a clause.
+        stops: what arms may be told and cannot do, so that a run stops.
     """
 
     endings: tuple[Ending, ...]
@@ -108,6 +111,9 @@ class Cycle:
     at_most: int | None
     others: tuple[str, ...]
     situations: int
+    reply: int | None = None
+    late: tuple[str, ...] = ()
+    stops: tuple[str, ...] = ()
 
     @property
     def least(self) -> int | None:
@@ -149,6 +155,7 @@ class Cycle:
             "at_least_s": _down(self.at_least),
             "at_most_s": _up(self.at_most),
             "others": list(self.others),
+            "late": list(self.late),
             "situations": self.situations,
             "endings": [e.row() for e in self.endings],
         }

@@ -7,7 +7,7 @@ found.layouts[0].cycle.most
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +32,8 @@ from pn2code.verdict.programs import partition_of
 from pn2code.verify.controller.running import NotModelledError
 from pn2code.verify.exploring.limits import Limits
 
+PLANNED = "each command takes its planned time, and messages and the supervisor none (docs/time.md)"
+AT_ONCE = "sensors and people answer at once"
 _OPEN = {
     "timed": "the net is timed, and when its time stamps are reached is not followed",
     "armless": "a robot has no arm in cell.toml, so that nobody knows how long its moves take",
@@ -191,14 +193,22 @@ class _Look:
             if not self.graph.partition.net.timed:
                 way, _ = anyhow.most()
                 at_most = None if way is None else way.ns
+        owed = [] if search.why else [*self._owed()]
+        late = tuple(self._late(owed))
+        # Of robots without an arm, and of what is told by more than tokens, nothing is known.
+        stops = [] if self.doings.why else [*search.faults, *anyhow.faults.values()]
+        stops = [why for why in dict.fromkeys(stops) if why]
         return Cycle(
             tuple(self._endings()),
             _clause(search.why),
             tuple(n for n in repeats if not n.startswith("cell.")),
             at_least,
             at_most,
-            tuple(self._others()),
+            tuple(self._others(late)),
             len(search.situations),
+            max((ns for _, ns in owed if ns is not None), default=None),
+            late,
+            tuple(stops),
         )
 
     def _endings(self) -> Iterator[Ending]:
@@ -219,7 +229,7 @@ class _Look:
                 self._run(worst, f"slowest{short}"),
             )
 
-    def _others(self) -> Iterator[str]:
+    def _others(self, late: Sequence[str]) -> Iterator[str]:
         """What runs may do that do not come to the end."""
         search = self.search
         yield from (f"a run may stop: {why}" for why in search.faults)
@@ -230,8 +240,7 @@ class _Look:
                 yield (
                     f"channel `{channel.name}` may come to hold two messages, and then the cell stops"
                 )
-        if not search.why:
-            yield from self._late()
+        yield from late
         if search.halts:
             yield "a script may come to where none of its transitions is possible, and stop the cell"
         if search.is_endless and not search.cycle:
@@ -239,9 +248,8 @@ class _Look:
         if not search.ends and not search.why:
             yield "no run comes to its end"
 
-    def _late(self) -> Iterator[str]:
-        """Who may owe an answer for longer than the supervisor waits for it."""
-        timeout = self.config.supervisor.reply_timeout_s
+    def _owed(self) -> Iterator[tuple[str, int | None]]:
+        """Who may owe an answer, and for how long at most (ns; None: without a limit)."""
         places = {p.name: p.index for p in self.graph.running.net.places}
         situations = self.search.situations
         for owner in self.graph.partition.owners:
@@ -250,11 +258,16 @@ class _Look:
                 continue
             marked = self.graph.marked
             owing = [i for i, (state, *_) in enumerate(situations) if place in marked[state]]
-            ns = longest_inside(self.search.successors, owing)
+            yield owner.phrase, longest_inside(self.search.successors, owing)
+
+    def _late(self, owed: Sequence[tuple[str, int | None]]) -> Iterator[str]:
+        """Who may owe an answer for longer than the supervisor waits for it."""
+        timeout = self.config.supervisor.reply_timeout_s
+        for who, ns in owed:
             if ns is None or ns + TIE > timeout * NS:
                 after = "at any time" if ns is None else f"after {ns / NS:.3f} s"
                 yield (
-                    f"an answer of {owner.phrase} may come {after}, later than reply_timeout_s "
+                    f"an answer of {who} may come {after}, later than reply_timeout_s "
                     f"({timeout:g} s) allows"
                 )
 

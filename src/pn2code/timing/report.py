@@ -60,8 +60,8 @@ def _cells(c: Command) -> tuple[str, ...]:
 
 def _cycle(cycle: Cycle, timeout: float) -> Iterator[str]:
     yield (
-        "Cycle, if each command takes its planned time, and messages and the supervisor's cycles take none (as in "
-        "`pn2code run`),"
+        "Cycle, if each command takes its planned time, and messages, sensors, people and the supervisor's "
+        "cycles take none (as in `pn2code run`),"
     )
     yield "over all orders that the net permits and all values of sensors:"
     for ending in cycle.endings:
@@ -89,7 +89,7 @@ def _cycle(cycle: Cycle, timeout: float) -> Iterator[str]:
     if cycle.at_most is not None:
         yield (
             f"In whatever order things end: no cycle takes more than {seconds_up(cycle.at_most)} s, if no command "
-            "takes more than its planned time, and messages and the supervisor none."
+            "takes more than its planned time, and messages, sensors, people and the supervisor none."
         )
     yield (
         f"A run that a fault stops is no cycle: a collision, a move that cannot be done, an answer later than "

@@ -26,8 +26,9 @@ from pn2code.properties import meaning as m
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.token_game import Game
 from pn2code.timing.answers import seconds_down, seconds_up
+from pn2code.timing.contradicted import weighed
 from pn2code.timing.doings import NS
-from pn2code.timing.look import Measured, Times, look
+from pn2code.timing.look import AT_ONCE, PLANNED, Measured, Times, look
 from pn2code.timing.search import TIE, Search
 from pn2code.timing.waits import Is, Wait, longest_wait
 from pn2code.verdict.opened import OpenNet
@@ -37,7 +38,6 @@ from pn2code.verify.answers.reasons import clause
 from pn2code.verify.controller.control_types import Control
 from pn2code.verify.exploring.limits import Limits
 
-PLANNED = "each command takes its planned time, and messages and the supervisor none (docs/time.md)"
 AT_MOST = "no command takes more than its planned time, and messages and the supervisor none (docs/time.md)"
 NO_FAULT = "no fault stops a run"
 _WHY = {
@@ -66,7 +66,10 @@ class Durations:
             for e in c.endings if not c.why else ():
                 best = "not known" if e.least is None else f"{seconds_down(e.least)} s"
                 worst = "no limit" if e.most is None else f"{seconds_up(e.most)} s"
-                out.append(f"{where}cycle to `{e.places.split('.')[-1]}`: {best} to {worst}")
+                seconds = f"{best} to {worst}"
+                if c.late:
+                    seconds = f"not known, as answers may be too late; if none were: {seconds}"
+                out.append(f"{where}cycle to `{e.places.split('.')[-1]}`: {seconds}")
             out += [f"{where}{other}" for other in c.others]
         return tuple(out)
 
@@ -108,7 +111,8 @@ def with_durations(
         answers = tuple(
             replace(a, why=clause("seconds")) if is_timed(a) else a for a in said.answers
         )
-    return replace(said, answers=answers, durations=Durations(times))
+    said = replace(said, answers=answers, durations=Durations(times))
+    return said if control is None else weighed(said, control.premises, times)
 
 
 def is_timed(a: Answer) -> bool:
@@ -188,7 +192,9 @@ class _Judge:
             slow = longest_wait(anyhow.successors, first, second, anyhow.ends())
         is_kept = slow.ns is not None and slow.ns + TIE <= limit
         value = math.ceil((wait.ns + TIE) / (NS // 1000)) / 1000 if wait.way else 0.0
-        assumes = (AT_MOST if is_kept else PLANNED, NO_FAULT)
+        config = self.opened.config
+        at_once = [AT_ONCE] if config is not None and config.sensors else []
+        assumes = (AT_MOST if is_kept else PLANNED, *at_once, NO_FAULT)
         return Answer(a.about, "yes", value=value, cell=True, assumes=assumes)
 
     def _event(self, one: Measured, f: m.Formula) -> Is | None:

@@ -74,7 +74,6 @@ def look_ahead(
         where = f" in layout `{layout}`" if layout else ""
         _home(cell, chosen, where, d)
         for ir in programs:
-            _payload(cell, ir, chosen, where, d)
             _kind_of_arm(cell, ir, where, d)
     arms = Arms.of(config, d, partial=False)
     if arms is not None:
@@ -167,33 +166,6 @@ def _is_constant(move: t.Move, constants: _Constants) -> bool:
     except ScriptError:
         return False
     return True
-
-
-def _payload(cell: RobotCell, ir: RobotIR, config: CellConfig, where: str, d: Diagnostics) -> None:
-    """What a robot carries, with all that its script takes, is not too much."""
-    robot = next((r for r in cell.robots if r.name == ir.name), None)
-    if robot is None:
-        return
-    taken: dict[str, Origin] = {}
-    for body in (ir.body, *(body for _, body in ir.procedures)):
-        for origin, said in _statements(body, ir.origin):
-            if isinstance(said, t.Tool) and said.handling and said.handling.effect == "takes":
-                taken.setdefault(said.handling.part, origin)
-    for kind, origin in taken.items():
-        if kind not in robot.carries:
-            d.error(
-                codes.ROBOT_PAYLOAD,
-                f"robot `{robot.name}` takes a part `{kind}`, which `carries` of it does not name",
-                origin,
-                hint=f'add "{kind}" to `carries` of robot `{robot.name}` in cell.toml',
-            )
-    if problem := robot.overload(cell.parts, taken):
-        d.error(
-            codes.ROBOT_PAYLOAD,
-            problem + where,
-            config.locator.origin("robots", robot.name, "model"),
-            hint="choose another arm, or a lighter tool or part (`mass` of the kind of parts, kg)",
-        )
 
 
 def _reach(arms: Arms, ir: RobotIR, d: Diagnostics) -> None:

@@ -25,7 +25,7 @@ from pn2code.verify.answers.outcome import Counts
 from pn2code.verify.answers.properties import Answer, Verdict, kind
 from pn2code.verify.answers.reasons import raised
 from pn2code.verify.codes import REPORT_UNWRITABLE, STATE_ERROR, TRACE_UNWRITABLE
-from pn2code.verify.controller import short_timers
+from pn2code.verify.controller import long_timers, short_timers
 from pn2code.verify.controller.control_types import Control
 from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.explore import ExploreOptions
@@ -166,6 +166,7 @@ def question(
         programs = lower_robots(partition, opened.config, d)
         if programs is not None:
             short_timers.warn(partition, opened.config, d)
+            long_timers.warn(partition, opened.config, d)
     asked = gather(opened, texts, file, d, found=found)
     nondeterminism.warn(opened.flat, d)
     return asked

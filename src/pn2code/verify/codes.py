@@ -154,3 +154,11 @@ SHORT_TIMER = register(
     "first. The state space has the answer in time as well, because a check holds for all durations. Make the timer "
     "longer.",
 )
+LONG_TIMER = register(
+    "long-timer",
+    "a timer of the supervisor waits longer for an answer than `reply_timeout_s` permits",
+    "A transition of the supervisor sends a command and starts a timer, for the case that no answer comes. But whoever "
+    "has got a flag and sends nothing for longer than `reply_timeout_s` stops the cell, so that the timer is never "
+    "over then, and what should follow does not. The state space has it all the same, because the net knows no "
+    "`reply_timeout_s`. Make `reply_timeout_s` longer than the timer, or the timer shorter.",
+)

@@ -144,3 +144,6 @@ def test_pairs_that_do_not_keep_apart(tmp_path: Path) -> None:
 def test_a_geometry_that_is_not_known(tmp_path: Path) -> None:
     assert geometry(tmp_path, 3, why="too many states").answer == OPEN
     assert geometry(tmp_path, 3, {**LAYOUT, "pairs_answer": "unknown"}).answer == OPEN
+    stopped = {**LAYOUT, "pairs_answer": "unknown", "pairs_open": "as far as runs get"}
+    said = geometry(tmp_path, 1, {**stopped, "moves_answer": "no", "nearest": None})
+    assert said.findings[1].answer == OPEN and "; as far as runs get" in said.findings[1].says

@@ -155,3 +155,4 @@ def test_mistakes_in_what_an_arm_says(
 def test_a_kind_of_parts_that_is_not_there(tmp_path: Path) -> None:
     found, d = said(tmp_path, 1.0, carries=["bix"])
     assert found is None and "carries" in d.errors[0].message and "`box`" in d.errors[0].hint
+    assert d.errors[0].message.endswith("names `bix`, which is no kind of parts")

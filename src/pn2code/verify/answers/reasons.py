@@ -20,6 +20,7 @@ _CLAUSES = {
     "endless": "the response is not finite",
     "speeds": "it depends on the order of events, and so on their durations",
     "late": "an answer may be owed for longer than `reply_timeout_s`, and that stops the cell",
+    "moves": "an arm may be told a move that it cannot make from where it is",
     "stops": "another check says that the supervisor stops",
     "commands": "a script may loop without a command or a wait that takes time: its commands and waits may be on "
     "branches that it never takes, or may take no time, as a move to where the arm already is",

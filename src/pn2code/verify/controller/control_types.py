@@ -29,6 +29,7 @@ MESSAGES = "messages"
 MEMORY = "memory"
 REACH = "reach"
 OWNERSHIP = "ownership"
+IN_TIME = "in-time"
 
 TITLES = {
     FINITE: "Finite response",
@@ -41,6 +42,7 @@ TITLES = {
     MEMORY: "Room for lists and strings",
     REACH: "Poses within reach",
     OWNERSHIP: "Owners use their own places only",
+    IN_TIME: "Answers in time",
 }
 MEANINGS = {
     FINITE: "the supervisor always comes to rest when no message arrives",
@@ -53,6 +55,7 @@ MEANINGS = {
     MEMORY: "the lists and strings of every marking, and what a firing works out, have room in the supervisor",
     REACH: "no arm is told a pose that it cannot reach, neither in a script nor in a message",
     OWNERSHIP: "each transition uses places of its owner only, and channels in their direction only",
+    IN_TIME: "nobody owes an answer for longer than the supervisor waits for it, if commands take planned times",
 }
 KEPT = frozenset({FINITE, BOUNDED, CHANNELS, CAPACITY, MESSAGES, MEMORY, REACH, OWNERSHIP})
 """Checks whose "yes" is kept when the programs do less than what was looked at."""

@@ -125,11 +125,16 @@ class Premises:
             found.append(_DURATIONS)
         return tuple(found)
 
+    @property
+    def reached(self) -> str:
+        """That no move stops its program."""
+        return _REACHED.format(arcs="arcs, " if self.arcs else "")
+
     def _of_moves(self) -> list[str]:
         """Those of an answer that needs the cell to go on."""
         return [
             *([_MOVING] if self.moving else []),
-            *([_REACHED.format(arcs="arcs, " if self.arcs else "")] if self.moves else []),
+            *([self.reached] if self.moves else []),
             *([_PARTS] if self.parts else []),
         ]
 

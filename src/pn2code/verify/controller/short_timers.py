@@ -31,7 +31,7 @@ from pn2code.verify.controller.commands import lasts
 from pn2code.verify.controller.durations import Durations
 from pn2code.verify.controller.stops import NoProgramError, machine
 
-_TAKING = (ArcKind.INPUT, ArcKind.BOTH)
+TAKING = (ArcKind.INPUT, ArcKind.BOTH)
 
 
 @frozen
@@ -94,7 +94,7 @@ class _Timers:
         for start in self._own:
             asked = {
                 p: self._channels[p].reader
-                for p in _puts_one(start)
+                for p in puts_one(start)
                 if p in self._channels
                 and self._partition.owners[self._channels[p].writer].kind is OwnerKind.SUPERVISOR
             }
@@ -109,7 +109,7 @@ class _Timers:
     def _always_starts(self, command: int, timer: int) -> bool:
         """Whether no command of this kind is sent without the timer."""
         return all(
-            timer in _puts_one(t)
+            timer in puts_one(t)
             for t in self._own
             if any(a.place == command and a.kind is ArcKind.OUTPUT for a in t.arcs)
         )
@@ -117,7 +117,7 @@ class _Timers:
     def _delays(self, start: FlatTransition) -> dict[int, float]:
         """By place of the supervisor the most seconds after which a token of the transition is there."""
         found: dict[int, float] = {}
-        for place, delay in _puts_one(start).items():
+        for place, delay in puts_one(start).items():
             if place in self._channels or not self._partition.net.places[place].colset.timed:
                 continue
             delays = [e for e in (start.delay, delay) if e is not None]
@@ -140,13 +140,13 @@ class _Timers:
         given = {a.place for a in over.arcs if a.kind is ArcKind.OUTPUT}
         if timer not in taken or timer in given or taken & self._channels.keys():
             return ""
-        if not _waits_for(over, timer):
+        if not waits_for(over, timer):
             return ""
         # What the start has put and the end of the timer takes for good: whoever takes one of these was quicker.
-        waiting = (taken - given) & _puts_one(start).keys()
+        waiting = (taken - given) & puts_one(start).keys()
         longest: tuple[float, str] | None = None
         for other in self._own:
-            inputs = {a.place for a in other.arcs if a.kind in _TAKING}
+            inputs = {a.place for a in other.arcs if a.kind in TAKING}
             if other is over or not inputs & waiting:
                 continue
             answers = [p for p in inputs if p in self._channels]
@@ -226,11 +226,7 @@ class _Timers:
         return sum((Least(self._shortest(e)) for e in delays), Least())
 
     def _shortest(self, e: core.Exp) -> float:
-        values = self._durations.values(e)
-        if not values or not all(isinstance(v, int | float) for v in values):
-            return 0.0
-        least = min(map(float, values))
-        return least if math.isfinite(least) and least > 0.0 else 0.0
+        return shortest(self._durations, e)
 
     def _least(self, e: core.Exp, inside: frozenset[int]) -> Least:
         """What the commands of an expression take at least; what is not understood takes nothing."""
@@ -263,7 +259,16 @@ class _Timers:
         return Least.of(self._least(r.body, inside | {symbol.uid}) for r in body.rules)
 
 
-def _puts_one(t: FlatTransition) -> dict[int, core.Exp | None]:
+def shortest(durations: Durations, e: core.Exp) -> float:
+    """The least seconds that a wait or delay may be; 0: they are not known."""
+    values = durations.values(e)
+    if not values or not all(isinstance(v, int | float) for v in values):
+        return 0.0
+    least = min(map(float, values))
+    return least if math.isfinite(least) and least > 0.0 else 0.0
+
+
+def puts_one(t: FlatTransition) -> dict[int, core.Exp | None]:
     """The places that get one token in any case, and its delay."""
     found: dict[int, core.Exp | None] = {}
     for a in t.arcs:
@@ -274,13 +279,13 @@ def _puts_one(t: FlatTransition) -> dict[int, core.Exp | None]:
     return found
 
 
-def _waits_for(t: FlatTransition, timer: int) -> bool:
+def waits_for(t: FlatTransition, timer: int) -> bool:
     """Whether it takes the token of the timer only when that is over."""
     return all(
         a.inscription is not None
         and all(x.delay is None and not x.whole for x in a.inscription.terms)
         for a in t.arcs
-        if a.kind in _TAKING and a.place == timer
+        if a.kind in TAKING and a.place == timer
     )
 
 
