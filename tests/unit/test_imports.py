@@ -65,7 +65,7 @@ ALLOWED: dict[str, set[str]] = {
         "semantics", "trace", "web"},
     "geometry": {"cell", "diagnostics", "ml", "net", "primitive_calls", "robot", "semantics", "trace", "verdict",
         "verify"},
-    "timing": {"cell", "diagnostics", "geometry", "net", "properties", "robot", "semantics", "trace", "verdict",
+    "timing": {"cell", "channel_model", "diagnostics", "geometry", "net", "properties", "robot", "semantics", "trace", "verdict",
         "verify"},
     "dossier": {"toolchain", "verify"},
     "cli": {"cell", "cell_file", "channels", "conform", "contest", "convert", "diagnostics", "division", "dossier",
