@@ -12,11 +12,11 @@ from pn2code.verify.answers import outcome
 from pn2code.verify.answers.outcome import Counts
 from pn2code.verify.exploring.explore import nothing
 from pn2code.verify.exploring.limits import Limits
-from pn2code.verify.exploring.result import Exploration, Seen
+from pn2code.verify.exploring.result import COUNTED, Exploration, Known, Seen
 
 NET = flat("net One\n  standard\n  place P = 1\n  trans T\n    in P : ()\n")
 ENDS = (
-    "complete", "decided", "states", "seconds", "memory", "infinite", "interrupted", "error", "approximation",
+    "complete", "decided", "states", "seconds", "memory", "infinite", "interrupted", "error", "approximation", COUNTED,
 )  # fmt: skip
 LAST = {"yes": ("YES", "COMPLETE"), "no": ("NO",), "inconclusive": ("NOT KNOWN", "NOT COMPLETE")}
 
@@ -25,7 +25,8 @@ def explored(why: str, *, markings: bool = False) -> Exploration:
     found = Exploration.of(NET, nothing(NET, Limits(), why), 0.0)
     error = {"message": "Div", "where": "T", "transition": 0} if why == "error" else None
     seen = Seen(markings=markings or why == "complete")
-    return replace(found, complete=why == "complete", error=error, seen=seen)
+    known = Known(5, 6, 0.0, ends=True, never=()) if why == COUNTED else None
+    return replace(found, complete=why == "complete", error=error, seen=seen, known=known)
 
 
 @pytest.mark.parametrize("why", ENDS)
@@ -48,7 +49,7 @@ def test_head_and_end_agree(why: str, errors: int) -> None:
             assert not open_, case
         if word == "yes":
             assert not bad and not open_ and not errors, case
-            assert asked or why == "complete", case
+            assert asked or why == "complete" or (why == COUNTED and counts.all), case
         if end.startswith("Verdict: COMPLETE"):
             assert why == "complete" and not counts.all, case
         if bad and why != "error":

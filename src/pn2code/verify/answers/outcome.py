@@ -58,9 +58,12 @@ def verdict(found: Exploration, counts: Counts) -> Word:
     """The worst of all: where no property is asked, whether all markings were seen counts as well."""
     if counts.bad or counts.errors or _has_raised(found):
         return "no"
-    if counts.open or not (counts.asked or found.complete or found.known):
-        return "inconclusive"
-    return "yes"
+    return "yes" if not counts.open and _is_enough(found, counts) else "inconclusive"
+
+
+def _is_enough(found: Exploration, counts: Counts) -> bool:
+    """Whether what was looked at is all that was asked: where nothing else is, that is all markings."""
+    return bool(counts.asked or found.complete or (found.known and counts.all))
 
 
 def header(net: FlatNet, found: Exploration, counts: Counts) -> str:
@@ -95,7 +98,7 @@ def closing(net: FlatNet, found: Exploration, counts: Counts) -> str:
     if counts.open:
         are = "are" if counts.open != 1 else "is"
         return f"Verdict: NOT KNOWN. {counts.open} of {counts.all} answers {are} not known."
-    if counts.all and (counts.asked or found.complete or found.known):
+    if counts.all and _is_enough(found, counts):
         return f"Verdict: YES. {_all_good(counts.all)}."
     if found.complete:
         one = nondeterminism.undetermined(net)
