@@ -240,10 +240,10 @@ def sized_integers(structure: str, bits: int) -> dict[str, tuple[int, Function]]
     smallest, refusal = -(2 ** (bits - 1)), "Div" if bits == 32 else "Overflow"
 
     def dividing(f: Function) -> Function:
-        def function(e: Evaluator, p: tuple[int, int]) -> Value:
+        def function(e: Evaluator, p: tuple[int, int]) -> int:
             if p[0] == smallest and p[1] == -1:
                 raise fail(refusal)
-            return f(e, p)
+            return int(f(e, p))
 
         return function
 
