@@ -110,6 +110,27 @@ def test_who_may_be_late_by_moves_makes_nothing_certain(tmp_path: Path) -> None:
     assert found[60, True] == ["yes", "yes", "yes", "yes"]
 
 
+def test_who_never_answers_is_not_in_time(tmp_path: Path) -> None:
+    """The press waits for material, which comes only when it has answered."""
+    net = NET.replace("AGAIN", "n + 1").replace("f2 -> f2, d2", "f2 -> f2, g -> g2, d2")
+    net = net.replace("Press (f", "Press (g -> g2, f")
+    net = net.replace("    place f2\n", "    place f2\n    place g2\n")
+    net = net.replace("    place f2 port out\n", "    place f2 port out\n    place g port out\n")
+    net = net.replace("      out Finished : ()\n", "      out Finished : ()\n      out g : ()\n")
+    pages, press = net.split("  page Press\n")
+    press = f"    place g port in\n{press}".replace(
+        "      in Told : ()\n", "      in Told : ()\n      in g : ()\n"
+    )
+    toml = (write(tmp_path) / "cell.toml").read_text(encoding="utf-8")
+    more = '[[channel]]\nplace = "g2"\nfile = "g2.txt"\nkind = "data"\n'
+    (tmp_path / "cell.toml").write_text(toml.replace("[prim", f"{more}[prim"), encoding="utf-8")
+    (tmp_path / "cell.cpn").write_bytes(cpn(f"{pages}  page Press\n{press}"))
+    checks = {c["check"]: c for c in verified(tmp_path)["controller"]}
+    assert checks["non-blocking"]["answer"] == "no"
+    assert checks["in-time"]["answer"] == "unknown"
+    assert "device `press` may come at any time, or never" in checks["in-time"]["says"]
+
+
 ARM = """[robots.press]
 instance = "Press"
 model = "kr120_r2500"

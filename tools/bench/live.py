@@ -10,7 +10,6 @@ a browser draws is not measured.
 
 from __future__ import annotations
 
-import argparse
 import os
 import secrets
 import shutil
@@ -190,19 +189,3 @@ def measure(cell: Path, pages: int, runs: int, speed: float, watchers: int = 0) 
     print("| ratio | " + " | ".join(f"{r:.3f}" for r in ratios) + " |")
     print(f"\n99 %, run by run: {min(slowest):.3f} .. {max(slowest):.3f} (aim: at most {MOST:g})")
     return int(ratios[-1] > MOST and min(slowest) > MOST and load <= (os.cpu_count() or 1) / 2)
-
-
-def main() -> int:
-    """As `./dev bench --live`."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("cell", type=Path)
-    parser.add_argument("--pages", type=int, default=10)
-    parser.add_argument("--watchers", type=int, default=0)
-    parser.add_argument("--runs", type=int, default=4)
-    parser.add_argument("--speed", type=float, default=10.0)
-    asked = parser.parse_args()
-    return measure(asked.cell, asked.pages, asked.runs, asked.speed, asked.watchers)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -68,7 +68,7 @@ from pn2code.base.frozen import frozen
 from pn2code.cell.partition import Partition
 from pn2code.channel_model.rules import Rules
 from pn2code.diagnostics import Diagnostics
-from pn2code.net.flat import ArcKind, FlatTransition
+from pn2code.net.flat import ArcKind, FlatNet, FlatTransition
 from pn2code.verify.controller import messages
 from pn2code.verify.controller.by_turns import loosened
 from pn2code.verify.controller.left_over import questions
@@ -97,6 +97,13 @@ class Shown:
     places: int
     transitions: int
     is_counted: bool = False
+
+    @staticmethod
+    def of(net: FlatNet, found: Exploration) -> Shown:
+        """By the space of a net that has shown it."""
+        return Shown(
+            found.nodes, found.arcs, len(net.places), len(net.transitions), found.is_counted
+        )
 
 
 def why_not(partition: Partition, rules: Rules) -> str:
@@ -152,7 +159,7 @@ def looked(
     is_good = all(a["answer"] == "yes" for a in found.answers)
     if not is_good or messages.examine(partition, found, Diagnostics()).answer != "yes":
         return None
-    return Shown(found.nodes, found.arcs, len(running.net.places), len(running.net.transitions))
+    return Shown.of(running.net, found)
 
 
 def rows(

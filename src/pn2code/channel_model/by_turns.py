@@ -25,6 +25,7 @@ from pn2code.channel_model.places import ChannelModel, Crashes
 from pn2code.channel_model.rules import Rules
 from pn2code.diagnostics import Diagnostics
 from pn2code.lowering.nets.packing import choose
+from pn2code.properties.questions import ENDLESS
 from pn2code.verify.controller.running import chunks
 from pn2code.verify.exploring.elements import NotPossibleError
 from pn2code.verify.exploring.explore import ExploreOptions, explore
@@ -32,9 +33,6 @@ from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.programs import Generated, Sizes
 from pn2code.verify.exploring.result import Exploration
 from pn2code.verify.exploring.turns import turns
-
-ENDLESS = 1_000_000_000
-"""A run is that long, or goes on for ever."""
 
 
 def in_turns(

@@ -243,6 +243,11 @@ _OF_CELL = (
 def _by_cell(shown: by_cell.Shown, assumes: str, seconds: float) -> Answer:
     """The "yes" that follows from the cell as it runs."""
     how = [assumes, _OF_CELL, IN_TURNS, *([COUNTED] if shown.is_counted else [])]
+    return _reduced(shown, seconds, "; ".join(how))
+
+
+def _reduced(shown: by_cell.Shown, seconds: float, assumes: str) -> Answer:
+    """The "yes" of a space that is not the whole one."""
     return Answer(
         check=WHOLE,
         says=_ASKED,
@@ -253,7 +258,7 @@ def _by_cell(shown: by_cell.Shown, assumes: str, seconds: float) -> Answer:
         places=shown.places,
         transitions=shown.transitions,
         seconds=seconds,
-        assumes="; ".join(how),
+        assumes=assumes,
         evidence=(),
         reduced=True,
     )
@@ -281,21 +286,9 @@ def _in_turns(
     found = by_turns.in_turns(partition, rules, storage, limits, run.options, Diagnostics())
     if found is None or messages.examine(partition, found[1], run.d).answer != "yes":
         return None
-    net, seen = found
-    return Answer(
-        check=WHOLE,
-        says=_ASKED,
-        answer="yes",
-        why="",
-        nodes=seen.nodes,
-        arcs=seen.arcs,
-        places=len(net.net.places),
-        transitions=len(net.net.transitions),
-        seconds=time.perf_counter() - began,
-        assumes=f"{assumes}; {IN_TURNS}",
-        evidence=(),
-        reduced=True,
-    )
+    made, seen = found
+    shown = by_cell.Shown.of(made.net, seen)
+    return _reduced(shown, time.perf_counter() - began, f"{assumes}; {IN_TURNS}")
 
 
 def _choices(partition: Partition) -> str:

@@ -1,6 +1,7 @@
-"""What `check --geometry --json` has found out, as answers and tables of a report.
+"""What `check --geometry --json` has found out of a layout, as answers and tables of a report.
 
-    says, findings, tables = geometry(said)
+    answered(row["moves_answer"])           # "yes", "no" or "not known"
+    for table in tables(row): ...
 
 The moves come with the margins that are least from wherever the arm can be when they begin, the worst first.
 """
@@ -21,7 +22,6 @@ _HEAD = (
 _PAIRS = ("Robots", "Under way at once", "Keep apart", "Distance", "What is met", "Run")
 _SCALES = {"clearance_m": 0.1, "own_clearance_m": 0.1, "limit_deg": 20.0}
 _CONDITION = 50.0
-_ANSWERS = {"yes": "yes", "no": "no"}
 
 
 @frozen
@@ -35,7 +35,7 @@ class Table:
 
 def answered(word: str) -> str:
     """As a report says it: what is neither yes nor no is not known."""
-    return _ANSWERS.get(word, "not known")
+    return word if word in ("yes", "no") else "not known"
 
 
 def tables(layout: Json) -> list[Table]:

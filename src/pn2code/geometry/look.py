@@ -182,8 +182,8 @@ class Look:
             math.degrees(margins.limit),
             margins.axis + 1,
             margins.condition,
-            _least(scene),
-            _least(itself),
+            certain(scene),
+            certain(itself),
             scene.where,
             self._run(found, met) if answer != "yes" else None,
         )
@@ -282,8 +282,9 @@ def _met(
     )
 
 
-def _least(apart: Apart) -> float | None:
-    return None if apart.outcome == "open" else apart.least
+def certain(apart: Apart) -> float | None:
+    """The distance (m) below which nothing comes, negative where it touches; None: that is not known."""
+    return None if apart.outcome == "open" or math.isinf(apart.least) else apart.least
 
 
 def _most_in(apart: Apart) -> float:
@@ -294,12 +295,12 @@ def _most_in(apart: Apart) -> float:
 
 
 def touch_in_words(apart: Apart) -> str:
-    """Which links overlap, where, by how much, and that it is nowhere much more."""
+    """Which links overlap, where, by how much, and that it is nowhere much more, if that is known."""
     gap = apart.where
     assert gap is not None
     at = ", ".join(f"{1000.0 * v:.0f}" for v in gap.point)
+    text = f"`{gap.a}` and `{gap.b}` overlap by {-1000.0 * gap.distance:.1f} mm at ({at}) mm"
+    if certain(apart) is None:
+        return f"{text}; how deep on the rest of the way is not known"
     most = -1000.0 * _most_in(apart)
-    return (
-        f"`{gap.a}` and `{gap.b}` overlap by {-1000.0 * gap.distance:.1f} mm at ({at}) mm, "
-        f"and nowhere on the way by more than {math.ceil(10.0 * most) / 10.0:.1f} mm"
-    )
+    return f"{text}, and nowhere on the way by more than {math.ceil(10.0 * most) / 10.0:.1f} mm"

@@ -138,7 +138,8 @@ def _arm_angles(robot: CellRobot, leg: Leg, count: int) -> Array:
     """The arm angle (rad) at each pose of a leg; of arms that have none, zeros."""
     path = leg.path.led if isinstance(leg.path, AlongTrajectory) else leg.path
     if isinstance(path, LinearTrajectory):
-        return np.array([path.arm_angle_at(float(s)) or 0.0 for s in np.linspace(0.0, 1.0, count)])
+        angles = path.arm_angles(np.linspace(0.0, 1.0, count))
+        return np.zeros(count) if angles is None else angles
     said = robot.kinematics.arm_angle or 0.0
     if isinstance(leg.command, MoveJoint | MoveLinear | MoveCircular):
         said = said if leg.command.arm_angle is None else leg.command.arm_angle

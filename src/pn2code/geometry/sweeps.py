@@ -52,7 +52,7 @@ class Apart:
 
     Args:
         outcome: never nearer than touching, touching somewhere, or not known.
-        least: m, that is certain: where they touch, nothing overlaps by more than -least.
+        least: m, that is certain: where they touch, nothing overlaps by more than -least (-inf: nothing is certain).
         nearest: the smallest distance that was measured (inf: none); where they touch, the deepest overlap.
         where: the nearest links and points; at: of each leg the fraction of its way; joints: and where its arm is, rad.
         why: of "open".
@@ -231,14 +231,14 @@ class Sweeper:
             found = self._backend.pairs(kind, a.robot, limit)
             bound = best + ROUNDING
             is_open = False
-            deepest = max(best, 0.0) + ROUNDING
+            lowest = max(best, 0.0) + ROUNDING
             for gap in found:
                 allowed = gap.permitted(is_free=a.leg.kind == "ptp")
                 slack = gap.distance if allowed is None else gap.distance + allowed
                 spread = _spread_of(gap.a, a, knots.spread[0])
                 if kind == "self":
                     spread += _spread_of(gap.b, a, knots.spread[0])
-                deepest = min(deepest, slack - spread)
+                lowest = min(lowest, slack - spread)
                 touches = slack < 0.0 or (slack <= 0.0 and allowed is None)
                 if touches and (touch is None or slack < best):
                     if touch is None:
@@ -261,7 +261,7 @@ class Sweeper:
                     near = f"{1000.0 * max(slack, 0.0):.2f} mm"
                     why = f"`{gap.a}` and `{gap.b}` come within {near}, which is less than can be told apart"
                     open_ = Apart("open", 0.0, best, gap, (middle, 0.0), why)
-            deep = max(deep, deepest)
+            deep = max(deep, lowest)
             if touch is not None:
                 if wide * times <= RESOLUTION:
                     least = min(least, deep)
@@ -278,7 +278,7 @@ class Sweeper:
             else:
                 least = min(least, bound)
         if touch is not None:
-            return replace(touch, least=min(touch.least, least))
+            return replace(touch, least=-math.inf if a.trouble else min(touch.least, least))
         if open_ is not None:
             return open_
         if a.trouble:
@@ -347,7 +347,8 @@ def deepest(two: Two, known: Apart) -> Apart:
             continue
         for half in _halves(own, a, b, one.spread[0], other.spread[0]):
             heapq.heappush(heap, (low, next(count), half))
-    return replace(best, least=min(least, best.nearest))
+    is_unknown = a.trouble or b.trouble
+    return replace(best, least=-math.inf if is_unknown else min(least, best.nearest))
 
 
 class Standing:

@@ -18,8 +18,8 @@ from pn2code.properties.ltl import Automaton, automaton
 _UNARY = {"EX": "ex", "AX": "ax", "EF": "ef", "AF": "af", "EG": "eg", "AG": "ag"}
 
 
-MANY = 1_000_000_000
-"""Firings: as good as no limit."""
+ENDLESS = 1_000_000_000
+"""Steps: a run is that long, or goes on for ever; as good as no limit."""
 
 
 @record
@@ -57,7 +57,7 @@ class Questions:
                 first, second, _, _, True
             ):  # of a net without time nothing can be asked
                 self.asked.append(
-                    f"? within-firings {self._event(first)} {self._event(second)} {MANY}"
+                    f"? within-firings {self._event(first)} {self._event(second)} {ENDLESS}"
                 )
             case m.Response(first, second, firings, time):
                 limit = f"firings {firings}" if firings is not None else f"time {time}"

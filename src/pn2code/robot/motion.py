@@ -385,19 +385,15 @@ class LinearTrajectory:
         # Unwrapped positions close enough that the turns of any instant between are those nearby.
         self.times = np.linspace(0.0, law.duration, count + 1)
         s = self.way(self.times)
-        self.grid = self._k.follow(self.line.at(s), branch, start, self._angles(s))
+        self.grid = self._k.follow(self.line.at(s), branch, start, self.arm_angles(s))
 
-    def _angles(self, s: Array) -> Array | None:
-        """The arm angle at fractions of the way; None: the arm has none."""
-        return None if self._swivel is None else self._swivel[0] + s * self._swivel[1]
-
-    def arm_angle_at(self, s: float) -> float | None:
-        """The arm angle (rad) at a fraction of the way; None: the arm has none."""
+    def arm_angles(self, s: Array) -> Array | None:
+        """The arm angle (rad) at fractions of the way; None: the arm has none."""
         return None if self._swivel is None else self._swivel[0] + s * self._swivel[1]
 
     def rows(self, s: Array) -> Array:
         """Joint positions on the branch at fractions of the way, axes that turn in (-pi, pi]."""
-        return self._k.on_branch(self.line.at(s), self.branch, self._angles(s))
+        return self._k.on_branch(self.line.at(s), self.branch, self.arm_angles(s))
 
     def way(self, times: Array) -> Array:
         """Fraction of the way at each time, 0 to 1."""
@@ -437,7 +433,7 @@ class LinearTrajectory:
 
     def on_way(self, s: Array) -> Array:
         """Joint positions at fractions of the way, in order, whenever the arm is there; NaN out of reach."""
-        return self._k.follow(self.line.at(s), self.branch, self.grid[0], self._angles(s))
+        return self._k.follow(self.line.at(s), self.branch, self.grid[0], self.arm_angles(s))
 
 
 def plan_ptp(
@@ -675,9 +671,10 @@ def _check_line(kinematics: Kinematics, lin: LinearTrajectory, limits: MotionLim
 
 
 def _other_branches(kinematics: Kinematics, lin: LinearTrajectory, index: int) -> str:
-    pose = lin.line.at(lin.way(lin.times[index : index + 1]))
-    angle = lin.arm_angle_at(float(lin.way(lin.times[index : index + 1])[0]))
-    return other_branches(kinematics, pose[0], lin.branch, angle)
+    s = lin.way(lin.times[index : index + 1])
+    angles = lin.arm_angles(s)
+    angle = None if angles is None else float(angles[0])
+    return other_branches(kinematics, lin.line.at(s)[0], lin.branch, angle)
 
 
 def other_branches(

@@ -20,7 +20,7 @@ import numpy as np
 
 from pn2code.cell_file.geometry import MOTION, ROBOT, SCENE
 from pn2code.cell_file.keys import Section
-from pn2code.diagnostics import Diagnostics
+from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes
 from pn2code.robot.carried import WithAxes, with_axes
@@ -169,6 +169,7 @@ def _robot(t: Table, name: str, folder: Path) -> CellRobot | None:
     kinematics = Kinematics.of(arm, tool, t.at("model"), t.d)
     if kinematics is None or home is None:
         return None
+    _expect_wrist(arm, kinematics, t.d)
     branch = {str(b): b for b in kinematics.branches}.get(branch_name)
     if branch is None and branch_name != "any":
         own_names = ", ".join(f"`{b}`" for b in kinematics.branches)
@@ -202,6 +203,18 @@ def _robot(t: Table, name: str, folder: Path) -> CellRobot | None:
     return CellRobot(
         name, whole, tool, carried, base, home, branch, axes, tcps=tcps, carries=carries
     )
+
+
+def _expect_wrist(arm: Arm, kinematics: Kinematics, d: Diagnostics) -> None:
+    """Where an arm says moments, it has the wrist that they are about: no others are looked at."""
+    rating = arm.urdf.rating
+    if rating is not None and rating.moments and kinematics.wrist_in_flange is None:
+        d.error(
+            codes.ROBOT_URDF,
+            f"`moments` are about axes 4, 5 and 6 of a spherical wrist, and `{arm.name}` has none",
+            Origin(str(arm.urdf.path)),
+            hint="leave `moments` out; `payload` is looked at for every arm",
+        )
 
 
 def _home(t: Table, name: str, arm: Arm, numbers: tuple[float, ...]) -> tuple[float, ...] | None:

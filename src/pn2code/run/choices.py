@@ -11,10 +11,10 @@ from collections.abc import Iterable, Mapping
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
-from pn2code.cell.scalars import Scalar, ScalarKind, scalars_of
+from pn2code.cell.scalars import Scalar
 from pn2code.channels.scalars import Malformed, format_scalars
 from pn2code.net.flat import FlatNet
-from pn2code.run.sensors import Value, parsed
+from pn2code.run.sensors import Value, parsed, usable, values_of
 from pn2code.tdl.check import CheckedProgram
 from pn2code.tdl.interpret import Interpreter
 from pn2code.tdl.requests import Fault, Files
@@ -41,16 +41,8 @@ class Choice:
 
     def values(self) -> tuple[Value, ...] | None:
         """All values, in the order of the colour set; None: too many, or not bounded."""
-        match self.scalar.kind:
-            case ScalarKind.BOOL:
-                return (False, True)
-            case ScalarKind.ENUM if 0 < len(self.scalar.names) <= MOST_LISTED:
-                return self.scalar.names
-            case ScalarKind.INT | ScalarKind.INDEX:
-                low, high = self.scalar.low, self.scalar.high
-                if isinstance(low, int) and isinstance(high, int) and high - low < MOST_LISTED:
-                    return tuple(range(low, high + 1))
-        return None
+        values = values_of(self.scalar, MOST_LISTED)
+        return None if values is None else tuple(values)
 
     def texts(self) -> tuple[str, ...] | None:
         """`values`, as they are written."""
@@ -75,16 +67,13 @@ def choices_of(
     config: CellConfig, net: FlatNet, programs: Mapping[str, CheckedProgram]
 ) -> dict[tuple[str, str], Choice]:
     """All sensors that these programs ask, by program and sensor."""
-    colsets = {v.name: v.colset for t in net.transitions for v in t.variables}
-    sensors = {s.name: s for s in config.sensors}
+    sensors = {sensor.name: (sensor, scalar) for sensor, scalar in usable(config, net)}
     found: dict[tuple[str, str], Choice] = {}
     for party, program in programs.items():
         for name in program.sensors:
-            sensor = sensors.get(name)
-            colset = colsets.get(sensor.variable) if sensor is not None else None
-            scalars = scalars_of(colset) if colset is not None else None
-            if sensor is not None and scalars is not None and len(scalars) == 1:
-                found[party, name] = Choice(party, name, sensor.variable, scalars[0])
+            if name in sensors:
+                sensor, scalar = sensors[name]
+                found[party, name] = Choice(party, name, sensor.variable, scalar)
     return found
 
 

@@ -1,7 +1,7 @@
 """A person's hand in a run on the wall clock: what sensors say, who stands still, what fails, which messages are late.
 
-    hand = Hand(choices, parties, channels, wishes, patience)
-    hand.look(now)                                 # again and again: takes the wishes that have come
+    hand = Hand(choices, channels, wishes, patience)
+    hand.look(engine)                              # again and again: takes the wishes that have come
     hand.asked("robot1", "camera", own, permitted) # what it says; None: a person has been asked
     hand.answer("robot1")                          # the same, later
 
@@ -19,7 +19,7 @@ from typing import Any, Protocol
 
 from pn2code.base.frozen import frozen, record
 from pn2code.channels.scalars import Malformed
-from pn2code.run.choices import MOST_LISTED, Choice
+from pn2code.run.choices import Choice
 from pn2code.run.late_files import Fate
 from pn2code.tdl.requests import Scalar
 
@@ -347,7 +347,7 @@ class Hand:
                     "sensor": q.choice.sensor,
                     "variable": q.choice.variable,
                     "line": q.line,
-                    "values": [q.choice.text(v) for v in q.values[:MOST_LISTED]],
+                    "values": [q.choice.text(v) for v in q.values],
                     "own": q.choice.text(q.own),
                     "left": max(q.until - now, 0.0),
                 }

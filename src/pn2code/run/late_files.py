@@ -60,10 +60,6 @@ class LateFiles(RobotFiles):
             self._late[name] = (self._now() + fate.late, values)
         self._heard(name, fate)
 
-    def is_held(self, name: str) -> bool:
-        """Whether a message is on its way."""
-        return name in self._late
-
     def deliver(self, now: float) -> list[str]:
         """Publishes what is due; the channels."""
         due = [name for name, (at, _) in self._late.items() if at <= now]

@@ -12,7 +12,7 @@ scalars of the colour set of the net variable that the sensor decides.
 from __future__ import annotations
 
 import random
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import field, replace
 from pathlib import Path
 
@@ -78,30 +78,49 @@ def load(
         seed: replaces that of each sensor; None: its own.
     """
     before = len(d.errors)
-    colsets = {v.name: v.colset for t in net.transitions for v in t.variables}
     out: dict[str, _Sensor] = {}
     seen: dict[str, tuple[str, str]] = {}
-    for sensor in config.sensors:
-        colset = colsets.get(sensor.variable)
-        scalars = scalars_of(colset) if colset is not None else None
-        if colset is None or scalars is None or len(scalars) != 1:
-            continue  # no program asks it: said when the programs were made
-        if sensor.sees and scalars[0].kind is not ScalarKind.BOOL:
+    for sensor, scalar in usable(config, net):
+        if sensor.sees and scalar.kind is not ScalarKind.BOOL:
             d.error(
                 CELL_VALUE,
                 f"sensor `{sensor.name}` sees whether a part is at `{sensor.sees}`, but its variable is of colour set "
-                f"`{scalars[0].colset}`",
+                f"`{scalar.colset}`",
                 sensor.origin,
                 hint="let the variable be a truth value (a colour set `bool`)",
             )
             continue
         if sensor.sees:
             seen[sensor.name] = (sensor.sees, sensor.part)
-        script = _script(sensor, scalars, tuple(folders), d)
+        script = _script(sensor, (scalar,), tuple(folders), d)
         is_drawn = not sensor.file and sensor.default is None
-        choices = _choices(sensor, scalars[0], d) if is_drawn else ()
+        choices = _choices(sensor, scalar, d) if is_drawn else ()
         out[sensor.name] = _Sensor(sensor.seed if seed is None else seed, script, choices)
     return Sensors(out, seen) if len(d.errors) == before else None
+
+
+def usable(config: CellConfig, net: FlatNet) -> Iterator[tuple[SensorConfig, Scalar]]:
+    """The sensors whose variable is one scalar, with it. No program asks others: said when the programs were made."""
+    colsets = {v.name: v.colset for t in net.transitions for v in t.variables}
+    for sensor in config.sensors:
+        colset = colsets.get(sensor.variable)
+        scalars = scalars_of(colset) if colset is not None else None
+        if scalars is not None and len(scalars) == 1:
+            yield sensor, scalars[0]
+
+
+def values_of(scalar: Scalar, most: int) -> range | tuple[Value, ...] | None:
+    """All values, in the order of the colour set; None: more than so many, or not bounded."""
+    match scalar.kind:
+        case ScalarKind.BOOL:
+            return (False, True)
+        case ScalarKind.ENUM if len(scalar.names) <= most:
+            return scalar.names
+        case ScalarKind.INT | ScalarKind.INDEX:
+            low, high = scalar.low, scalar.high
+            if isinstance(low, int) and isinstance(high, int) and high - low < most:
+                return range(low, high + 1)
+    return None
 
 
 def _script(
@@ -201,15 +220,9 @@ def _default(
 
 
 def _choices(sensor: SensorConfig, scalar: Scalar, d: Diagnostics) -> range | tuple[Value, ...]:
-    match scalar.kind:
-        case ScalarKind.BOOL:
-            return (False, True)
-        case ScalarKind.ENUM:
-            return scalar.names
-        case ScalarKind.INT | ScalarKind.INDEX:
-            low, high = scalar.low, scalar.high
-            if isinstance(low, int) and isinstance(high, int) and high - low < MOST_DRAWN:
-                return range(low, high + 1)
+    values = values_of(scalar, MOST_DRAWN)
+    if values is not None:
+        return values
     d.error(
         CELL_VALUE,
         f"sensor `{sensor.name}`: colour set `{scalar.colset}` has too many values to draw one at random",

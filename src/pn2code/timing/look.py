@@ -249,23 +249,27 @@ class _Look:
             yield "no run comes to its end"
 
     def _owed(self) -> Iterator[tuple[str, int | None]]:
-        """Who may owe an answer, and for how long at most (ns; None: without a limit)."""
+        """Who may owe an answer, and for how long at most (ns; None: without a limit, or for ever)."""
         places = {p.name: p.index for p in self.graph.running.net.places}
         situations = self.search.situations
+        # Where nothing more happens the supervisor still waits, and no answer comes.
+        stuck = set(self.search.stuck)
         for owner in self.graph.partition.owners:
             place = places.get(f"cell.{owner.name}.owes")
             if place is None:
                 continue
             marked = self.graph.marked
             owing = [i for i, (state, *_) in enumerate(situations) if place in marked[state]]
-            yield owner.phrase, longest_inside(self.search.successors, owing)
+            is_never_answered = not stuck.isdisjoint(owing)
+            ns = None if is_never_answered else longest_inside(self.search.successors, owing)
+            yield owner.phrase, ns
 
     def _late(self, owed: Sequence[tuple[str, int | None]]) -> Iterator[str]:
         """Who may owe an answer for longer than the supervisor waits for it."""
         timeout = self.config.supervisor.reply_timeout_s
         for who, ns in owed:
             if ns is None or ns + TIE > timeout * NS:
-                after = "at any time" if ns is None else f"after {ns / NS:.3f} s"
+                after = "at any time, or never" if ns is None else f"after {ns / NS:.3f} s"
                 yield (
                     f"an answer of {who} may come {after}, later than reply_timeout_s "
                     f"({timeout:g} s) allows"

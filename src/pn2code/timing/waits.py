@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
 
-from pn2code.base.components import components
 from pn2code.base.frozen import frozen
 from pn2code.timing.longest import Arc, Ways
 
@@ -83,17 +82,11 @@ def longest_wait(
         return told([*there, *_round(graph, ways.cycle)], "repeats")
     found = ways.longest()
     assert found is not None
-    if _goes_round(graph):
+    if ways.never_end():
         return Wait(None, "idle")
     if any(node in ends for node in inside):
         return Wait(None, "ends")
     return told(found.way, "", found.ns)
-
-
-def _goes_round(graph: Sequence[Sequence[Arc]]) -> bool:
-    after = [[target for target, *_ in arcs] for arcs in graph]
-    loops = any(node in after[node] for node in range(len(graph)))
-    return loops or any(len(c) > 1 for c in components(range(len(graph)), after.__getitem__))
 
 
 def _until(

@@ -317,25 +317,18 @@ def _external(a: t.Along, constants: _Constants) -> Along:
 
 def _moves(nodes: Iterable[Node], origin: Origin) -> Iterator[tuple[Origin, t.Move]]:
     """The moves, each with the net element that it comes from."""
-    for at, said in _statements(nodes, origin):
-        if isinstance(said, t.Move):
-            yield at, said
-
-
-def _statements(nodes: Iterable[Node], origin: Origin) -> Iterator[tuple[Origin, t.Simple]]:
-    """The lines of a program, each with the net element that it comes from."""
     for node in nodes:
         match node:
-            case Line(statement):
-                yield origin, statement
+            case Line(t.Move() as move):
+                yield origin, move
             case Region(body=body):
-                yield from _statements(body, node.origin)
+                yield from _moves(body, node.origin)
             case Repeat(body=body):
-                yield from _statements(body, origin)
+                yield from _moves(body, origin)
             case Chain(branches, otherwise):
                 for _, body in branches:
-                    yield from _statements(body, origin)
-                yield from _statements(otherwise or (), origin)
+                    yield from _moves(body, origin)
+                yield from _moves(otherwise or (), origin)
             case _:
                 pass
 

@@ -76,8 +76,7 @@ def _shown(control: Control | None) -> Shown | None:
         return None
     if any(c.answer != "yes" for c in control.checks if c.name == MESSAGES):
         return None
-    net, found = control.running.net, control.found
-    return Shown(found.nodes, found.arcs, len(net.places), len(net.transitions), found.is_counted)
+    return Shown.of(control.running.net, control.found)
 
 
 _NOT_LOOKED = "whether programs stop or come too late is for the checks of the supervisor, which were left out"

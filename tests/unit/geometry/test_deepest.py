@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import tomllib
 from functools import cache
 from pathlib import Path
@@ -15,6 +16,7 @@ from pn2code.geometry.compare import Comparison
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.look import touch_in_words
 from pn2code.geometry.shown import Shown
+from pn2code.geometry.tracks import Track
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.commands import MoveJoint, MoveLinear
 from pn2code.robot.robot_cell import RobotCell
@@ -96,3 +98,17 @@ def test_an_arm_and_what_stands() -> None:
     assert found.outcome == "touch" and found.where is not None
     assert found.least <= min(distances) and found.where.distance <= 0.85 * min(distances)
     assert -found.least <= 1.2 * -found.where.distance + 2e-3
+
+
+def test_where_nothing_is_known_between_samples_no_depth_is_certain(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    backend = BulletBackend(cell(), looks=False)
+    planner = Planner(cell())
+    one, other = line(planner, "left", 1550.0, 700.0), line(planner, "right", 1700.0, 400.0)
+    compared = Comparison(cell(), planner, Shown(backend))
+    monkeypatch.setattr(Track, "trouble", "it passes near to a singularity")
+    for found in (compared.around(one, None)[0], compared.two((one, None), (other, None))):
+        assert found.outcome == "touch" and found.nearest < 0.0 and found.least == -math.inf
+        assert touch_in_words(found).endswith("how deep on the rest of the way is not known")
+    backend.close()

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import pytest
 
 from pn2code.geometry.answers import Layout, Pair
+from pn2code.geometry.look import certain, touch_in_words
 from pn2code.geometry.report import text
 from pn2code.geometry.runs import Run
+from pn2code.geometry.sweeps import Apart
+from pn2code.robot.backend import Clearance
 
 
 @pytest.mark.parametrize(
@@ -31,3 +35,21 @@ def test_what_rests_is_not_under_way(
     assert f"NO: {says}\n" in said
     assert ("it is so at the start: x.trace.jsonl" in said) == (not steps)
     assert ("a run of" in said) == bool(steps)
+
+
+@pytest.mark.parametrize(
+    ("least", "known", "says"),
+    [
+        (-0.0213, -0.0213, ", and nowhere on the way by more than 21.3 mm"),
+        (-math.inf, None, "; how deep on the rest of the way is not known"),
+    ],
+)
+def test_an_overlap_that_may_be_deeper_elsewhere(
+    least: float, known: float | None, says: str
+) -> None:
+    """Near a singularity nothing may be known of pieces of a line that are still to be looked at."""
+    gap = Clearance("scene", "r", "r/link_5", "post", -0.02, None, (1.7, -0.5, 1.1))
+    found = Apart("touch", least, -0.02, gap)
+    assert certain(found) == known
+    where = "`r/link_5` and `post` overlap by 20.0 mm at (1700, -500, 1100) mm"
+    assert touch_in_words(found) == where + says

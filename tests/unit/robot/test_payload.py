@@ -152,6 +152,18 @@ def test_mistakes_in_what_an_arm_says(
     assert found is None and message in d.errors[0].message, d.errors[0].message
 
 
+def test_moments_without_the_wrist_that_they_are_about(tmp_path: Path) -> None:
+    """They would not be looked at, whatever the arm carries."""
+    text = (MODELS / "ur5e.urdf").read_text().replace("meshes/", f"{MODELS}/meshes/")
+    assert 'payload="5"' in text
+    text = text.replace('payload="5"', 'payload="50" moments="1 1 1"')
+    (tmp_path / "arm.urdf").write_text(text)
+    found, d = said(tmp_path, 1.0, model="arm.urdf")
+    (error,) = d.errors
+    assert found is None and error.message.startswith("`moments` are about axes 4, 5 and 6")
+    assert error.origin.file == str(tmp_path / "arm.urdf")
+
+
 def test_a_kind_of_parts_that_is_not_there(tmp_path: Path) -> None:
     found, d = said(tmp_path, 1.0, carries=["bix"])
     assert found is None and "carries" in d.errors[0].message and "`box`" in d.errors[0].hint

@@ -239,11 +239,11 @@ class _Placing:
                     proof = prove(self.graph, cell, self.options, self.request.wish, self.robots)
             except TimeIsOverError:
                 proof = Proof("unknown", "the time was up before it was looked at as a whole")
+                tried.append(Tried(candidate, cell, proof))
                 what = "the best that was found was not looked at as a whole"
                 self.unfinished = f"{self.unfinished}, and {what}" if self.unfinished else what
-            tried.append(Tried(candidate, cell, proof))
-            if proof.trouble.startswith("the time was up"):
                 break
+            tried.append(Tried(candidate, cell, proof))
             if proof.meets:
                 break
         return tried

@@ -33,15 +33,14 @@ from typing import Any
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics
-from pn2code.properties.questions import Questions
-from pn2code.structure import bounds_and_sums
-from pn2code.structure.relations import relations
+from pn2code.properties.questions import ENDLESS, Questions
 from pn2code.verify.controller.by_turns import Looked, group, loosened
 from pn2code.verify.controller.control_types import Plan
 from pn2code.verify.controller.kept_silence import kept_silence
 from pn2code.verify.controller.left_over import nothing_left
 from pn2code.verify.controller.running import SUPERVISOR, Running, chunks
-from pn2code.verify.exploring.counts import LEAST_TOKENS, Counts, counts
+from pn2code.verify.exploring.counted import MOST_STATES, SOON, counted
+from pn2code.verify.exploring.counts import LEAST_TOKENS, Counts
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits, Order
 from pn2code.verify.exploring.programs import Generated, Sizes
@@ -49,12 +48,6 @@ from pn2code.verify.exploring.ranking import Ranking
 from pn2code.verify.exploring.result import Bounds, Exploration
 from pn2code.verify.exploring.turns import Turns
 
-ENDLESS = 1_000_000_000
-"""A run is that long, or goes on for ever."""
-MOST_STATES = 2_000_000
-"""Where there are more the limits do not help enough."""
-SOON = 300_000
-"""States that are seen by what was compiled quickly."""
 WITNESSES = 60_000
 """States among which transitions are looked for that occur."""
 YES: Mapping[str, Any] = {"answer": "yes", "value": None, "trace": None, "loop": None, "why": None}
@@ -108,17 +101,10 @@ def abstract(
     open_ = {p for p, most in plan.capacities.items() if plan.bounds.get(p, most + 1) > most}
     asked = {p for s in running.silences for p in group(s)} | open_ | set(kept)
     free = own - asked - {c.place for c in partition.channels}
-    known = bounds_and_sums(running.net, storage=plan.storage)
-    bounds = {p: b.bound for p, b in known[0].items() if b.bound is not None}
-    relations_ = relations(running.net, plan.storage)
-    found = counts(running.net, relations_, bounds, free=free, least=least)
-    if found is None or not found.limited:
+    made = counted(running.net, plan.storage, table, free, never=running.probes, least=least)
+    if made is None:
         return None
-    sizes = Sizes.start(running.net, plan.storage, known)
-    # A place that follows from others does so in markings only.
-    sizes = replace(sizes, packing=replace(sizes.packing, sums=()))
-    ranking = Ranking.of(running.net, plan.storage, bounds, running.probes)
-    return Abstract(running, found, found.within(table), ranking, sizes)
+    return Abstract(running, made.counts, made.turns, made.ranking, made.sizes)
 
 
 def look(

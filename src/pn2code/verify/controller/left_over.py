@@ -10,11 +10,8 @@ supervisor that has finished would take a message that comes later. Where progra
 
 from __future__ import annotations
 
-from pn2code.properties.questions import Questions
+from pn2code.properties.questions import ENDLESS, Questions
 from pn2code.verify.controller.running import SUPERVISOR, Running, chunks
-
-ENDLESS = 1_000_000_000
-"""A run is that long, or goes on for ever."""
 
 
 def nothing_left(asked: Questions, running: Running) -> int:

@@ -12,29 +12,31 @@ where each message of whom the command goes to ends the wait, so that the timer 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from pn2code.cell.config import CellConfig
-from pn2code.cell.partition import Channel, ChannelKind, OwnerKind, Partition
+from pn2code.cell.partition import Channel, ChannelKind, Partition
 from pn2code.diagnostics import Diagnostics, Note
-from pn2code.net.flat import ArcKind, FlatTransition
+from pn2code.net.flat import FlatTransition
 from pn2code.verify.codes import LONG_TIMER
 from pn2code.verify.controller.durations import Durations
-from pn2code.verify.controller.short_timers import TAKING, puts_one, shortest, waits_for
+from pn2code.verify.controller.short_timers import (
+    ended,
+    of_supervisor,
+    puts_one,
+    shortest,
+    taken,
+    timers,
+)
 
 
 def warn(partition: Partition, config: CellConfig, d: Diagnostics) -> None:
     """A warning for each."""
     limit = config.supervisor.reply_timeout_s
     owners = partition.owners
-    own = [
-        t
-        for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True)
-        if owners[owner].kind is OwnerKind.SUPERVISOR
-    ]
+    own = of_supervisor(partition)
     durations = Durations(partition.net, config.storage)
     for start in own:
-        for place, seconds in _timers(start, partition, durations):
+        for place, delays in timers(start, partition):
+            seconds = sum(shortest(durations, e) for e in delays)
             if seconds <= limit:
                 continue
             for over in own:
@@ -52,17 +54,6 @@ def warn(partition: Partition, config: CellConfig, d: Diagnostics) -> None:
                     )
 
 
-def _timers(
-    start: FlatTransition, partition: Partition, durations: Durations
-) -> Iterator[tuple[int, float]]:
-    """The places of the supervisor that get a token with a delay, and the least seconds of it."""
-    channels = {c.place for c in partition.channels}
-    for place, delay in puts_one(start).items():
-        if place not in channels and partition.net.places[place].colset.timed:
-            delays = [e for e in (start.delay, delay) if e is not None]
-            yield place, sum(shortest(durations, e) for e in delays)
-
-
 def _waited_for(
     start: FlatTransition,
     over: FlatTransition,
@@ -71,23 +62,13 @@ def _waited_for(
     partition: Partition,
 ) -> Channel | None:
     """The command whose answer ends the wait, as the timer does; None: it is not such a timer."""
-    taken = {a.place for a in over.arcs if a.kind is ArcKind.INPUT}
-    given = {a.place for a in over.arcs if a.kind is ArcKind.OUTPUT}
     put = puts_one(start).keys()
-    messages = {c.place for c in partition.channels}
-    if timer not in taken or timer in given or taken & messages or not waits_for(over, timer):
-        return None
-    # What the start has put and the end of the timer takes for good: whoever takes one of these was quicker.
-    waiting = (taken - given) & put
+    waiting = ended(start, over, timer, partition)
     for command in partition.channels:
         if command.place not in put or command.kind is not ChannelKind.FLAG:
             continue
         said = {c.place for c in partition.channels if c.writer == command.reader}
-        takers = [t for t in own if said & _inputs(t)]
-        if takers and all(waiting & _inputs(t) for t in takers):
+        takers = [t for t in own if said & taken(t)]
+        if takers and all(waiting & taken(t) for t in takers):
             return command
     return None
-
-
-def _inputs(t: FlatTransition) -> set[int]:
-    return {a.place for a in t.arcs if a.kind in TAKING}

@@ -31,7 +31,7 @@ from pn2code.verify.controller.commands import lasts
 from pn2code.verify.controller.durations import Durations
 from pn2code.verify.controller.stops import NoProgramError, machine
 
-TAKING = (ArcKind.INPUT, ArcKind.BOTH)
+_TAKING = (ArcKind.INPUT, ArcKind.BOTH)
 
 
 @frozen
@@ -84,11 +84,7 @@ class _Timers:
         self._reach = Reach(partition.net.program)
         self._channels = {c.place: c for c in partition.channels}
         self._machines: dict[int, Machine | None] = {}
-        self._own = [
-            t
-            for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True)
-            if partition.owners[owner].kind is OwnerKind.SUPERVISOR
-        ]
+        self._own = of_supervisor(partition)
 
     def found(self) -> Iterator[ShortTimer]:
         for start in self._own:
@@ -117,10 +113,7 @@ class _Timers:
     def _delays(self, start: FlatTransition) -> dict[int, float]:
         """By place of the supervisor the most seconds after which a token of the transition is there."""
         found: dict[int, float] = {}
-        for place, delay in puts_one(start).items():
-            if place in self._channels or not self._partition.net.places[place].colset.timed:
-                continue
-            delays = [e for e in (start.delay, delay) if e is not None]
+        for place, delays in timers(start, self._partition):
             seconds = [self._durations.seconds(e) for e in delays]
             known = [s for s in seconds if s is not None]
             if delays and len(known) == len(seconds):
@@ -136,17 +129,10 @@ class _Timers:
         asked: dict[int, int],
     ) -> str:
         """What is wrong with a timer; "": nothing that is certain."""
-        taken = {a.place for a in over.arcs if a.kind is ArcKind.INPUT}
-        given = {a.place for a in over.arcs if a.kind is ArcKind.OUTPUT}
-        if timer not in taken or timer in given or taken & self._channels.keys():
-            return ""
-        if not waits_for(over, timer):
-            return ""
-        # What the start has put and the end of the timer takes for good: whoever takes one of these was quicker.
-        waiting = (taken - given) & puts_one(start).keys()
+        waiting = ended(start, over, timer, self._partition)
         longest: tuple[float, str] | None = None
         for other in self._own:
-            inputs = {a.place for a in other.arcs if a.kind in TAKING}
+            inputs = taken(other)
             if other is over or not inputs & waiting:
                 continue
             answers = [p for p in inputs if p in self._channels]
@@ -279,13 +265,50 @@ def puts_one(t: FlatTransition) -> dict[int, core.Exp | None]:
     return found
 
 
-def waits_for(t: FlatTransition, timer: int) -> bool:
+def of_supervisor(partition: Partition) -> list[FlatTransition]:
+    """The transitions of the supervisor."""
+    return [
+        t
+        for t, owner in zip(partition.net.transitions, partition.transition_owner, strict=True)
+        if partition.owners[owner].kind is OwnerKind.SUPERVISOR
+    ]
+
+
+def timers(start: FlatTransition, partition: Partition) -> Iterator[tuple[int, list[core.Exp]]]:
+    """The places of the supervisor that get a token with a time, and the delays of it."""
+    channels = {c.place for c in partition.channels}
+    for place, delay in puts_one(start).items():
+        if place not in channels and partition.net.places[place].colset.timed:
+            yield place, [e for e in (start.delay, delay) if e is not None]
+
+
+def taken(t: FlatTransition) -> set[int]:
+    """The places from which it takes tokens, perhaps to put them back."""
+    return {a.place for a in t.arcs if a.kind in _TAKING}
+
+
+def ended(
+    start: FlatTransition, over: FlatTransition, timer: int, partition: Partition
+) -> set[int]:
+    """What the start has put and the end of the timer takes for good: whoever takes one of these was quicker.
+
+    Nothing if `over` is not the end of the timer.
+    """
+    inputs = {a.place for a in over.arcs if a.kind is ArcKind.INPUT}
+    given = {a.place for a in over.arcs if a.kind is ArcKind.OUTPUT}
+    is_message = any(c.place in inputs for c in partition.channels)
+    if timer not in inputs or timer in given or is_message or not _waits_for(over, timer):
+        return set()
+    return (inputs - given) & puts_one(start).keys()
+
+
+def _waits_for(t: FlatTransition, timer: int) -> bool:
     """Whether it takes the token of the timer only when that is over."""
     return all(
         a.inscription is not None
         and all(x.delay is None and not x.whole for x in a.inscription.terms)
         for a in t.arcs
-        if a.kind in TAKING and a.place == timer
+        if a.kind in _TAKING and a.place == timer
     )
 
 

@@ -22,49 +22,22 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 
-from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.flat import FlatNet
-from pn2code.properties.questions import Questions
-from pn2code.structure import bounds_and_sums
-from pn2code.structure.relations import relations
-from pn2code.verify.exploring.counts import LEAST_TOKENS, Counts, counts
+from pn2code.properties.questions import ENDLESS, Questions
+from pn2code.verify.exploring.counted import MOST_STATES, SOON, Counted, counted
 from pn2code.verify.exploring.elements import NotPossibleError
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits
-from pn2code.verify.exploring.programs import Generated, Sizes
-from pn2code.verify.exploring.ranking import Ranking
+from pn2code.verify.exploring.programs import Generated
 from pn2code.verify.exploring.result import Known
-from pn2code.verify.exploring.turns import Turns, turns
+from pn2code.verify.exploring.turns import turns
 
-ENDLESS = 1_000_000_000
-"""A run is that long, or goes on for ever."""
-MOST_STATES = 2_000_000
-"""Where there are more the limits do not help enough."""
-SOON = 300_000
-"""States that are seen by what was compiled quickly."""
 MOST_OWNERS = 250
 """Transitions: each is an owner of its own."""
 
 
-@frozen
-class Abstract:
-    """What is counted in a net up to a limit, and how it is explored."""
-
-    counts: Counts
-    turns: Turns
-    sizes: Sizes
-    rising: frozenset[int]
-    questions: str
-
-
-def abstract(
-    net: FlatNet,
-    storage: Mapping[str, str],
-    final: Collection[int] = (),
-    *,
-    least: int = LEAST_TOKENS,
-) -> Abstract | None:
+def _counted(net: FlatNet, storage: Mapping[str, str], final: Collection[int]) -> Counted | None:
     """The limits of a net; None: it is not possible, or there is nothing to count so."""
     if (
         net.timed
@@ -76,17 +49,7 @@ def abstract(
         table = turns(net, range(len(net.transitions)))
     except NotPossibleError:
         return None
-    known = bounds_and_sums(net, storage=storage)
-    bounds = {p: b.bound for p, b in known[0].items() if b.bound is not None}
-    free = set(range(len(net.places))) - set(final)
-    found = counts(net, relations(net, storage), bounds, free=free, least=least)
-    if found is None or not found.limited:
-        return None
-    sizes = Sizes.start(net, storage, known)
-    # A place that follows from others does so in markings only.
-    sizes = replace(sizes, packing=replace(sizes.packing, sums=()))
-    rising = Ranking.of(net, storage, bounds).rising()
-    return Abstract(found, found.within(table), sizes, rising, _questions(net, final, rising))
+    return counted(net, storage, table, set(range(len(net.places))) - set(final))
 
 
 def _questions(net: FlatNet, final: Collection[int], rising: frozenset[int]) -> str:
@@ -121,15 +84,16 @@ def look(
         options: who is told of the progress, and who may interrupt.
         final: places one of which is to hold a token in each dead marking.
     """
-    made = abstract(net, storage, final)
+    made = _counted(net, storage, final)
     if made is None:
         return None
+    rising = made.ranking.rising()
     own = ExploreOptions(
         turns=made.turns,
         counts=made.counts,
         sizes=made.sizes,
         generated=Generated(),
-        questions=made.questions,
+        questions=_questions(net, final, rising),
         stem="counts",
         progress=options.progress,
         interrupted=options.interrupted,
@@ -144,7 +108,7 @@ def look(
     if found is None or not found.complete or not found.seen.arcs or found.error is not None:
         return None
     ends, *others, _ = found.answers
-    if len(others) != bool(made.rising) or any(row["answer"] != "yes" for row in others):
+    if len(others) != bool(rising) or any(row["answer"] != "yes" for row in others):
         return None
     never = tuple(t.index for t in net.transitions if not found.fired[t.index])
     return Known(found.nodes, found.arcs, found.seconds, ends["answer"] == "yes", never)
