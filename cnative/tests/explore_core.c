@@ -245,7 +245,8 @@ static void try_threads_on(bool is_word)
               && ex_tuples_make(&tuples, &ground.memory, &ground.team, 5U)
               && ex_bytes_make(&bytes, &ground.memory, &ground.team),
           "no memory");
-    while ((tuples.index.limit < (count + WORKERS)) || (bytes.index.limit < (count + WORKERS))) {
+    /* Threads that meet at something new take a number each, of which one is used: see ex_tuples_number. */
+    while ((tuples.index.limit < (count * WORKERS)) || (bytes.index.limit < (count * WORKERS))) {
         /* As if they were nearly full. */
         atomic_store(&tuples.index.count, tuples.index.limit);
         atomic_store(&bytes.index.count, bytes.index.limit);

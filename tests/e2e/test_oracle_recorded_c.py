@@ -57,6 +57,10 @@ FOUND = [
      "none"),
     ("Real.toString (Math.pow (1.0, 1.0 / 0.0))", "nan"),
     ('(ignore (hd (UNIT.all ())); "unit")', "unit"),
+    ('String.concatWith "," (map (fn f => Int32.toString (f (valOf Int32.minInt, ~1)) handle e => exnName e) '
+     "[op div, op mod, Int32.quot, Int32.rem])", "Div,Div,Div,Div"),
+    ('String.concatWith "," (map (fn f => Int64.toString (f (valOf Int64.minInt, ~1)) handle e => exnName e) '
+     "[op div, op mod, Int64.quot, Int64.rem])", "Overflow,Overflow,Overflow,Overflow"),
     ('String.concatWith "," (map Int.toString (List.mapi (fn (i, x) => i * x) [5, 6, 7]))', "0,6,14"),
     ('Format.format "%05d;%+08x;%6s;%b%%" [Format.INT ~3, Format.INT 255, Format.STR "ab", Format.BOOL true]',
      "-0003;+00000ff;    ab;true%"),

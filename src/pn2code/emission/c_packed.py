@@ -160,7 +160,7 @@ class Numbers:
         below = 1
         for n in sizes:
             below *= n
-        for (name, part), n in zip(d.fields, sizes, strict=True):
+        for i, ((name, part), n) in enumerate(zip(d.fields, sizes, strict=True)):
             member = label(name)
             call = f"{self._number(part)}(&v->{member})"
             if self._is_total(part):
@@ -169,13 +169,15 @@ class Numbers:
                 own = f"of_{member}"
                 number.append(f"const uint32_t {own} = {call};")
                 partial.append(own)
-            text = f"(({text}) * {n}U) + {own}" if text else own
+            before = text if i == 1 else f"({text})"
+            text = f"({before} * {n}U) + {own}" if text else own
             below //= n
             rest = "number" if below == 1 else f"(number / {below}U)"
             rest = rest if len(d.fields) == 1 else f"{rest} % {n}U"
             colour.append(f"    .{member} = {self._colour(part)}({rest}),")
         if partial:
-            tests = " || ".join(f"({p} == PN_NO_COLOUR)" for p in partial)
+            each = [f"{p} == PN_NO_COLOUR" for p in partial]
+            tests = each[0] if len(each) == 1 else " || ".join(f"({test})" for test in each)
             number += [f"if ({tests}) {{", "    return PN_NO_COLOUR;", "}"]
         number.append(f"return {text or '0U'};")
         if not d.fields:

@@ -37,14 +37,15 @@ def refuse(kind: str, name: str, infix: Iterable[str], origin: Origin, d: Diagno
         origin: of its declaration.
         d: gets the error.
     """
-    for operator in sorted(_OF_KINDS.get(kind, frozenset()).intersection(infix)):
+    found = _OF_KINDS.get(kind, frozenset()).intersection(infix)
+    if found:
+        operator = min(found)
         d.error(
             ENGINE_INFIX,
             f"colour set `{name}` needs a function `{operator}`, which is an infix operator here",
             origin,
             hint=f"put the colour set before `infix {operator}`, or give the operator another name",
         )
-        return
 
 
 def warn(infix: Iterable[str], origin: Origin, d: Diagnostics) -> None:

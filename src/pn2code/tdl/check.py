@@ -22,7 +22,6 @@ from pn2code.tdl.types import NUMBERS, QUANTITIES, Type, fits
 
 AXES = (4, 6, 7)
 """How many axes an arm may have."""
-"""Of an arm."""
 
 
 @frozen
@@ -450,10 +449,10 @@ class _Checker:
             )
 
     def along(self, s: t.Move) -> None:
-        """External axes: each once, in its unit."""
-        names: set[str] = set()
+        """What comes along: external axes, each once and in its unit, and the arm angle."""
         if s.arm_angle is not None:
             self.expect(s.arm_angle, Type.ANGLE, "the arm angle")
+        names: set[str] = set()
         for a in s.along:
             kind, what = (Type.LENGTH, "track") if a.is_track else (Type.ANGLE, "turntable")
             self.expect(a.position, kind, f"the position of {what} `{a.axis}`")

@@ -77,9 +77,9 @@ _WORDS = {
     "GREATER_EQUAL": "`>=`", "PLUS": "`+`", "MINUS": "`-`", "AMPERSAND": "`&`", "TIMES": "`*`",
     "DIVIDE": "`/`",
 }  # fmt: skip
-_ARM_ANGLE = "$arm angle"
-"""No name of an axis: where the elbow of an arm with seven axes is."""
 _EXTERNAL = ("$track", "$turntable")
+_With = t.Along | str | t.Expression
+"""What stands after `with`: an external axis, the name of a tool frame, an arm angle."""
 _STATEMENTS = {
     "MOVE",
     "WAIT",
@@ -336,27 +336,24 @@ class _Builder(Transformer[Token, Any]):
                     self._at(motion),
                     hint="write `move $joint ... with ...` or `move $linear ... with ...` for both",
                 )
-        told: list[t.Along | str] = next((x for x in rest if isinstance(x, list)), [])
-        along = tuple(x for x in told if isinstance(x, t.Along) and x.axis != _ARM_ANGLE)
-        elbows = [x for x in told if isinstance(x, t.Along) and x.axis == _ARM_ANGLE]
+        told: list[_With] = next((x for x in rest if isinstance(x, list)), [])
+        along = tuple(x for x in told if isinstance(x, t.Along))
         tcps = [x for x in told if isinstance(x, str)]
+        elbows = [x for x in told if not isinstance(x, t.Along | str)]
         to_pose = target is not None and not isinstance(target, Token | t.Axes)
-        if len(tcps) > 1 or (tcps and not to_pose):
-            self._d.error(
-                codes.EXTERNAL,
-                "a move has one tool frame"
-                if to_pose
-                else "only a move to a pose has a tool frame",
-                self._at(motion),
-                hint="write `move $linear p with $tool NAME`",
-            )
-        if len(elbows) > 1 or (elbows and not to_pose):
-            self._d.error(
-                codes.EXTERNAL,
-                "a move has one arm angle" if to_pose else "only a move to a pose has an arm angle",
-                self._at(motion),
-                hint="write `move $joint p with $arm angle = 30 deg`",
-            )
+        for found, article, what, example in (
+            (tcps, "a", "tool frame", "$linear p with $tool NAME"),
+            (elbows, "an", "arm angle", "$joint p with $arm angle = 30 deg"),
+        ):
+            if len(found) > 1 or (found and not to_pose):
+                self._d.error(
+                    codes.EXTERNAL,
+                    f"a move has one {what}"
+                    if to_pose
+                    else f"only a move to a pose has {article} {what}",
+                    self._at(motion),
+                    hint=f"write `move {example}`",
+                )
         frame = next((x for x in rest if isinstance(x, t.Target)), None)
         said: dict[str, t.Expression] = dict(x for x in rest if isinstance(x, tuple))
         return t.Move(
@@ -368,20 +365,21 @@ class _Builder(Transformer[Token, Any]):
             said.get("acceleration"),
             along,
             tcps[0] if tcps else "",
-            elbows[0].position if elbows else None,
+            elbows[0] if elbows else None,
             frame.span if frame else None,
             self._span(meta),
         )
 
-    def along(self, meta: Meta, c: list[t.Along | str]) -> list[t.Along | str]:
+    def along(self, meta: Meta, c: list[_With]) -> list[_With]:
         return c
 
-    def external(self, meta: Meta, c: list[Any]) -> t.Along | str:
+    def external(self, meta: Meta, c: list[Any]) -> _With:
         kind, name, *rest = c
         if str(kind) == "$tool" and not rest:
             return str(name)
         if str(kind) == "$arm" and str(name) == "angle" and rest:
-            return t.Along(_ARM_ANGLE, rest[0], False, self._span(meta))
+            expression: t.Expression = rest[0]
+            return expression
         position = rest[0] if rest else t.Quantity(0.0, "mm")
         if str(kind) not in _EXTERNAL or not rest:
             self._d.error(

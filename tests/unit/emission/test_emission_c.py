@@ -26,6 +26,7 @@ from pn2code.emission.output import OutputFile
 from pn2code.ir import calls
 from pn2code.lowering.nets.net import lower
 from pn2code.lowering.nets.packing import Packing
+from pn2code.verify.exploring.programs import Sizes, generated
 
 WORK = """
     net Work
@@ -208,3 +209,30 @@ def test_work_grows_with_the_net(monkeypatch: pytest.MonkeyPatch) -> None:
         emit(ir, "9.9")
         work.append(len(looked))
     assert work[1] < 4.4 * work[0]
+
+
+def test_numbers_of_colours_have_no_more_parentheses_than_they_need() -> None:
+    net = flat("""
+        net Spots
+          standard
+          colset PART = with screw | nut
+          colset LANE = int with 1..4
+          colset SPOT = product LANE * PART * LANE
+          colset SIDE = product LANE * PART
+          var s: SPOT
+          var t: SIDE
+          place P : SPOT = 1`(1, nut, 2)
+          place Q : SIDE = 1`(1, nut)
+          trans T
+            in P : s
+            in Q : t
+            out P : s
+    """)
+    d = Diagnostics()
+    files = generated(net, {}, Sizes.start(net, {}), d)
+    assert files is not None and not d.has_errors
+    text = next(file.text for file in files if file.path == "net.c")
+    assert "if (of_c1 == PN_NO_COLOUR) {" in text
+    assert "if ((of_c1 == PN_NO_COLOUR) || (of_c3 == PN_NO_COLOUR)) {" in text
+    assert "return (of_c1 * 2U) + number_of_PART(&v->c2);" in text
+    assert "return (((of_c1 * 2U) + number_of_PART(&v->c2)) * 4U) + of_c3;" in text

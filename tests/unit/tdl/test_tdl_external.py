@@ -57,6 +57,8 @@ def test_what_the_arm_is_told(move: str, command: object) -> None:
         ("move $joint with $track rail = 1 mm", "says nowhere to go"),
         ("move $joint home with $tool grip", "only a move to a pose has a tool frame"),
         ("move $joint p with $tool grip, $tool grap", "a move has one tool frame"),
+        ("move $joint home with $arm angle = 5 deg", "only a move to a pose has an arm angle"),
+        ("move $joint p with $arm angle = 5 deg, $arm angle = 6 deg", "a move has one arm angle"),
         ("move $joint p with $track rail", "`$track rail` says nowhere to go"),
         ("move $external p with $track rail = 1 mm", "the arm stands still"),
         ("move $external with $lift rail = 1 mm", "no external axis of the kind `$lift`"),

@@ -4,6 +4,10 @@ val limit : IntInf.int = IntInf.pow (2, bits - 1)
 
 fun fit n = if IntInf.<= (IntInf.~ limit, n) andalso IntInf.< (n, limit) then n else raise Overflow
 
+(* The engine does not divide the smallest number by ~1, even where only the remainder is asked for. *)
+fun divides (a : IntInf.int, b : IntInf.int) =
+    if a <> IntInf.~ limit orelse b <> ~1 then () else if bits = 32 then raise Div else raise Overflow
+
 val Int32_precision = SOME bits
 val Int32_minInt = SOME (IntInf.~ limit)
 val Int32_maxInt = SOME (IntInf.- (limit, 1))
@@ -13,10 +17,10 @@ fun Int32_minus (a, b) = fit (IntInf.- (a, b))
 fun Int32_times (a, b) = fit (IntInf.* (a, b))
 fun Int32_neg a = fit (IntInf.~ a)
 fun Int32_abs a = fit (IntInf.abs a)
-fun Int32_div (a, b) = fit (IntInf.div (a, b))
-fun Int32_mod (a, b) = IntInf.mod (a, b)
-fun Int32_quot (a, b) = fit (IntInf.quot (a, b))
-fun Int32_rem (a, b) = IntInf.rem (a, b)
+fun Int32_div (a, b) = (divides (a, b); IntInf.div (a, b))
+fun Int32_mod (a, b) = (divides (a, b); IntInf.mod (a, b))
+fun Int32_quot (a, b) = (divides (a, b); IntInf.quot (a, b))
+fun Int32_rem (a, b) = (divides (a, b); IntInf.rem (a, b))
 fun Int32_lt (a, b) = IntInf.< (a, b)
 fun Int32_le (a, b) = IntInf.<= (a, b)
 fun Int32_gt (a, b) = IntInf.> (a, b)

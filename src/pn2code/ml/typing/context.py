@@ -41,6 +41,12 @@ from pn2code.ml.typing.inference import (
 MAX_DEPTH = 250
 """Nesting of operators and calls that is followed; the later stages recurse over what is built from it."""
 
+_ENDS = {
+    **{name: 1 << bits for name, bits in WORD_BITS.items()},
+    **{f"{name}.int": 1 << (bits - 1) for name, bits in INTEGERS.items()},
+}
+"""Types of numbers of a fixed size -> the first literal that is too large."""
+
 
 class TooDeepError(Exception):
     """Reported already; unwinds to the border."""
@@ -285,26 +291,20 @@ class Context:
         """Refuses a literal beyond the width of its type, as CPN Tools does."""
         if not isinstance(t, TCon) or not isinstance(value, int):
             return
-        ends = {name: 1 << bits for name, bits in WORD_BITS.items()} | {
-            f"{name}.int": 1 << bits - 1 for name, bits in INTEGERS.items()
-        }
-        end = ends.get(t.name, abs(value) + 1)
-        if not -end <= value < end:
-            self.error(
-                codes.LITERAL_TOO_LARGE,
-                f"`{span.text}` is too large for `{t.name}`, which ends at {end - 1}",
-                span,
-            )
-        limit = 1 << (self.int_bits - 1)
-        if t == INT and not -limit <= value < limit:
-            self.error(
-                codes.LITERAL_TOO_LARGE,
-                f"`{span.text}` is too large for `int`, which ends at {limit - 1}",
-                span,
-                hint="use IntInf (`IntInf.fromString`, colour set `intinf`), or the option `--int-bits 64`"
-                if self.int_bits < 64
-                else "use IntInf (colour set `intinf`)",
-            )
+        end = 1 << (self.int_bits - 1) if t == INT else _ENDS.get(t.name)
+        if end is None or -end <= value < end:
+            return
+        wider = (
+            "use IntInf (`IntInf.fromString`, colour set `intinf`), or the option `--int-bits 64`"
+        )
+        if self.int_bits >= 64:
+            wider = "use IntInf (colour set `intinf`)"
+        self.error(
+            codes.LITERAL_TOO_LARGE,
+            f"`{span.text}` is too large for `{t.name}`, which ends at {end - 1}",
+            span,
+            hint=wider if t == INT else "",
+        )
 
     def unify(self, found: Ty, expected: Ty, span: Span, what: str) -> bool:
         """Makes the types equal or says that `what`, at `span`, has the wrong type."""
@@ -350,8 +350,7 @@ class Context:
                 )
             case "among":
                 names = problem.right.among if isinstance(problem.right, Meta) else ()
-                words = names == tuple(t.name for t in WORD_TYPES)
-                literal = words or set(names) <= {t.name for t in (*LITERAL_TYPES, *WORD_TYPES)}
+                literal = set(names) <= {t.name for t in (*LITERAL_TYPES, *WORD_TYPES)}
                 if literal:
                     names = names[:1]
                 self.error(

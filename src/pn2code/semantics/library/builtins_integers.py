@@ -231,6 +231,26 @@ def fitting(bits: int) -> Callable[[Evaluator, int], int]:
     return fit
 
 
+def sized_integers(structure: str, bits: int) -> dict[str, tuple[int, Function]]:
+    """The operations on integers of a size.
+
+    As in the engine, the smallest one is not divided by -1, even where only the remainder is asked for.
+    """
+    found = integers(structure, fitting(bits))
+    smallest, refusal = -(2 ** (bits - 1)), "Div" if bits == 32 else "Overflow"
+
+    def dividing(f: Function) -> Function:
+        def function(e: Evaluator, p: tuple[int, int]) -> int:
+            if p[0] == smallest and p[1] == -1:
+                raise fail(refusal)
+            return int(f(e, p))
+
+        return function
+
+    names = [f"{structure}.{name}" for name in ("div", "mod", "quot", "rem")]
+    return {**found, **{name: (1, dividing(found[name][1])) for name in names}}
+
+
 def constants() -> dict[str, Value]:
     """The limits of numbers of a fixed size, by full name."""
     found: dict[str, Value] = {f"{name}.wordSize": bits for name, bits in WORDS.items()}

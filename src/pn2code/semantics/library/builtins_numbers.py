@@ -10,8 +10,8 @@ from pn2code.ml.library.builtin_table_sized import INTEGERS, WORDS
 from pn2code.semantics.library.builtins_integers import (
     UNBOUNDED,
     constants,
-    fitting,
     integers,
+    sized_integers,
     words,
 )
 from pn2code.semantics.library.builtins_mathematics import MATHEMATICS
@@ -69,7 +69,7 @@ CONSTANTS: dict[str, Value] = {
 FUNCTIONS: dict[str, tuple[int, Function]] = {
     **integers("Int", checked),
     **integers("IntInf", lambda e, i: i),
-    **{k: f for name, bits in INTEGERS.items() for k, f in integers(name, fitting(bits)).items()},
+    **{k: f for name, bits in INTEGERS.items() for k, f in sized_integers(name, bits).items()},
     **{k: f for name, bits in WORDS.items() for k, f in words(name, bits).items()},
     **{
         name: f
