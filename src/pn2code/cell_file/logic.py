@@ -116,9 +116,9 @@ CHANNEL = Section(
         Key(
             "kind",
             "text",
-            '`"data"` is written before `"flag"`. A program that receives a flag owes an answer (I8), so a message '
-            "that is never answered should be data. Without the key a token of one scalar is a flag, of several "
-            "data. `check` prints a table of all channels, with what decided their kind.",
+            '`"data"` is written before `"flag"`. A program that receives a flag of the supervisor owes it an '
+            "answer (I8), so a message that is never answered should be data. Without the key a token of one scalar "
+            "is a flag, of several data. `check` prints a table of all channels, with what decided their kind.",
             words=("data", "flag"),
         ),
     )
