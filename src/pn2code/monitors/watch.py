@@ -343,13 +343,16 @@ class Watch:
         assert m.statistics is not None
         m.statistics.update(value)
         if m.monitor.option("logging"):
-            if isinstance(value, float):
-                text = format_real(self.game.evaluator, _LOGGED, value)
-            else:
-                text = int_text(value)
+            text = self._logged(value)
             time = time_text(self.game.marking.time)
             line = f"{text} {m.statistics.count} {self.game.steps} {time}\n"
             self._write(m, _log(m.monitor), line)
+
+    def _logged(self, value: Number) -> str:
+        """As CPN Tools writes it."""
+        if isinstance(value, int):
+            return int_text(value)
+        return format_real(self.game.evaluator, _LOGGED, value)
 
     def _collect_option(self, m: _Running, name: str) -> None:
         if name in m.functions:
