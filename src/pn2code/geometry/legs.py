@@ -76,7 +76,7 @@ class Planner:
     def __init__(self, cell: RobotCell, digits: int = DIGITS) -> None:
         self.cell = cell
         self._digits = digits
-        self._executors = {r.name: RobotExecutor(r, cell.motion, cell.frames) for r in cell.robots}
+        self._executors = {r.name: RobotExecutor(r, cell.motion, cell.frames) for r in cell.moving}
         self.stands: list[Stand] = []
         self.legs: list[Leg] = []
         self._stands: dict[tuple[object, ...], Stand] = {}

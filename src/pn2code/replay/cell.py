@@ -30,7 +30,7 @@ def describe(cell: RobotCell) -> Json:
     """Everything that is to be seen, and how the arms move."""
     store = Meshes()
     found: Json = {
-        "robots": [_robot(r, store) for r in cell.robots],
+        "robots": [_robot(r, store) for r in cell.moving],
         "bodies": [{"name": b.name, "visuals": _looks(b.looks, store)} for b in bodies(cell)],
         "kinds": {
             name: _looks(body_of(kind.shape).looks, store) for name, kind in cell.parts.items()

@@ -160,7 +160,7 @@ class BulletBackend:
                 self._p.configureDebugVisualizer(
                     self._p.COV_ENABLE_GUI, 0, physicsClientId=self._client
                 )
-            self._robots = {r.name: self._load_robot(r, looks) for r in cell.robots}
+            self._robots = {r.name: self._load_robot(r, looks) for r in cell.moving}
             self._scene = [self._load_body(b, looks) for b in bodies(cell)]
         self._looks = looks
         self._parts: dict[str, _Placed] = {}
@@ -170,7 +170,7 @@ class BulletBackend:
         self._searched = 0.0
         self._q: dict[str, tuple[float, ...]] = {}
         self._rules: dict[tuple[str, str], float | None] = {}
-        for robot in cell.robots:
+        for robot in cell.moving:
             self.set_joints(robot.name, robot.home)
         self._sunk = dict(self._depths_of_lifted())
 
@@ -360,6 +360,8 @@ class BulletBackend:
     def tcp(self, robot: str) -> Array:
         """`T_world_tcp` as PyBullet has it."""
         loaded = self._robots[robot]
+        if loaded.robot.is_device:
+            return np.asarray(loaded.robot.kinematics.forward(self._q[robot]))
         tip = "tool_tcp" if loaded.robot.tool is not None else loaded.robot.arm.flange
         state = self._p.getLinkState(
             loaded.body,
@@ -556,6 +558,8 @@ class BulletBackend:
     def _carried(self, a: _Loaded, limit: float) -> list[Clearance]:
         """Between the part that a robot carries and the robot itself, but for its tool and the last axis."""
         name = a.robot.name
+        if a.robot.is_device:
+            return []
         last = a.joints[a.robot.kinematics.joints.stop - 1]
         near = {i for i, link in a.links.items() if link.startswith("tool_") or i >= last}
         best: Clearance | None = None

@@ -1,4 +1,4 @@
-"""The cell as the robots see it, in SI units: arms, tools, bases, motion limits, scene objects."""
+"""The cell as the robots see it, in SI units: arms, tools, bases, motion limits, scene objects, devices that move."""
 
 from __future__ import annotations
 
@@ -140,6 +140,17 @@ class CellRobot:
         return ""
 
     @property
+    def is_device(self) -> bool:
+        """Whether it is a device, which has external axes and no arm."""
+        joints = self.kinematics.joints
+        return joints.start == joints.stop
+
+    @property
+    def words(self) -> str:
+        """What it is, for messages."""
+        return f"{'device' if self.is_device else 'robot'} `{self.name}`"
+
+    @property
     def root(self) -> str:
         """The base link of its arm: what stands on the floor, or on a track."""
         tree = self.arm.urdf
@@ -203,6 +214,7 @@ class RobotCell:
     """Robots, motion limits, scene and parts: what backends, monitor and executors are built from.
 
     Args:
+        devices: those of which something moves, in the form of robots without joints.
         parts: the kinds of parts that are carried, by name.
         places: poses in the world that have a name.
         frames: in which moves can be given, by name; each in the world.
@@ -214,10 +226,16 @@ class RobotCell:
     parts: Mapping[str, PartKind] = field(default_factory=dict)
     places: Mapping[str, Pose] = field(default_factory=dict)
     frames: Mapping[str, Pose] = field(default_factory=dict)
+    devices: tuple[CellRobot, ...] = ()
+
+    @property
+    def moving(self) -> tuple[CellRobot, ...]:
+        """All that moves: the robots, then the devices."""
+        return (*self.robots, *self.devices)
 
     def robot(self, name: str) -> CellRobot:
-        """The robot of that name; KeyError if there is none."""
-        for robot in self.robots:
+        """The robot of that name, or the device that moves; KeyError if there is none."""
+        for robot in self.moving:
             if robot.name == name:
                 return robot
         raise KeyError(name)

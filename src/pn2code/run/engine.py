@@ -28,11 +28,13 @@ from pn2code.cell.partition import Partition
 from pn2code.emission.output import Block, OutputFile
 from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.backend import Backend
+from pn2code.robot.clamps import holding
 from pn2code.robot.commands import (
     Along,
     Command,
     Handling,
     Measure,
+    Move,
     MoveAxes,
     MoveCircular,
     MoveExternal,
@@ -49,7 +51,7 @@ from pn2code.robot.monitor import Monitor, Sample
 from pn2code.robot.motion import LinearTrajectory, MotionFault
 from pn2code.robot.parts import PartFault
 from pn2code.robot.robot_cell import RobotCell
-from pn2code.robot.transforms import Array, matrix_of, pose_of
+from pn2code.robot.transforms import Array, describe, matrix_of, pose_of
 from pn2code.run.accuracy import distance, distance_to_line
 from pn2code.run.device import DeviceExecutor
 from pn2code.run.files import RobotFiles
@@ -426,6 +428,7 @@ class Engine:
             where = robot.element_at(line)
             at = f" (net transition {where})" if where else ""
             raise CellStoppedError(f"{robot.script}:{line}{at}: {fault}") from None
+        self._expect_let_go(robot, command, line)
         if self.stops is not None:
             motion = self._held_up(robot, motion, self.stops)
         robot.motion, robot.line = motion, line
@@ -440,6 +443,24 @@ class Engine:
                     "duration": command.duration,
                 }
             )
+
+    def _expect_let_go(self, robot: RobotRunner, command: Command, line: int) -> None:
+        """What an arm carries away is in no clamp that still holds it."""
+        if robot.arm is None or not isinstance(command, Move):
+            return
+        part = self.parts.parts.held_by(robot.name)
+        if part is None:
+            return
+        stands = {r.name: r for r in self._arms()}
+        for held in holding(self.cell, part.kind, matrix_of(robot.arm.pose) @ part.frame):
+            q = stands[held.device.name].joints(self.now)
+            if held.holds(q):
+                where = robot.element_at(line)
+                at = f" (net transition {where})" if where else ""
+                words = held.words(robot.name, part.name, q)
+                raise CellStoppedError(
+                    f"{robot.script}:{line}{at}: {words}, at TCP pose {describe(robot.arm.pose)}"
+                )
 
     def _held_up(self, robot: RobotRunner, motion: Motion, stops: Stops) -> Motion:
         """The motion with the stops that are drawn for it."""

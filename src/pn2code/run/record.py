@@ -141,6 +141,7 @@ class RunRecord:
     def sample(self, verdict: Verdict) -> None:
         """Adds one instant to the series."""
         self.sample_t.append(verdict.t)
+        arms = [s for s in verdict.samples if not s.is_device]
         nearest: dict[str, float] = {}
         for gap in verdict.clearances or ():
             if gap.allowed is None:
@@ -148,13 +149,11 @@ class RunRecord:
                 nearest[name] = min(nearest.get(name, np.inf), gap.distance)
         if verdict.clearances is not None:
             names = ["clearance.robots"]
-            names += [
-                f"clearance.{k}.{s.robot}" for s in verdict.samples for k in ("scene", "self")
-            ]
+            names += [f"clearance.{k}.{s.robot}" for s in arms for k in ("scene", "self")]
             for name in names:
                 # Not measured beyond the monitor's search distance: a gap in the curve.
                 self.series.setdefault(name, []).append(nearest.get(name, np.nan))
-        for seen in verdict.samples:
+        for seen in arms:
             self.series.setdefault(f"condition.{seen.robot}", []).append(
                 seen.conditioning.condition
             )

@@ -62,8 +62,8 @@ class Doings:
         self.graph, self.cell = graph, cell
         self.planner = Planner(cell, DIGITS_OF_TIME)
         owners = {o.name: o.index for o in graph.partition.owners}
-        self.arms = tuple(owners[r.name] for r in cell.robots)
-        self.homes = tuple(self.planner.home(r.name) for r in cell.robots)
+        self.arms = tuple(owners[r.name] for r in cell.moving)
+        self.homes = tuple(self.planner.home(r.name) for r in cell.moving)
         self.arm_of = {owner: i for i, owner in enumerate(self.arms)}
         self.why = ""
         self._known: dict[tuple[int, int], Doing | None] = {}
