@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from e2e.test_check_geometry import looked
-from helpers.door_cell import NET, TOML, door_cell
+from helpers.door_cell import NET, door_cell
 from pn2code.diagnostics import Diagnostics
 from pn2code.pipeline import generate
 from pn2code.run.cell import RunOptions, RunResult, run_cell
