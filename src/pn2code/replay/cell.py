@@ -75,6 +75,7 @@ def _robot(robot: CellRobot, store: Meshes) -> Json:
         joints.insert(at, mount)
     return {
         "name": robot.name,
+        **({"device": True} if robot.is_device else {}),
         "base": frame(robot.T_world_base),
         "home": [float(v) for v in robot.home],
         "links": [

@@ -160,8 +160,11 @@ class RunRecord:
             self.series.setdefault(f"elbow.{seen.robot}", []).append(seen.conditioning.elbow)
             self.series.setdefault(f"wrist.{seen.robot}", []).append(seen.conditioning.wrist)
             self.series.setdefault(f"margin.{seen.robot}", []).append(seen.limit_margin)
+        devices = {s.robot for s in verdict.samples if s.is_device}
         for gap in verdict.clearances or ():
-            self._note_gap(verdict.t, gap)
+            # What a device is fixed to is always near.
+            if gap.kind == "robots" or gap.robot not in devices or gap.distance < 0.0:
+                self._note_gap(verdict.t, gap)
         for gap in verdict.warnings:
             key = (gap.a, gap.b)
             if gap.distance < self.near.get(key, (np.inf, 0.0))[0]:
