@@ -353,8 +353,9 @@ export class CellView {
         return;
       }
       const at = /** @type {number} */ (index.get(state.holder));
+      // In the tool of the robot, or on a link of it: a turntable.
       const tcp = new THREE.Matrix4();
-      tcp.set(.../** @type {[any]} */ (this.frames[at][this.run.cell.robots[at].tcp]));
+      tcp.set(.../** @type {[any]} */ (this.frames[at][state.link ?? this.run.cell.robots[at].tcp]));
       const own = new THREE.Matrix4();
       own.set(.../** @type {[any]} */ (state.frame));
       object.matrixAutoUpdate = false;

@@ -1,8 +1,8 @@
 """Sweeps what situations show: each leg against the scene, legs of two arms against each other, legs and parts.
 
     compared = Comparison(cell, planner, Shown(backend))
-    compared.move(leg, held)                     # Swept: clearances, margins
-    compared.two((leg, held), (other, held))     # Apart
+    compared.around(leg, load)                   # Apart, from the scene and from itself
+    compared.two((leg, load), (other, load))     # Apart
 
 Everything is swept once, in whatever situations it occurs.
 """
@@ -16,7 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from pn2code.base.frozen import frozen
-from pn2code.geometry.activities import Activity, Contents, spot
+from pn2code.geometry.activities import Activity, Contents, Load, spot, spots
 from pn2code.geometry.answers import Nearest
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.shown import Shown
@@ -63,18 +63,21 @@ class Comparison:
         self._margins: dict[int, Margins] = {}
         self.compared = 0
 
-    def _track(self, leg: Leg, held: Part | None) -> tuple[tuple[int, str], Track]:
+    def _track(self, leg: Leg, load: Load) -> tuple[tuple[int, str], Track]:
         if leg.path is None:
             leg = self._planner.standing(leg.start)
-        key = (leg.number, "" if held is None else spot(held))
+        key = (leg.number, spots(load))
         if key not in self._tracks:
             shape = self._shapes[leg.robot]
-            link = None
-            if held is not None:
-                # A name for the collision library that no other part has that is shown at the same time.
-                held = replace(held, name=f"{held.kind.name}.held_by_{leg.robot}")
-                link = shape.holding(held, *self._boxes[held.kind.name])
-            self._tracks[key] = Track(shape, leg, link, held)
+            # Names for the collision library that no other part has that is shown at the same time.
+            named = tuple(
+                replace(p, name=f"{p.kind.name}.held_by_{leg.robot}")
+                if p.holder
+                else replace(p, name=f"{p.kind.name}.{i}_on_{p.plate.replace('/', '_')}")
+                for i, p in enumerate(load, 1)
+            )
+            links = tuple(shape.holding(p, *self._boxes[p.kind.name]) for p in named)
+            self._tracks[key] = Track(shape, leg, links, named)
         return key, self._tracks[key]
 
     def _extent(self, key: tuple[int, str]) -> tuple[Array, Array]:
@@ -90,7 +93,7 @@ class Comparison:
             self._extents[key] = (low, high)
         return self._extents[key]
 
-    def two(self, a: tuple[Leg, Part | None], b: tuple[Leg, Part | None]) -> Apart:
+    def two(self, a: tuple[Leg, Load], b: tuple[Leg, Load]) -> Apart:
         """Two legs of two arms."""
         (one, first), (other, second) = self._track(*a), self._track(*b)
         if (one, other) not in self._pairs:
@@ -130,8 +133,9 @@ class Comparison:
                 pulled = self._pulled(leg, contents, other) or self._pulled(other, more, leg)
                 if pulled is not None:
                     yield leg, other, pulled
-                own = (leg, contents.held_by(leg.robot))
-                yield leg, other, self.two(own, (other, more.held_by(other.robot)))
+                own = _meanwhile(contents.load(leg.robot), leg.robot, b, more)
+                its = _meanwhile(more.load(other.robot), other.robot, a, contents)
+                yield leg, other, self.two((leg, own), (other, its))
 
     def _pulled(self, leg: Leg, contents: Contents, other: Leg) -> Apart | None:
         """That an arm goes away with a part which a clamp of a device holds then; None: it does not."""
@@ -154,7 +158,7 @@ class Comparison:
                 return Apart("touch", 0.0, 0.0, gap, (0.0, 0.0), why, (leg.start.q, q))
         return None
 
-    def beside(self, a: tuple[Leg, Part | None], part: Part) -> Apart:
+    def beside(self, a: tuple[Leg, Load], part: Part) -> Apart:
         """A leg and a part that stands."""
         key, track = self._track(*a)
         where = (key, spot(part))
@@ -164,9 +168,9 @@ class Comparison:
             self._beside[where] = self.sweeper.beside(track, shown, self._boxes[part.kind.name])
         return self._beside[where]
 
-    def around(self, leg: Leg, held: Part | None) -> tuple[Apart, Apart]:
+    def around(self, leg: Leg, load: Load) -> tuple[Apart, Apart]:
         """A leg and the scene; a leg and the arm itself."""
-        key, track = self._track(leg, held)
+        key, track = self._track(leg, load)
         if key not in self._around:
             self._around[key] = (
                 self.sweeper.around(track, "scene"),
@@ -192,3 +196,14 @@ class Comparison:
         axis = int(np.argmin(off))
         worst = max(c.condition for c in kinematics.conditioning_many(q))
         return Margins(float(off[axis]), axis, worst if worst <= MOST_CONDITION else math.inf)
+
+
+def _meanwhile(load: Load, robot: str, other: Activity, contents: Contents) -> Load:
+    """What a robot moves while another one has put something on its turntables, or has taken something from there."""
+    before = {spot(p): p for p in other.legs[0][1].load(robot) if p.plate}
+    now = {spot(p): p for p in contents.load(robot) if p.plate}
+    if before.keys() == now.keys():
+        return load
+    kept = {spot(p): p for p in load if p.holder or spot(p) in now or spot(p) not in before}
+    kept |= {key: part for key, part in now.items() if key not in before}
+    return tuple(kept[key] for key in sorted(kept))

@@ -8,7 +8,6 @@ from pn2code.pipeline import Generated
 from pn2code.reading.document import Document
 from pn2code.replay import cell, net, programs
 from pn2code.replay.description import VERSION
-from pn2code.robot.parts import Parts
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.run.record import GAP_S
 
@@ -53,11 +52,11 @@ def describe(generated: Generated, robot_cell: RobotCell, document: Document, sp
             **cell.describe(robot_cell),
             "parts": [
                 {
-                    "name": part.name,
-                    "kind": part.name.split(".")[0],
-                    "states": [{"t": 0.0, "frame": cell.frame(part.frame), "holder": ""}],
+                    "name": name,
+                    "kind": name.split(".")[0],
+                    "states": [state],
                 }
-                for part in Parts(robot_cell).present.values()
+                for name, state in cell.at_start(robot_cell).items()
             ],
             "gaps": {
                 "pairs": [],

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.robot import codes, urdf
 from pn2code.robot.commands import Pose
-from pn2code.robot.external import Externals
+from pn2code.robot.external import ExternalAxis, Externals
 from pn2code.robot.kinematics import Branch, Conditioning, Kinematics, Solution
 from pn2code.robot.model import Arm
 from pn2code.robot.scene_objects import SceneObject
@@ -77,21 +77,25 @@ def _tree(arm: Arm, axes: Externals) -> etree._Element:
     add_joint(out, f"{STAND}_mount", "fixed", last, arm.urdf.root, Pose(0, 0, 0, 0, 0, 0))
     for axis in axes.tables:
         link = etree.SubElement(out, "link", name=axis.name)
-        plate = SceneObject(
-            axis.name,
-            "cylinder",
-            Pose(0, 0, -axis.height / 2.0, 0, 0, 0),
-            radius=axis.radius,
-            length=axis.height,
-            colour=_PLATE,
-        )
-        for number, thing in enumerate((plate, *axis.objects)):
+        for number, thing in enumerate((plate_of(axis), *axis.objects)):
             add_shape(link, thing, f"{axis.name}_{number}")
         place = pose_of(axis.T_base_axis)
         joint = add_joint(out, axis.name, "revolute", STAND, axis.name, place)
         etree.SubElement(joint, "axis", xyz=axis_words(axis.direction))
         add_limit(joint, axis.lower, axis.upper, axis.velocity)
     return out
+
+
+def plate_of(axis: ExternalAxis) -> SceneObject:
+    """The plate of a turntable, in its frame: its top is at z = 0."""
+    return SceneObject(
+        axis.name,
+        "cylinder",
+        Pose(0, 0, -axis.height / 2.0, 0, 0, 0),
+        radius=axis.radius,
+        length=axis.height,
+        colour=_PLATE,
+    )
 
 
 def add_joint(

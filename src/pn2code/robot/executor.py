@@ -59,6 +59,7 @@ CHECK_LENGTH = 0.005  # m: on a line, samples are no further apart than this on 
 CHECK_ANGLE = math.radians(2.0)  # nor than this
 MotionKind = Literal["ptp", "lin", "circ", "axis", "tool", "measure", "wait"]
 _OWN = np.eye(4)
+_STILL = 1e-9  # rad: a turntable that turns by less stands
 _NO_FRAMES: Mapping[str, Pose] = MappingProxyType({})
 
 
@@ -103,6 +104,20 @@ class Motion:
     def sample(self, times: Array) -> Array:
         """Joint positions (n, 6) at many times: much faster than one by one."""
         return self.trajectory.sample(np.clip(times - self.began, 0.0, self.duration))
+
+
+def turned(robot: CellRobot, motion: Motion) -> frozenset[str]:
+    """The turntables that a motion turns, as `left/plate`."""
+    return turned_by(robot, motion.trajectory)
+
+
+def turned_by(robot: CellRobot, path: Trajectory) -> frozenset[str]:
+    """The same of a trajectory."""
+    tables = {robot.index(axis.name): axis.name for axis in robot.axes.tables}
+    if not tables:
+        return frozenset()
+    off = np.abs(path.q(path.duration) - path.q(0.0))
+    return frozenset(f"{robot.name}/{name}" for i, name in tables.items() if off[i] > _STILL)
 
 
 class RobotExecutor:

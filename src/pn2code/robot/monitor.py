@@ -155,7 +155,7 @@ class Monitor:
             self._note("wrist", s, c.wrist, t, phase)
         warnings = []
         for found in clearances or ():
-            others = (found.robot, found.b.split("/")[0])
+            others = (found.robot, found.second or found.b.split("/")[0])
             free = any(kinds.get(name) == "ptp" for name in others)
             gap = replace(found, allowed=found.permitted(is_free=free))
             fault = fault or self._collision(gap, t, poses[gap.robot])

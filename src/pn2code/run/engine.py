@@ -46,7 +46,7 @@ from pn2code.robot.commands import (
     Wait,
     tcp_of,
 )
-from pn2code.robot.executor import Motion, RobotExecutor
+from pn2code.robot.executor import Motion, RobotExecutor, turned
 from pn2code.robot.monitor import Monitor, Sample
 from pn2code.robot.motion import LinearTrajectory, MotionFault
 from pn2code.robot.parts import PartFault
@@ -406,6 +406,7 @@ class Engine:
     def _sensor_says(self, robot: RobotRunner, request: Sense) -> Scalar | None:
         looks = self.sensors.seen.get(request.sensor)
         if looks is not None:
+            self._look_at_turntables()
             return self.parts.parts.is_seen(*looks)
         return self.sensors.ask(robot.name, request.sensor)
 
@@ -429,6 +430,7 @@ class Engine:
             at = f" (net transition {where})" if where else ""
             raise CellStoppedError(f"{robot.script}:{line}{at}: {fault}") from None
         self._expect_let_go(robot, command, line)
+        self._expect_riders_stay(robot, motion, line)
         if self.stops is not None:
             motion = self._held_up(robot, motion, self.stops)
         robot.motion, robot.line = motion, line
@@ -461,6 +463,31 @@ class Engine:
                 raise CellStoppedError(
                     f"{robot.script}:{line}{at}: {words}, at TCP pose {describe(robot.arm.pose)}"
                 )
+
+    def _expect_riders_stay(self, robot: RobotRunner, motion: Motion, line: int) -> None:
+        """What stands on a turntable that begins to turn stays there, or the cell stops."""
+        if robot.arm is None:
+            return
+        for plate in turned(robot.arm.robot, motion):
+            self._look_at_turntables()
+            try:
+                self.parts.parts.turn(plate)
+            except PartFault as fault:
+                where = robot.element_at(line)
+                at = f" (net transition {where})" if where else ""
+                raise CellStoppedError(f"{robot.script}:{line}{at}: {fault}") from None
+
+    def _look_at_turntables(self) -> None:
+        """Where they are now, and which of them turn, counts for what is handled."""
+        parts = self.parts.parts
+        turning: set[str] = set()
+        for other in self._arms():
+            assert other.arm is not None
+            if other.arm.robot.axes.tables:
+                parts.stand(other.name, other.joints(self.now))
+                if other.motion is not None and other.motion.ends > self.now + 1e-12:
+                    turning |= turned(other.arm.robot, other.motion)
+        parts.turning = frozenset(turning)
 
     def _held_up(self, robot: RobotRunner, motion: Motion, stops: Stops) -> Motion:
         """The motion with the stops that are drawn for it."""
@@ -539,13 +566,15 @@ class Engine:
     def _handle(self, robot: RobotRunner, handling: Handling) -> None:
         """What an action that has ended has done to a part."""
         tcp = matrix_of(robot.arm.pose) if robot.arm is not None else None
+        self._look_at_turntables()
         try:
             change = self.parts.handle(robot.name, handling, tcp)
         except PartFault as fault:
             where = robot.element_at(robot.line)
             at = f" (net transition {where})" if where else ""
             raise CellStoppedError(f"{robot.script}:{robot.line}{at}: {fault}") from None
-        self.record.parts.append(PartRecord(self.now, robot.name, change))
+        for one in (change, *self.parts.parts.settled):
+            self.record.parts.append(PartRecord(self.now, robot.name, one))
         self.record.events.append(
             {
                 "t": self.now,
