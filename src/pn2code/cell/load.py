@@ -522,7 +522,8 @@ def _fixed(
     for section in ("robots", "devices"):
         for table_ in _table(data.get(section)).values():
             own = _table(_table(_table(table_).get("axes")).get(axis))
-            ends = [x for key in ("from", "to") if isinstance(x := own.get(key), int | float)]
+            said = {"from": 0.0, "to": own.get("length")} if own.get("kind") == "belt" else own
+            ends = [x for key in ("from", "to") if isinstance(x := said.get(key), int | float)]
             if len(ends) < 2:
                 continue  # that is reported elsewhere
             low, high = ends

@@ -1,11 +1,11 @@
-"""What moves of a device: doors, clamps. Lengths are in m, angles in degrees."""
+"""What moves of a device: doors, clamps, belts. Lengths are in m, angles in degrees."""
 
 from __future__ import annotations
 
-from pn2code.cell_file.geometry import OBJECT, POSE, POSE_WORDS, travel
+from pn2code.cell_file.geometry import OBJECT, POSE, POSE_WORDS, pace_of, travel
 from pn2code.cell_file.keys import Key, Section
 
-_SLIDE, _SWING, _CLAMP = ("slide",), ("swing",), ("clamp",)
+_SLIDE, _SWING, _CLAMP, _BELT = ("slide",), ("swing",), ("clamp",), ("belt",)
 _METRES = ((1e-5, 100.0), (1e-4, 1e4), (1e-4, 1e6))
 _DEGREES = ((1e-3, 1e4), (0.1, 1e6), (0.1, 1e8))
 DEVICE_AXIS = Section(
@@ -14,16 +14,16 @@ DEVICE_AXIS = Section(
             "kind",
             "text",
             "How it moves: a slide goes along a line (a sliding door, a lift, a pusher), a swing turns about a line (a "
-            "door on hinges, a flap), a clamp has two jaws.",
-            "`slide`, `swing` or `clamp`",
+            "door on hinges, a flap), a clamp has two jaws, a belt takes along what stands on it.",
+            "`slide`, `swing`, `clamp` or `belt`",
             default="slide",
-            words=("slide", "swing", "clamp"),
+            words=("slide", "swing", "clamp", "belt"),
         ),
         Key(
             "pose",
             "table",
             "Its frame in the world: of a slide at 0; a swing turns about its z; of a clamp the middle between its "
-            "jaws, which close along its x.",
+            "jaws, which close along its x; of a belt the middle of its beginning, on top of it: it runs along x.",
             POSE_WORDS,
             inner=POSE,
         ),
@@ -39,6 +39,21 @@ DEVICE_AXIS = Section(
         *travel(_SLIDE, "m", (0.5, 1.0, 10.0), _METRES),
         *travel(_SWING, "degrees", (60.0, 120.0, 600.0), _DEGREES),
         *travel(_CLAMP, "m", (0.1, 1.0, 10.0), _METRES, "The {} gap between its jaws."),
+        *(
+            Key(name, "number", means, required=True, unit="m", low=0.0, above=True, only=_BELT)
+            for name, means in (("length", "Its length."), ("width", "Its width."))
+        ),
+        Key(
+            "height",
+            "number",
+            "Of its body, below its top.",
+            default=0.1,
+            unit="m",
+            low=0.0,
+            above=True,
+            only=_BELT,
+        ),
+        *pace_of(_BELT, "m", (0.3, 1.0, 10.0), _METRES),
         Key(
             "objects",
             "tables",
@@ -62,12 +77,12 @@ DEVICE_AXIS = Section(
         Key(
             "colour",
             "numbers",
-            "Red, green, blue, and how opaque, of its jaws; each from 0 to 1.",
+            "Red, green, blue, and how opaque, of its jaws or its body; each from 0 to 1.",
             default=(0.45, 0.47, 0.5),
             counts=(3, 4),
             low=0.0,
             high=1.0,
-            only=_CLAMP,
+            only=(*_CLAMP, *_BELT),
         ),
         Key(
             "holds",
@@ -75,6 +90,13 @@ DEVICE_AXIS = Section(
             "A name of `[places]`: a part that is there cannot be taken away while the gap is less than `to`.",
             "the name of a place",
             only=_CLAMP,
+        ),
+        Key(
+            "stop",
+            "text",
+            "A name of `[places]`: the belt stops where the first part on it comes so far.",
+            "the name of a place",
+            only=_BELT,
         ),
     ),
     by="kind",

@@ -322,25 +322,35 @@ def travel(
     means: str = "Its {} position.",
 ) -> tuple[Key, ...]:
     """How far an external axis goes, and how fast; `between`: the least and greatest of each of these."""
-    words = ("speed", "acceleration", "jerk")
-    units = (f"{unit}/s", f"{unit}/s\u00b2", f"{unit}/s\u00b3")
     return (
         Key("from", "number", means.format("least"), required=True, unit=unit, only=only),
         Key("to", "number", means.format("greatest"), required=True, unit=unit, only=only),
         Key("home", "number", "Where it is when a run begins.", default=0.0, unit=unit, only=only),
-        *(
-            Key(
-                word,
-                "number",
-                f"Its greatest {word}.",
-                default=value,
-                unit=own,
-                low=least,
-                high=most,
-                only=only,
-            )
-            for word, value, own, (least, most) in zip(words, pace, units, between, strict=True)
-        ),
+        *pace_of(only, unit, pace, between),
+    )
+
+
+def pace_of(
+    only: tuple[str, ...],
+    unit: str,
+    pace: tuple[float, float, float],
+    between: tuple[tuple[float, float], ...],
+) -> tuple[Key, ...]:
+    """How fast it is."""
+    words = ("speed", "acceleration", "jerk")
+    units = (f"{unit}/s", f"{unit}/s\u00b2", f"{unit}/s\u00b3")
+    return tuple(
+        Key(
+            word,
+            "number",
+            f"Its greatest {word}.",
+            default=value,
+            unit=own,
+            low=least,
+            high=most,
+            only=only,
+        )
+        for word, value, own, (least, most) in zip(words, pace, units, between, strict=True)
     )
 
 

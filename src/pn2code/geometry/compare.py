@@ -80,6 +80,11 @@ class Comparison:
             self._tracks[key] = Track(shape, leg, links, named)
         return key, self._tracks[key]
 
+    def _has_shape(self, moved: tuple[Leg, Load]) -> bool:
+        """Whether anything moves: of a device with a belt only what stands on it."""
+        leg, load = moved
+        return bool(self._shapes[leg.robot].links or load)
+
     def _extent(self, key: tuple[int, str]) -> tuple[Array, Array]:
         """The corners of a box around all that an arm sweeps on a leg."""
         if key not in self._extents:
@@ -95,6 +100,8 @@ class Comparison:
 
     def two(self, a: tuple[Leg, Load], b: tuple[Leg, Load]) -> Apart:
         """Two legs of two arms."""
+        if not (self._has_shape(a) and self._has_shape(b)):
+            return Apart("clear", math.inf, math.inf)
         (one, first), (other, second) = self._track(*a), self._track(*b)
         if (one, other) not in self._pairs:
             self.compared += 1
@@ -160,6 +167,8 @@ class Comparison:
 
     def beside(self, a: tuple[Leg, Load], part: Part) -> Apart:
         """A leg and a part that stands."""
+        if not self._has_shape(a):
+            return Apart("clear", math.inf, math.inf)
         key, track = self._track(*a)
         where = (key, spot(part))
         if where not in self._beside:
@@ -170,6 +179,8 @@ class Comparison:
 
     def around(self, leg: Leg, load: Load) -> tuple[Apart, Apart]:
         """A leg and the scene; a leg and the arm itself."""
+        if not self._has_shape((leg, load)):
+            return Apart("clear", math.inf, math.inf), Apart("clear", math.inf, math.inf)
         key, track = self._track(leg, load)
         if key not in self._around:
             self._around[key] = (

@@ -32,7 +32,6 @@ from pn2code.robot.backend import (
     ClearanceKind,
     Picture,
 )
-from pn2code.robot.carried import WithAxes
 from pn2code.robot.commands import Pose
 from pn2code.robot.geometry import Body, Solid, bodies, body_of
 from pn2code.robot.looks import Look
@@ -347,10 +346,8 @@ class BulletBackend:
         """Where a turntable is, `T_world_plate`."""
         name, _, axis = plate.partition("/")
         robot = self._robots[name].robot
-        assert isinstance(robot.kinematics, WithAxes), "a turntable is an external axis"
-        i = robot.index(axis)
-        own = robot.kinematics.T_base_table(i, self._q.get(name, robot.home)[i])
-        return robot.T_world_base @ own
+        own = next(a for a in robot.carrying if a.name == axis)
+        return robot.T_world_plate(own, self._q.get(name, robot.home))
 
     def remove_part(self, name: str) -> None:
         """The part has left the cell."""

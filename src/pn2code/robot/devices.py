@@ -1,4 +1,6 @@
-"""Devices of which something moves: doors, clamps. Each is a robot without joints, of which all axes are external ones.
+"""Devices of which something moves: doors, clamps, belts.
+
+Each is a robot without joints, of which all axes are external ones.
 
 devices = read_devices(t, folder, places)       # of [devices]; those without `axes` are left out
 
@@ -22,7 +24,7 @@ from pn2code.robot import codes, urdf
 from pn2code.robot.carried import STAND, add_joint, add_limit, add_shape, axis_words
 from pn2code.robot.commands import Pose
 from pn2code.robot.device_kinematics import DeviceKinematics
-from pn2code.robot.external import Clamp, ExternalAxis, Externals
+from pn2code.robot.external import Belt, Clamp, ExternalAxis, Externals
 from pn2code.robot.model import Arm
 from pn2code.robot.robot_cell import CellRobot
 from pn2code.robot.scene_objects import SceneObject, read_colour, read_object
@@ -30,6 +32,8 @@ from pn2code.robot.table import Table
 from pn2code.robot.table_poses import NO_POSE, read_pose
 from pn2code.robot.transforms import matrix_of, pose_of
 
+_ENDLESS = 1e6
+"""m: so far a belt can run."""
 _PACE = ("speed", "acceleration", "jerk")
 
 
@@ -62,7 +66,7 @@ def device_of(name: str, axes: Externals) -> CellRobot:
         STAND,
         (),
         np.array([a.lower for a in axes.tables]),
-        np.array([a.upper for a in axes.tables]),
+        np.array([a.upper if a.belt is None else _ENDLESS for a in axes.tables]),
         np.array([a.velocity for a in axes.tables]),
         tuple(a.name for a in axes.tables),
     )
@@ -96,6 +100,8 @@ def _axis(t: Table, name: str, folder: Path, places: Mapping[str, Pose]) -> _Rea
     kind = t.text("kind")
     if kind != t.data.get("kind", kind):
         return None  # what else there may be is not known
+    if kind == "belt":
+        return _belt(t, name, places)
     slides = kind != "swing"
     numbers = {k: t.number(k) for k in ("from", "to", "home", *_PACE)}
     for key in ("from", "to"):
@@ -106,10 +112,7 @@ def _axis(t: Table, name: str, folder: Path, places: Mapping[str, Pose]) -> _Rea
     holds = ""
     if kind == "clamp":
         objects = (_jaw(t),)
-        holds = t.text("holds")
-        if holds and holds not in places:
-            near = did_you_mean(holds, tuple(places)) or f"add a table `[places.{holds}]`"
-            t.wrong_name("holds", holds, "place of `[places]`", near)
+        holds = _place(t, "holds", places)
     else:
         t.has("objects")
         objects = tuple(o for e in t.tables("objects") if (o := read_object(e, folder)) is not None)
@@ -132,6 +135,47 @@ def _axis(t: Table, name: str, folder: Path, places: Mapping[str, Pose]) -> _Rea
         objects=objects,
     )  # fmt: skip
     return _Read((own,)) if kind != "clamp" else _clamped(own, holds)
+
+
+def _place(t: Table, key: str, places: Mapping[str, Pose]) -> str:
+    """The name of a place that is there; "": none is named."""
+    name = t.text(key)
+    if name and name not in places:
+        near = did_you_mean(name, tuple(places)) or f"add a table `[places.{name}]`"
+        t.wrong_name(key, name, "place of `[places]`", near)
+    return name
+
+
+def _belt(t: Table, name: str, places: Mapping[str, Pose]) -> _Read | None:
+    before = len(t.d.errors)
+    length, width, height = (t.number(k) for k in ("length", "width", "height"))
+    for key in ("length", "width"):
+        t.has(key)
+    speed, acceleration, jerk = (t.number(k) for k in _PACE)
+    pose = read_pose(t, "pose")
+    frame = matrix_of(pose)
+    stop = _place(t, "stop", places)
+    colour = read_colour(t)
+    t.done()
+    if abs(float(frame[2, 2]) - 1.0) > 1e-9:
+        t.d.error(
+            codes.ROBOT_VALUE,
+            f"belt `{name}` is not level, so that what stands on it would slide",
+            t.at("pose"),
+            hint="leave `roll` and `pitch` of its pose out",
+        )
+    if len(t.d.errors) != before:
+        return None
+    middle = pose_of(frame @ matrix_of(Pose(length / 2.0, 0.0, -height / 2.0, 0.0, 0.0, 0.0)))
+    body = SceneObject(name, "box", middle, colour, size=(length, width, height))
+    return _Read(
+        (
+            ExternalAxis(
+                name, True, frame, np.array([1.0, 0.0, 0.0]), 0.0, length, speed, acceleration,
+                jerk, 0.0, height=height, objects=(body,), belt=Belt(width, stop),
+            ),
+        )
+    )  # fmt: skip
 
 
 def _expect_order(t: Table, name: str, kind: str, numbers: Mapping[str, float]) -> None:
@@ -179,7 +223,8 @@ def _tree(device: str, axes: Externals) -> etree._Element:
     etree.SubElement(out, "link", name=STAND)
     for axis in axes.tables:
         link = etree.SubElement(out, "link", name=axis.name)
-        for number, thing in enumerate(axis.objects):
+        # The body of a belt stands, whatever the belt does: it is a thing of the scene.
+        for number, thing in enumerate(axis.objects if axis.belt is None else ()):
             add_shape(link, thing, f"{axis.name}_{number}")
         kind = "prismatic" if axis.is_track else "revolute"
         joint = add_joint(out, axis.name, kind, STAND, axis.name, pose_of(axis.T_base_axis))

@@ -107,13 +107,13 @@ class Motion:
 
 
 def turned(robot: CellRobot, motion: Motion) -> frozenset[str]:
-    """The turntables that a motion turns, as `left/plate`."""
+    """The turntables and belts that a motion moves, as `left/plate`."""
     return turned_by(robot, motion.trajectory)
 
 
 def turned_by(robot: CellRobot, path: Trajectory) -> frozenset[str]:
     """The same of a trajectory."""
-    tables = {robot.index(axis.name): axis.name for axis in robot.axes.tables}
+    tables = {robot.index(axis.name): axis.name for axis in robot.carrying}
     if not tables:
         return frozenset()
     off = np.abs(path.q(path.duration) - path.q(0.0))
@@ -389,7 +389,7 @@ class RobotExecutor:
                     f"{called} would be at {arm.beyond(i, a.position, axis.lower, axis.upper)}",
                 )
             for index, position in moved:
-                q[index] = position
+                q[index] = position if axis.belt is None else q[index] + position
         return q
 
     def _limited(self, command: Move) -> MotionLimits:

@@ -27,6 +27,14 @@ if TYPE_CHECKING:
     from pn2code.robot.table import Table
 
 
+@frozen
+class Belt:
+    """What a belt has beside its length."""
+
+    width: float
+    stop: str = ""
+
+
 @frozen(eq=False)
 class ExternalAxis:
     """A track or a turntable; m or rad.
@@ -36,6 +44,8 @@ class ExternalAxis:
         T_base_axis: of a turntable its frame at zero, in the frame of the robot's `base`; of a track nothing.
         direction: unit vector, in `base` where the arm goes, or the z of a turntable in its frame.
         radius, height: of the plate of a turntable; objects: what is on it, in its frame.
+        belt: of a belt, which runs on and on: its width and the place where a part stops it ("": nowhere); its commands
+            say how far it runs, at most `upper`, its length. `objects` is its body, which stands.
     """
 
     name: str
@@ -51,6 +61,7 @@ class ExternalAxis:
     radius: float = 0.0
     height: float = 0.0
     objects: tuple[SceneObject, ...] = ()
+    belt: Belt | None = None
 
     @property
     def unit(self) -> str:
@@ -69,6 +80,7 @@ class ExternalAxis:
             self.radius,
             self.height,
             self.objects,
+            self.belt,
         )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
 
 import numpy as np
@@ -12,14 +12,14 @@ from pn2code.base.frozen import frozen
 from pn2code.robot import payload
 from pn2code.robot.carried import STAND
 from pn2code.robot.commands import Pose
-from pn2code.robot.external import Externals
+from pn2code.robot.external import ExternalAxis, Externals
 from pn2code.robot.kinematics import Branch, Kinematics
 from pn2code.robot.model import Arm, Tool
 from pn2code.robot.motion import MotionLimits
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.payload import Load
 from pn2code.robot.scene_objects import SceneObject
-from pn2code.robot.transforms import Array, matrix_of
+from pn2code.robot.transforms import Array, matrix_of, rotation_about
 
 PART_CONTACT = 1e-3
 """m: parts are taken from what they rest on, and tools touch them: so deep they may overlap."""
@@ -138,6 +138,21 @@ class CellRobot:
             if why := rating.exceeded(load, centre):
                 return f"robot `{self.name}` (`{self.arm.name}`) carries {load.words}, {why}"
         return ""
+
+    @property
+    def carrying(self) -> tuple[ExternalAxis, ...]:
+        """The axes with which parts go that stand on them: turntables of a robot, belts of a device."""
+        return tuple(a for a in self.axes.tables if not self.is_device or a.belt is not None)
+
+    def T_world_plate(self, axis: ExternalAxis, q: Sequence[float] | Array) -> Array:  # noqa: N802
+        """Where one of these is, with what goes with it."""
+        position = float(q[self.index(axis.name)])
+        step = np.eye(4)
+        if axis.is_track:
+            step[:3, 3] = position * axis.direction
+        else:
+            step[:3, :3] = rotation_about(axis.direction, position)
+        return np.asarray(self.T_world_base @ (axis.T_base_axis @ step))
 
     @property
     def is_device(self) -> bool:

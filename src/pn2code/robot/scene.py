@@ -268,7 +268,8 @@ def _scene(
     depth = t.number("tool_contact_depth")
     contacts = _default_contacts(robots, depth) if depth > 0.0 else []
     objects = tuple(o for e in t.tables("objects") if (o := read_object(e, folder)) is not None)
-    contacts += [*_gripping(robots, kinds, objects), *_clamping(devices, kinds)]
+    belts = [f"{r.name}/{a.name}" for r in devices for a in r.carrying]
+    contacts += [*_gripping(robots, kinds, objects, belts), *_clamping(devices, kinds)]
     _named_once(t, objects, kinds)
     things = [
         *names,
@@ -325,10 +326,17 @@ def _gripping(
     robots: tuple[CellRobot, ...],
     kinds: Mapping[str, PartKind],
     objects: tuple[SceneObject, ...],
+    belts: list[str],
 ) -> list[ContactRule]:
     """The tools' contact links may touch parts, and parts that are carried what they are taken from and put on."""
     tips = [f"{r.name}/tool_{x}" for r in robots if r.tool for x in r.tool.contact_links]
-    things = ["floor", "panel/*", *(o.name for o in objects), *(f"{kind}.*" for kind in kinds)]
+    things = [
+        "floor",
+        "panel/*",
+        *belts,
+        *(o.name for o in objects),
+        *(f"{kind}.*" for kind in kinds),
+    ]
     return [
         rule
         for kind in kinds

@@ -28,6 +28,7 @@ from pn2code.cell.partition import Partition
 from pn2code.emission.output import Block, OutputFile
 from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.backend import Backend
+from pn2code.robot.belts import until_stop
 from pn2code.robot.clamps import holding
 from pn2code.robot.commands import (
     Along,
@@ -424,7 +425,7 @@ class Engine:
 
     def _begin_command(self, robot: RobotRunner, command: Command, line: int) -> None:
         try:
-            motion = robot.executor.begin(command, self.now)
+            motion = robot.executor.begin(self._stopped(robot, command), self.now)
         except MotionFault as fault:
             where = robot.element_at(line)
             at = f" (net transition {where})" if where else ""
@@ -445,6 +446,28 @@ class Engine:
                     "duration": command.duration,
                 }
             )
+
+    def _stopped(self, robot: RobotRunner, command: Command) -> Command:
+        """Belts run until a part comes to their stop."""
+        if robot.arm is None or not robot.arm.robot.is_device or not robot.arm.robot.carrying:
+            return command
+        self._look_at_turntables()
+        return until_stop(robot.arm.robot, self.parts.parts, command)
+
+    def _run_out(self, robot: RobotRunner, motion: Motion) -> None:
+        """What belts that have come to rest have taken along stands there, or on something else."""
+        if robot.arm is None or not robot.arm.robot.is_device:
+            return
+        for plate in turned(robot.arm.robot, motion):
+            self._look_at_turntables()
+            try:
+                settled = self.parts.run_out(plate)
+            except PartFault as fault:
+                where = robot.element_at(robot.line)
+                at = f" (net transition {where})" if where else ""
+                raise CellStoppedError(f"{robot.script}:{robot.line}{at}: {fault}") from None
+            for change in settled:
+                self.record.parts.append(PartRecord(self.now, robot.name, change))
 
     def _expect_let_go(self, robot: RobotRunner, command: Command, line: int) -> None:
         """What an arm carries away is in no clamp that still holds it."""
@@ -559,6 +582,7 @@ class Engine:
             arm = robot.arm.robot
             reached = pose_of(arm.T_world_base @ arm.kinematics.forward(robot.arm.q))
             self.record.note_error("TCP off the commanded pose", distance(reached, motion.target))
+        self._run_out(robot, motion)
         if isinstance(motion.command, ToolAction) and motion.command.handling is not None:
             self._handle(robot, motion.command.handling)
         self._follow(robot, motion.result)

@@ -210,14 +210,14 @@ def test_a_door_is_swept_wherever_it_can_be(swept: _Swept) -> None:
     """It is open before and after, and shut for a moment between: no two positions would show that."""
     comparison, planner = swept.comparison, swept.planner
     standing = planner.standing(planner.home("mill"))
-    assert comparison.two((swept.into, None), (standing, None)).outcome == "touch"
+    assert comparison.two((swept.into, ()), (standing, ())).outcome == "touch"
     wide = swept.door(0.9, 0.9)
-    assert comparison.two((swept.into, None), (wide, None)).outcome == "clear"
+    assert comparison.two((swept.into, ()), (wide, ())).outcome == "clear"
     closing = swept.door(0.9, 0.0)
-    apart = comparison.two((swept.into, None), (closing, None))
+    apart = comparison.two((swept.into, ()), (closing, ()))
     assert apart.outcome == "touch" and apart.where is not None
     assert {apart.where.a.split("/")[0], apart.where.b} == {"arm", "mill/door"}
-    ajar = comparison.two((swept.into, None), (swept.door(0.9, 0.75), None))
+    ajar = comparison.two((swept.into, ()), (swept.door(0.9, 0.75), ()))
     assert ajar.outcome == "clear" and ajar.least > 0.0
 
 
