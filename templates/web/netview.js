@@ -28,6 +28,8 @@ export class NetView {
     this.shownAt = 0;
     this.current = -1;
     this.lastStep = -1;
+    /** What is lit. */
+    this.lit = "";
     /** @type {Map<number, Drawn>} */
     this.drawn = new Map();
     /** @type {Map<number, {version: number, node: any}>} */
@@ -163,6 +165,7 @@ export class NetView {
     this.prepare(made);
     this.tokens();
     this.fit();
+    this.lit = "";
     this.light(this.lastStep, this.lastTime ?? 0);
     this.mark();
   }
@@ -405,6 +408,12 @@ export class NetView {
    */
   light(k, t) {
     const { elements, root } = this.draw(this.net.instances[this.current].page);
+    const since = t - LIT_S * (this.speed ?? 1);
+    let first = k;
+    while (first > 1 && first > k - 29 && this.course.time[first - 2] >= since) first--;
+    const lit = `${this.current} ${first} ${k}`;
+    if (lit === this.lit) return; // what is drawn anew costs, also where it looks the same
+    this.lit = lit;
     for (const node of root.querySelectorAll(".occurs, .recent")) node.classList.remove("occurs", "recent");
     this.callout?.remove();
     this.callout = null;
@@ -412,8 +421,7 @@ export class NetView {
       this.status.textContent = "The initial marking";
       return;
     }
-    const since = t - LIT_S * (this.speed ?? 1);
-    for (let i = k; i >= 1 && i > k - 30 && (i === k || this.course.time[i - 1] >= since); i--) {
+    for (let i = k; i >= first; i--) {
       const occurred = this.course.occurred(i);
       if (occurred.instance !== this.current) continue;
       const name = i === k ? "occurs" : "recent";
