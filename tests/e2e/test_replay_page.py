@@ -360,6 +360,36 @@ def test_a_trace_without_arms_on_a_phone_in_the_dark(tmp_path: Path, chromium: A
         assert browser.errors == []
 
 
+def test_on_a_phone_what_occurs_can_be_read(shown: Shown, chromium: Any) -> None:
+    text = """() => {
+        const { net } = replay.page, t = net.course.occurred(replay.page.clock.k);
+        const node = net.draw(net.net.instances[net.current].page).elements.get(t.id)[0];
+        const [box, sheet] = [node.getBoundingClientRect(), net.sheet.getBoundingClientRect()];
+        const isSeen = box.left >= sheet.left && box.right <= sheet.right && box.top >= sheet.top;
+        return [net.net.style.size * net.sheet.getScreenCTM().a, isSeen && box.bottom <= sheet.bottom];
+    }"""
+    with opened(chromium, **TURNED) as browser:
+        browser.open(shown.file, "#step=30")
+        for step in (30, 31, 60, 90):
+            browser.ask("k => replay.step(k)", step)
+            size, is_seen = browser.ask(text)
+            assert size > 8 and is_seen, step
+        browser.page.get_by_role("button", name="Fit").click()
+        browser.ask("""() => {
+            const { course, clock, net } = replay.page;
+            let k = clock.k + 1;
+            while (course.occurred(k).instance !== net.current) k++;
+            replay.step(k);
+        }""")
+        assert browser.ask(text)[0] < 5, "whoever wants the whole page keeps it"
+        browser.page.get_by_role("button", name="Follow").click(click_count=2)
+        assert browser.ask(text)[0] > 8
+        browser.page.get_by_role("button", name="More").click()
+        said = browser.page.locator(".panel.messages .said").first
+        assert said.bounding_box()["width"] > 100
+        assert browser.errors == []
+
+
 def test_a_hostile_net_does_nothing(tmp_path: Path, chromium: Any) -> None:
     text = PAIR.replace("page Sub", f'page Sub\n    place "{HOSTILE}" : STRING = 1`"{HOSTILE}"')
     shown = described(tmp_path, text)
