@@ -358,6 +358,13 @@ SENSOR = Section(
             "with `sees`: Only a part of this kind, a name of `[parts]`, is seen; without it, any part.",
             "the name of a kind of parts",
         ),
+        Key(
+            "says",
+            "text",
+            "What it tells, in plain words: pages show them where a person may choose it.",
+            "a text",
+            default="",
+        ),
     )
 )
 ACTION = Key(
