@@ -21,7 +21,7 @@ import signal
 import subprocess
 import tempfile
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from fnmatch import fnmatch
@@ -287,10 +287,7 @@ class _Builder:
         """
         with tempfile.TemporaryDirectory(prefix=_BUILDS, dir=self.folder) as name:
             room = Path(name)
-            for f in (*self.runtime, *self.files):
-                path = room / f.path
-                path.parent.mkdir(parents=True, exist_ok=True)
-                path.write_text(f.text, encoding="utf-8")
+            _write(room, (*(f for f in self.runtime if self._is_included(f)), *self.files))
             with ThreadPoolExecutor(2) as pool:
                 library = pool.submit(self._library, room, d)
                 try:
@@ -329,6 +326,7 @@ class _Builder:
 
     def _made(self, room: Path, done_before: Path, d: Diagnostics) -> bool:
         """The library, of objects that were there before and of others."""
+        _write(room, [f for f in self.runtime if not self._is_included(f)])
         sources = [f.path for f in self.runtime if f.path.endswith(".c")]
         objects = [f"{Path(s).stem}.o" for s in sources]
         # Large ones first, so that all processors are busy to the end.
@@ -367,6 +365,10 @@ class _Builder:
     def interrupted(self) -> bool:
         """Whether compilers that run are to be ended."""
         return self._is_given_up or self._is_enough()
+
+    def _is_included(self, file: OutputFile) -> bool:
+        """Whether a net needs a file of the runtime to be compiled; the others only the runtime itself."""
+        return not file.path.endswith(".c") or file.path == f"runtime/src/{self.host.whole}"
 
     def _is_own(self, source: str) -> bool:
         return Path(source).name.startswith(self.host.name)
@@ -422,6 +424,13 @@ class _Builder:
             with suppress(OSError):
                 if time.time() - path.stat().st_mtime > STALE_S:
                     shutil.rmtree(path, ignore_errors=True)
+
+
+def _write(folder: Path, files: Iterable[OutputFile]) -> None:
+    for f in files:
+        path = folder / f.path
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(f.text, encoding="utf-8")
 
 
 def _digest(tools: Sequence[str], files: Sequence[OutputFile]) -> str:
