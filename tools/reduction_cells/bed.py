@@ -310,8 +310,12 @@ def _other_checks(mine: Control, whole: Control, sizes: tuple[str, ...]) -> Iter
 
 _SIZES = ("non-blocking", "confluence")
 """Checks of which the value is a number of states, or of steps of one run."""
-_LIMITED = (*_SIZES, "bounded-response", "messages", "reach")
-"""The same where a state stands for many markings: there may be more of what is counted."""
+_LIMITED = (*_SIZES, "bounded-response", "messages", "reach", "memory")
+"""The same where a state stands for many markings: there may be more of what is counted.
+
+What memory is needed while questions about orders are answered counts in `memory`, too, and they are not asked then;
+what firings need is compared by `Limited`.
+"""
 FEW = (40, 150, 400)
 """States before tokens are counted up to a limit: one of these."""
 
