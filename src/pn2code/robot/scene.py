@@ -319,6 +319,7 @@ def _gripping(
     """The tools' contact links may touch parts, and parts that are carried what they are taken from and put on."""
     tips = [f"{r.name}/tool_{x}" for r in robots if r.tool for x in r.tool.contact_links]
     things = ["floor", "panel/*", *(o.name for o in objects), *(f"{kind}.*" for kind in kinds)]
+    things += [f"{r.name}/{table}" for r in robots for table in r.arm.tables]
     return [
         rule
         for kind in kinds
