@@ -15,10 +15,10 @@ enum {
     LENGTH = 20000, /* steps of a walk at most */
     CANDIDATES = 6,
     MANY_CANDIDATES = 4096, /* of an eager walk */
-    EAGER_STEPS = 64,      /* one in so many steps of an eager walk is random */
-    PATIENCE = 200,        /* steps of an eager walk that bring it no nearer than it was */
-    PLAIN_STEPS = 4,  /* one in so many steps of a drawn walk is random */
-    GUIDED_STEPS = 40 /* one in so many steps of a guided walk is not guided */
+    EAGER_STEPS = 64,       /* one in so many steps of an eager walk is random */
+    PATIENCE = 200,         /* steps of an eager walk that bring it no nearer than it was */
+    PLAIN_STEPS = 4,        /* one in so many steps of a drawn walk is random */
+    GUIDED_STEPS = 40       /* one in so many steps of a guided walk is not guided */
 };
 
 static uint64_t state = 1U;
