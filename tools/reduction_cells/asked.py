@@ -53,6 +53,8 @@ def properties(r: Random, opened: OpenNet, partition: Partition) -> m.Properties
         lambda: f"ctl AF {condition()}",
         lambda: f"ctl AG EF {condition()}",
         lambda: f"ltl F {condition()}",
+        lambda: f"every fires({r.choice(fired)}) is followed by {condition()}",
+        lambda: f"every fires({r.choice(fired)}) is followed by {condition()} within 1 firings",
     )
     texts = [r.choice(kinds)() for _ in range(MOST)]
     return gather(opened, texts, None, Diagnostics(), found=False).plain

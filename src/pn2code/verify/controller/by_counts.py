@@ -20,7 +20,7 @@ weights of places (`verify.exploring.ranking`):
                        is said where the supervisor never has a choice in any state
     dead transitions   what occurs in no state never occurs; of all others a run in the whole space, or in turns, is
                        known
-    properties         conditions on all states (`stated`): the places of each have no limits, and are a group, so each
+    properties         conditions on all states (`stated`): the places of each are a group, and have no limits, so each
                        marking has a state with the same tokens there. What is not so in a state has to be known from
                        the part of the whole space
 
@@ -114,7 +114,7 @@ def abstract(
     own = {p.index for p in partition.net.places}
     open_ = {p for p, most in plan.capacities.items() if plan.bounds.get(p, most + 1) > most}
     asked = {p for s in running.silences for p in group(s)} | open_ | set(kept)
-    asked |= {p for x in properties for p in x.places}
+    asked |= {p for x in properties for p in x.exact}
     free = own - asked - {c.place for c in partition.channels}
     made = counted(running.net, plan.storage, table, free, never=running.probes, least=least)
     if made is None:

@@ -1,7 +1,7 @@
 """Properties of a cell that follow from what holds in each state, so that reduced states tell (`by_counts`).
 
     made = stated(property, running.over, partition)      # None: it is not of that kind
-    made.places                                           # what it looks at: known together, and exactly
+    made.places, made.exact                               # what it looks at together; and of which all tokens count
     made.ask(questions)                                   # one question about all states; its "yes" is enough
 
 Let all states be those of the net of turns, which does all that the cell does (docs/reductions.md). A condition that
@@ -11,9 +11,14 @@ more than has to be so:
     dead          in a dead state of the cell the supervisor has finished, if no state of it is blocked, which has to be
                   known for everything that is said; so what is demanded of dead states is demanded wherever it has
                   finished
-    enabled(T)    where T is what its program does next, the places that T takes tokens from, or tests, are marked
+    enabled(T)    where T is what its program does next, the places that T takes tokens from, or tests, are marked; a
+                  limit is no smaller than what T demands, so this is seen in a state, too
     ctl AF p, ctl AG EF p, ctl AG AF p, ltl F p, ltl G F p, with or without fairness
                   no run goes on for ever, so each path ends in a dead state: p is demanded there
+
+    every fires(T) is followed by p, within any number of firings
+                  p holds in each state that T leads to. A place that T changes is looked at together with what p looks
+                  at, so these states are those that T leads to in any order
 
 Such atoms may stand only where more of them demands more: on the left of an implication, under one negation.
 """
@@ -41,12 +46,15 @@ class Stated:
     Args:
         asked: what it asks: `Bound`, or a condition that has to hold in all states.
         is_of_ends: whether it has to hold in dead states only.
-        places: what it looks at.
+        steps: transitions; if there are any, it has to hold only where one of them leads to.
+        places: what it looks at; `exact`: of these, those whose numbers of tokens have to be known.
     """
 
     asked: m.Bound | m.Formula
     is_of_ends: bool
+    steps: tuple[int, ...]
     places: frozenset[int]
+    exact: frozenset[int]
     over: int
     inputs: tuple[tuple[int, ...], ...]
     """by transition, places that hold a token where it is enabled"""
@@ -57,6 +65,15 @@ class Stated:
             asked.ask(self.asked)
             return
         found = self._item(asked, self.asked)
+        if self.steps:
+            wrong = asked.line(f"not {found}")
+            after = [asked.line(f"exa {t} {wrong}") for t in self.steps]
+            some = after[0]
+            for item in after[1:]:
+                some = asked.line(f"or {some} {item}")
+            never = asked.line(f"not {asked.line(f'ef {some}')}")
+            asked.asked.append(f"? initially {never}")
+            return
         if self.is_of_ends:
             found = asked.line(
                 f"or {asked.line(f'not {self._marked(asked, [self.over])}')} {found}"
@@ -102,17 +119,30 @@ def stated(
     """
     inputs = tuple(_inputs(partition))
     if isinstance(p.asked, m.Bound):
-        return Stated(p.asked, False, frozenset({p.asked.place}), over, inputs)
+        place = frozenset({p.asked.place})
+        return Stated(p.asked, False, (), place, place, over, inputs)
     found = _condition(p.asked)
     if found is None:
         return None
-    condition, is_of_ends = found
+    condition, is_of_ends, steps = found
+    changed = [_changed(partition, t) for t in steps]
+    if not all(changed):
+        return None
     try:
-        places = set(_places(condition, True, over, properties, inputs))
+        atoms = list(_atoms(condition, True))
     except _NotStatedError:
         return None
-    places |= {over} if is_of_ends else set()
-    return Stated(condition, is_of_ends, frozenset(places), over, inputs)
+    is_at_end = is_of_ends or any(a.kind == "dead" for a in atoms)
+    exact = {
+        place
+        for a in atoms
+        if a.kind == "pred"
+        for _, place in properties.predicates[a.number].places
+    }
+    places = exact | {place for a in atoms if a.kind == "enabled" for place in inputs[a.number]}
+    places |= {over} if is_at_end else set()
+    places |= {own[0] for own in changed}
+    return Stated(condition, is_of_ends, steps, frozenset(places), frozenset(exact), over, inputs)
 
 
 def all_stated(properties: m.Properties, partition: Partition) -> bool:
@@ -123,55 +153,57 @@ def all_stated(properties: m.Properties, partition: Partition) -> bool:
     )
 
 
-def _condition(asked: m.Asked) -> tuple[m.Formula, bool] | None:
-    """What has to hold in all states, or in all ends."""
+def _condition(asked: m.Asked) -> tuple[m.Formula, bool, tuple[int, ...]] | None:
+    """What has to hold in all states, or in all ends, or after some transitions."""
     match asked:
         case m.Invariant(condition):
-            return condition, False
+            return condition, False, ()
         case m.Branching(
             m.Op("AF", (p,)) | m.Op("AG", (m.Op("EF", (p,)),)) | m.Op("AG", (m.Op("AF", (p,)),))
         ) | m.Linear(m.Op("F", (p,)) | m.Op("G", (m.Op("F", (p,)),))) if m.is_of_nodes(p):
-            return p, True
+            return p, True, ()
+        case m.Response(first, second, _, None, False) if m.is_of_nodes(second):
+            steps = [a for a in m.atoms(first) if a.kind == "fires"]
+            is_of_steps = m.looks_at_steps(first) and len(steps) == len([*m.atoms(first)])
+            return (second, False, tuple(a.number for a in steps)) if is_of_steps else None
         case _:
             return None
 
 
-def _places(
-    f: m.Formula,
-    is_positive: bool,
-    over: int,
-    properties: m.Properties,
-    inputs: Sequence[Sequence[int]],
-) -> Iterable[int]:
-    """What a condition looks at.
+def _changed(partition: Partition, transition: int) -> list[int]:
+    """Places whose number of tokens a transition surely changes, its own ones first."""
+    channels = {c.place for c in partition.channels}
+    arcs = partition.net.transitions[transition].arcs
+    alone = [a for a in arcs if sum(b.place == a.place for b in arcs) == 1]
+    found = {
+        a.place
+        for a in alone
+        if a.kind in (ArcKind.INPUT, ArcKind.OUTPUT)
+        and a.inscription is not None
+        and a.inscription.form is Form.TOKEN
+    }
+    return sorted(found, key=lambda place: (place in channels, place))
+
+
+def _atoms(f: m.Formula, is_positive: bool) -> Iterable[m.Atom]:
+    """Those of a condition.
 
     Raises:
         _NotStatedError: something in it is not known of states.
     """
     if isinstance(f, m.Atom):
-        if f.kind == "true":
-            return ()
-        if f.kind == "pred":
-            return [place for _, place in properties.predicates[f.number].places]
-        if f.kind == "dead" and not is_positive:
-            return (over,)
-        if f.kind == "enabled" and not is_positive:
-            return inputs[f.number]
-        raise _NotStatedError
+        if f.kind not in ("true", "pred") and (is_positive or f.kind not in ("dead", "enabled")):
+            raise _NotStatedError
+        return [f]
     match f.operator:
         case "not":
-            signs: tuple[bool, ...] = (not is_positive,)
+            return _atoms(f.parts[0], not is_positive)
         case "and" | "or":
-            signs = (is_positive,) * len(f.parts)
+            return [a for part in f.parts for a in _atoms(part, is_positive)]
         case "implies" | "iff":
-            return _places(expanded(f), is_positive, over, properties, inputs)
+            return _atoms(expanded(f), is_positive)
         case _:
             raise _NotStatedError
-    return [
-        place
-        for part, sign in zip(f.parts, signs, strict=True)
-        for place in _places(part, sign, over, properties, inputs)
-    ]
 
 
 def _inputs(partition: Partition) -> Iterable[tuple[int, ...]]:
