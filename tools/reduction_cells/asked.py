@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from random import Random
 
@@ -20,6 +20,11 @@ from pn2code.verify.controller.stated import Stated, stated
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits
 
+Change = Callable[[Stated], Stated]
+WRONG_PROPERTIES: dict[str, Change] = {
+    "what a property looks at has limits": lambda x: replace(x, exact=frozenset()),
+    "what a property looks at is no group": lambda x: replace(x, places=frozenset()),
+}
 LEAST = 2
 """Tokens of a place that gets a limit."""
 MOST_STATES = 100_000
@@ -68,12 +73,13 @@ class OfStates:
     holding: tuple[int, ...]
 
     @staticmethod
-    def of(r: Random, opened: OpenNet, partition: Partition, plan: Plan) -> OfStates | None:
-        """Of random properties; None: nothing is said."""
-        asked = properties(r, opened, partition)
+    def of(
+        asked: m.Properties, partition: Partition, plan: Plan, change: Change = lambda x: x
+    ) -> OfStates | None:
+        """Of properties, or wrong versions of them; None: nothing is said."""
         over = Running.of(partition, loose=True).over
         pairs = [(i, stated(p, over, asked, partition)) for i, p in enumerate(asked.properties)]
-        known = [(i, x) for i, x in pairs if x is not None]
+        known = [(i, change(x)) for i, x in pairs if x is not None]
         made = abstract(partition, plan, (), [x for _, x in known], least=LEAST)
         if made is None:
             return None
@@ -101,9 +107,12 @@ class OfStates:
     def judged(self, whole: Control, counts: Counter[str]) -> Iterator[str]:
         """What is wrong: `whole` are all states of the cell, of which the same is asked."""
         counts["properties"] += len(self.properties.properties)
+        counts["properties that hold with limits"] += len(self.holding)
+        yield from self.wrong(whole)
+
+    def wrong(self, whole: Control) -> Iterator[str]:
+        """What does not hold in all states of the cell."""
         for i in self.holding:
             p = self.properties.properties[i]
-            its = whole.answers[i]["answer"]
-            counts["properties that hold with limits"] += 1
-            if its not in (Stated.row(p)["answer"], "unknown"):
+            if whole.answers[i]["answer"] not in (Stated.row(p)["answer"], "unknown"):
                 yield f"property `{p.holds}` does not hold"

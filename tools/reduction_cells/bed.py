@@ -260,7 +260,7 @@ def judge(
             shown |= set() if bed is None or not mutants else bed.shown(whole)
     r = Random(seed)
     wrong += _of_checks(cell, r, counts)
-    wrong += _of_properties(cell, r, counts)
+    wrong += _of_properties(cell, r, counts, shown if mutants else None)
     wrong += closed.judged(opened, partition, counts)
     if wants_medium:
         wrong += _of_medium(cell, counts)
@@ -310,13 +310,22 @@ def _of_checks(cell: _Cell, r: Random, counts: Counter[str]) -> Iterator[str]:
     yield from found_differences(reduced.found, whole.found, places)
 
 
-def _of_properties(cell: _Cell, r: Random, counts: Counter[str]) -> Iterator[str]:
-    told = asked.OfStates.of(r, cell.opened, cell.partition, cell.plan)
+def _of_properties(
+    cell: _Cell, r: Random, counts: Counter[str], shown: set[str] | None
+) -> Iterator[str]:
+    """`shown` gets the names of wrong versions that are noticed, if they are tried."""
+    properties = asked.properties(r, cell.opened, cell.partition)
+    told = asked.OfStates.of(properties, cell.partition, cell.plan)
     if told is None:
         return
-    whole = cell.checked(None, properties=told.properties)
-    if whole is not None and whole.found is not None and whole.found.complete:
-        yield from told.judged(whole, counts)
+    whole = cell.checked(None, properties=properties)
+    if whole is None or whole.found is None or not whole.found.complete:
+        return
+    yield from told.judged(whole, counts)
+    for name, change in asked.WRONG_PROPERTIES.items() if shown is not None else ():
+        other = asked.OfStates.of(properties, cell.partition, cell.plan, change)
+        if other is not None and any(other.wrong(whole)):
+            shown.add(name)
 
 
 def _other_checks(mine: Control, whole: Control, sizes: tuple[str, ...]) -> Iterator[str]:
