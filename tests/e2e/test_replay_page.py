@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from helpers.browser import Page, launched, opened
+from helpers.legible import complaints
 from helpers.shown import PAIR, described
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.source import read
@@ -351,6 +352,14 @@ class TestRivetingCell:
             return seen.map((n) => n / timeline.lanes.length);
         }""")
         assert drawn == [1, 0, 1, 1, 1, 1]
+
+    def test_all_has_names_and_stands_out_by_day_and_night(self, browser: Page) -> None:
+        browser.ask("() => replay.seek(33.42)")
+        for _ in range(2):
+            browser.ask("() => replay.page.frame.dark()")
+            for name in ("Messages", "Steps", "Code", "Watch", "Run"):
+                browser.page.get_by_role("tab", name=name).click()
+                assert complaints(browser) == [], name
 
     def test_nothing_was_complained_of_or_asked_for(self, browser: Page, shown: Shown) -> None:
         assert browser.errors == []
