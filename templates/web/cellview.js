@@ -146,7 +146,7 @@ export class CellView {
       ["Tools", () => this.lookAtTools(-28, 16), -1],
     ];
     this.run.cell.robots.forEach((/** @type {any} */ r, /** @type {number} */ i) => {
-      if (i < 5) this.views?.push([r.name, () => {}, i]);
+      if (i < 5 && !r.device) this.views?.push([r.name, () => {}, i]);
     });
     this.buttons.append(
       ...this.views.map(([name], i) =>
@@ -291,8 +291,9 @@ export class CellView {
   // --- paths ---------------------------------------------------------------------------------
 
   tips() {
-    return this.frames.map((/** @type {any} */ links, /** @type {number} */ i) => {
-      const tcp = links[this.cell?.robots[i].robot.tcp];
+    const arms = this.frames.filter((/** @type {any} */ _, /** @type {number} */ i) => !this.run.cell.robots[i].device);
+    return arms.map((/** @type {any} */ links) => {
+      const tcp = links[this.run.cell.robots[this.frames.indexOf(links)].tcp];
       return new THREE.Vector3(tcp[3], tcp[7], tcp[11]);
     });
   }
@@ -302,7 +303,7 @@ export class CellView {
     const curves = this.run.happenings?.curves ?? [];
     this.trails = this.cell?.robots.map((/** @type {any} */ { robot }, /** @type {number} */ i) => {
       const path = this.paths[i];
-      if (!path || path.t.length < 2) return null;
+      if (!path || path.t.length < 2 || robot.device) return null;
       const first = this.run.live ? Math.max(path.t.length - LIVE_SAMPLES, 0) : 0;
       const count = path.t.length - first;
       const condition = curves.find((/** @type {any} */ c) => c.kind === "condition" && c.of === robot.name);
@@ -418,8 +419,9 @@ export class CellView {
         return;
       }
       const at = /** @type {number} */ (index.get(state.holder));
+      // In the tool of the robot, or on a link of it: a turntable.
       const tcp = new THREE.Matrix4();
-      tcp.set(.../** @type {[any]} */ (this.frames[at][this.run.cell.robots[at].tcp]));
+      tcp.set(.../** @type {[any]} */ (this.frames[at][state.link ?? this.run.cell.robots[at].tcp]));
       const own = new THREE.Matrix4();
       own.set(.../** @type {[any]} */ (state.frame));
       object.matrixAutoUpdate = false;
@@ -440,6 +442,14 @@ export class CellView {
       const bar = happenings.bars.find((/** @type {any} */ b) => b.party === party && b.start <= t && t < b.end);
       const curve = happenings.curves.find((/** @type {any} */ c) => c.kind === "condition" && c.of === r.name);
       const condition = curve ? valueAt(curve, t) : NaN;
+      if (r.device) {
+        const q = this.joints(i, t);
+        const axes = r.joints.map((/** @type {any} */ j) => {
+          const name = r.links[j.child].name;
+          return j.slides ? `${name} ${(q[j.moves] * 1000).toFixed(1)} mm` : `${name} ${((q[j.moves] * 180) / Math.PI).toFixed(1)}°`;
+        });
+        return el("span", { class: "arm" }, el("b", { text: r.name }), ` ${bar ? bar.label : "rests"} · ${axes.join("  ")}`);
+      }
       const tcp = this.frames[i][r.tcp];
       const at = [tcp[3], tcp[7], tcp[11]].map((v) => (v * 1000).toFixed(1)).join("  ");
       return el(

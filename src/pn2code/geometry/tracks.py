@@ -1,7 +1,7 @@
 """Legs in space: where the links of an arm are within a piece of a leg, and by how much their points may be off.
 
     arm = ArmShape.of(robot, backend)
-    track = Track(arm, leg, held=None)
+    track = Track(arm, leg)
     rows = track.knots(np.array([0.25]), np.array([0.5]))
     rows.spread                     # (1, links): in this quarter of the way no point of a link is further than this (m)
                                     # from where it is in the middle of it
@@ -78,7 +78,10 @@ class ArmShape:
         return ArmShape(robot, tuple(links))
 
     def holding(self, part: Part, low: Array, high: Array) -> Link:
-        """A part that its tool carries, as a further link."""
+        """A part that its tool or a turntable of it carries, as a further link."""
+        if part.plate:
+            axis = self.robot.index(part.plate.partition("/")[2])
+            return Link.of(part.name, axis + 1, part.frame, low, high)
         frame = self.robot.kinematics.T_flange_tcp @ part.frame
         beyond = len(self.robot.arm.axes) + 1
         return Link.of(f"{self.robot.name}/{part.name}", beyond, frame, low, high)
@@ -141,21 +144,21 @@ class Knots:
 
 
 class Track:
-    """A leg of an arm, with the part that it carries.
+    """A leg of an arm, with the parts that it and its turntables carry.
 
     Args:
         shape: of the arm.
         leg: one that can be carried out.
-        held: what is carried, as a link.
-        part: the same for the collision library.
+        load: what is carried, as links.
+        parts: the same for the collision library.
     """
 
     def __init__(
-        self, shape: ArmShape, leg: Leg, held: Link | None = None, part: Part | None = None
+        self, shape: ArmShape, leg: Leg, load: tuple[Link, ...] = (), parts: tuple[Part, ...] = ()
     ) -> None:
         assert leg.path is not None
-        self.shape, self.leg, self.part = shape, leg, part
-        self.links = shape.links + (() if held is None else (held,))
+        self.shape, self.leg, self.parts = shape, leg, parts
+        self.links = shape.links + load
         self.radii = np.array([x.radius for x in self.links])
         self._corners = np.stack([x.corners for x in self.links])
         self._ends = np.stack([x.ends for x in self.links])
