@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Literal, get_args
 
+from pn2code.cell_file.devices import DEVICE_AXIS
 from pn2code.cell_file.keys import Key, Section
 
 NET = Section(
@@ -116,9 +117,9 @@ CHANNEL = Section(
         Key(
             "kind",
             "text",
-            '`"data"` is written before `"flag"`. A program that receives a flag owes an answer (I8), so a message '
-            "that is never answered should be data. Without the key a token of one scalar is a flag, of several "
-            "data. `check` prints a table of all channels, with what decided their kind.",
+            '`"data"` is written before `"flag"`. A program that receives a flag of the supervisor owes it an '
+            "answer (I8), so a message that is never answered should be data. Without the key a token of one scalar "
+            "is a flag, of several data. `check` prints a table of all channels, with what decided their kind.",
             words=("data", "flag"),
         ),
     )
@@ -229,6 +230,21 @@ PRIMITIVE = Section(
             only=WITH_AXES,
         ),
         Key(
+            "axis",
+            "text",
+            "An axis of the robot or device that moves: the function takes its position, in mm, or degrees of what "
+            "turns.",
+            "the name of an axis of a robot or device",
+            only=("move_external",),
+        ),
+        Key(
+            "to",
+            "number",
+            "Where the only axis that is named goes, m, or degrees of what turns; then the function takes nothing.",
+            "a number",
+            only=("move_external",),
+        ),
+        Key(
             "approach",
             "number",
             "The arm comes on a joint move to so far before the pose, against the z of the tool, and goes on from "
@@ -291,10 +307,19 @@ DEVICE = Section(
             "instance",
             "text",
             "The substitution transition whose page instance is the program of this device: a conveyor, a gauge, an "
-            "operator's panel. It has a script like a robot, but no arm: it waits, acts (`tool`), reads and writes "
-            "messages.",
+            "operator's panel. It has a script like a robot, but no arm: it waits, acts (`tool`), moves its own axes, "
+            "reads and writes messages.",
             "a substitution transition",
             required=True,
+        ),
+        Key(
+            "axes",
+            "named",
+            "What moves of it, by its name, as of a robot: a door, a clamp "
+            "([robots.md](robots.md#devices-that-move)).",
+            inner=DEVICE_AXIS,
+            entry="NAME",
+            is_word=True,
         ),
     )
 )
@@ -332,6 +357,13 @@ SENSOR = Section(
             "text",
             "with `sees`: Only a part of this kind, a name of `[parts]`, is seen; without it, any part.",
             "the name of a kind of parts",
+        ),
+        Key(
+            "says",
+            "text",
+            "What it tells, in plain words: pages show them where a person may choose it.",
+            "a text",
+            default="",
         ),
     )
 )

@@ -17,6 +17,7 @@ from pn2code.base.frozen import frozen
 from pn2code.geometry.legs import Leg, Planner, Stand
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.sweeps import ROUNDING
+from pn2code.robot.belts import until_stop
 from pn2code.robot.commands import Command, Handling, ToolAction
 from pn2code.robot.executor import turned_by
 from pn2code.robot.ground import Ground
@@ -117,7 +118,7 @@ class Doing:
         self._contents: dict[tuple[str, ...], Contents] = {}
         self._standing: dict[tuple[int, int], Activity] = {}
         self.activities: list[Activity] = []
-        self._with_tables = frozenset(r.name for r in cell.robots if r.axes.tables)
+        self._with_tables = frozenset(r.name for r in cell.moving if r.carrying)
         self.start = self._kept(Parts(cell))
 
     def overlaps_at_start(self) -> list[tuple[Part, Trouble]]:
@@ -187,6 +188,9 @@ class Doing:
         for command in commands:
             standing = (*(s for s in others if s.robot != owner), *((stand,) if stand else ()))
             if stand is not None:
+                own = self._cell.robot(owner)
+                if own.is_device and own.carrying:
+                    command = until_stop(own, _parts(contents, standing, 0.0), command)
                 leg = self.planner.leg(stand, command)
                 if leg.path is not None and leg.is_moving:
                     plates = turned_by(self._cell.robot(owner), leg.path)
@@ -200,6 +204,18 @@ class Doing:
                     done = replace(done, fault=leg.fault.message, command=None, doubt="")
                     break
                 stand = leg.end
+                if own.is_device and leg.path is not None and (ran := turned_by(own, leg.path)):
+                    kinds |= frozenset(self._cell.parts)
+                    done = replace(done, kinds=kinds)
+                    try:
+                        contents, doubt = self._run_out(leg, ran, standing, contents)
+                    except PartFault as fault:
+                        done = replace(
+                            done, fault=str(fault), is_part=True, command=command, doubt=""
+                        )
+                        break
+                    if doubt and not done.doubt:
+                        done = replace(done, doubt=doubt, command=command)
             if isinstance(command, ToolAction) and command.handling is not None:
                 tcp = None
                 if stand is not None:
@@ -222,6 +238,34 @@ class Doing:
             handled=tuple(handled),
         )
 
+    def _run_out(
+        self, leg: Leg, ran: frozenset[str], standing: tuple[Stand, ...], contents: Contents
+    ) -> tuple[Contents, str]:
+        """What belts have taken along, and why that is not known ("": it is). Raises PartFault: off their ends."""
+        assert leg.path is not None
+        device = self._cell.robot(leg.robot)
+        found: list[Contents] = []
+        faults: list[PartFault] = []
+        for slack in _SLACKS:
+            parts = _parts(contents, standing, slack)
+            parts.stand(device.name, leg.path.q(leg.path.duration))
+            try:
+                for axis in device.carrying:
+                    plate = f"{device.name}/{axis.name}"
+                    if plate in ran:
+                        parts.run_out(plate)
+                        parts.rewind(plate, device.T_world_plate(axis, leg.end.q))
+            except PartFault as fault:
+                faults.append(fault)
+                continue
+            found.append(self._kept(parts))
+        if not found:
+            raise faults[0]
+        if faults:
+            return found[0], _nearly(str(faults[0]))
+        same = len({after.number for after in found}) == 1
+        return found[0], "" if same else _nearly(f"`{min(ran)}` takes parts along")
+
     def _around(self, handling: Handling, tcp: Array | None) -> tuple[Array, float]:
         """Where a part is handled, and how far around that it reaches, whichever it is and however it lies."""
         frame = matrix_of(self._cell.places[handling.place]) if tcp is None else tcp
@@ -235,10 +279,19 @@ class Doing:
         ground = Ground.of(self._cell)
         own = ground.plates[plate]
         robot = self._cell.robot(own.robot)
-        axis = next(a for a in robot.axes.tables if robot.index(a.name) == own.index)
+        axis = next(a for a in robot.carrying if robot.index(a.name) == own.index)
         frame = robot.T_world_base @ axis.T_base_axis
         point, around = where
         off = inverse(frame) @ np.append(point, 1.0)
+        if axis.belt is not None:
+            # What stands on it is above it, before and after.
+            beside = (
+                max(-off[0], off[0] - axis.upper, 0.0),
+                max(abs(off[1]) - axis.belt.width / 2.0, 0.0),
+            )
+            riders = [p for inside in contents for p in inside.parts.riders(plate)]
+            wide = max((ground.radius(p.kind.name) for p in riders), default=0.0)
+            return float(np.hypot(*beside)) <= wide + around
         reach = own.reach
         for inside in contents:
             for part in inside.parts.riders(plate):

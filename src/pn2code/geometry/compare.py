@@ -23,6 +23,8 @@ from pn2code.geometry.shown import Shown
 from pn2code.geometry.sweeps import SEARCHED, Apart, Sweeper, much_less
 from pn2code.geometry.tracks import ArmShape, Track
 from pn2code.robot.along import AlongTrajectory
+from pn2code.robot.backend import Clearance
+from pn2code.robot.clamps import holding
 from pn2code.robot.kinematics import MOST_CONDITION
 from pn2code.robot.motion import LinearTrajectory
 from pn2code.robot.parts import Part
@@ -51,7 +53,7 @@ class Comparison:
         backend = shown.backend
         self.cell, self._planner, self._backend = cell, planner, backend
         self.sweeper = Sweeper(shown)
-        self._shapes = {r.name: ArmShape.of(r, backend) for r in cell.robots}
+        self._shapes = {r.name: ArmShape.of(r, backend) for r in cell.moving}
         self._boxes = {k.name: backend.part_box(k) for k in cell.parts.values()}
         self._tracks: dict[tuple[int, str], Track] = {}
         self._extents: dict[tuple[int, str], tuple[Array, Array]] = {}
@@ -78,6 +80,11 @@ class Comparison:
             self._tracks[key] = Track(shape, leg, links, named)
         return key, self._tracks[key]
 
+    def _has_shape(self, moved: tuple[Leg, Load]) -> bool:
+        """Whether anything moves: of a device with a belt only what stands on it."""
+        leg, load = moved
+        return bool(self._shapes[leg.robot].links or load)
+
     def _extent(self, key: tuple[int, str]) -> tuple[Array, Array]:
         """The corners of a box around all that an arm sweeps on a leg."""
         if key not in self._extents:
@@ -93,6 +100,8 @@ class Comparison:
 
     def two(self, a: tuple[Leg, Load], b: tuple[Leg, Load]) -> Apart:
         """Two legs of two arms."""
+        if not (self._has_shape(a) and self._has_shape(b)):
+            return Apart("clear", math.inf, math.inf)
         (one, first), (other, second) = self._track(*a), self._track(*b)
         if (one, other) not in self._pairs:
             self.compared += 1
@@ -128,12 +137,38 @@ class Comparison:
         """Each leg of one with each of the other, since nobody knows how far they are."""
         for leg, contents in a.legs:
             for other, more in b.legs:
+                pulled = self._pulled(leg, contents, other) or self._pulled(other, more, leg)
+                if pulled is not None:
+                    yield leg, other, pulled
                 own = _meanwhile(contents.load(leg.robot), leg.robot, b, more)
                 its = _meanwhile(more.load(other.robot), other.robot, a, contents)
                 yield leg, other, self.two((leg, own), (other, its))
 
+    def _pulled(self, leg: Leg, contents: Contents, other: Leg) -> Apart | None:
+        """That an arm goes away with a part which a clamp of a device holds then; None: it does not."""
+        arm, device = self.cell.robot(leg.robot), self.cell.robot(other.robot)
+        part = contents.held_by(leg.robot)
+        if part is None or arm.is_device or not device.axes.clamps or not leg.is_moving:
+            return None
+        path = other.path if other.path is not None else self._planner.standing(other.start).path
+        assert path is not None
+        frame = arm.T_world_base @ leg.start.T_base_tcp @ part.frame
+        for held in holding(self.cell, part.kind, frame):
+            # The way of a clamp is straight, so it is narrowest at one of its ends.
+            ends = path.on_way(np.array([0.0, 1.0]))
+            q = min(ends, key=held.gap)
+            if held.device is device and held.holds(q):
+                x, y, z = frame[:3, 3].tolist()
+                names = f"{leg.robot}/{part.kind.name}", held.name
+                gap = Clearance("robots", leg.robot, *names, 0.0, None, (x, y, z), (x, y, z))
+                why = held.words(leg.robot, part.kind.name, q)
+                return Apart("touch", 0.0, 0.0, gap, (0.0, 0.0), why, (leg.start.q, q))
+        return None
+
     def beside(self, a: tuple[Leg, Load], part: Part) -> Apart:
         """A leg and a part that stands."""
+        if not self._has_shape(a):
+            return Apart("clear", math.inf, math.inf)
         key, track = self._track(*a)
         where = (key, spot(part))
         if where not in self._beside:
@@ -144,6 +179,8 @@ class Comparison:
 
     def around(self, leg: Leg, load: Load) -> tuple[Apart, Apart]:
         """A leg and the scene; a leg and the arm itself."""
+        if not self._has_shape((leg, load)):
+            return Apart("clear", math.inf, math.inf), Apart("clear", math.inf, math.inf)
         key, track = self._track(leg, load)
         if key not in self._around:
             self._around[key] = (
@@ -160,6 +197,8 @@ class Comparison:
 
     def _worst(self, leg: Leg) -> Margins:
         assert leg.path is not None
+        if self.cell.robot(leg.robot).is_device:
+            return Margins(math.inf, 0, 1.0)
         kinematics = self.cell.robot(leg.robot).kinematics
         q = leg.path.on_way(np.linspace(0.0, 1.0, _SAMPLES if leg.is_moving else 1))
         if isinstance(leg.path, LinearTrajectory | AlongTrajectory):

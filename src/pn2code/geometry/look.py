@@ -59,7 +59,7 @@ class Look:
         shown = Shown(self.backend)
         self.doing = Doing(self.planner, cell, shown)
         self.comparison = Comparison(cell, self.planner, shown)
-        self.robots = tuple(r.name for r in cell.robots)
+        self.robots = tuple(r.name for r in cell.moving)
         self.runs: dict[tuple[int, tuple[int, ...]], Run] = {}
 
     def close(self) -> None:
@@ -167,6 +167,7 @@ class Look:
                 leg.fault.message,
                 run=self._run(found, met),
             )
+        is_device = self.cell.robot(leg.robot).is_device
         margins = self.comparison.margins(leg)
         scene, itself = self.comparison.around(leg, load)
         answer: Verdict = "yes"
@@ -184,9 +185,9 @@ class Look:
             leg.kind,
             answer,
             why,
-            math.degrees(margins.limit),
-            margins.axis + 1,
-            margins.condition,
+            None if is_device else math.degrees(margins.limit),
+            0 if is_device else margins.axis + 1,
+            None if is_device else margins.condition,
             certain(scene),
             certain(itself),
             scene.where,
@@ -309,6 +310,8 @@ def touch_in_words(apart: Apart) -> str:
     """Which links overlap, where, by how much, and that it is nowhere much more, if that is known."""
     gap = apart.where
     assert gap is not None
+    if apart.why:
+        return apart.why
     at = ", ".join(f"{1000.0 * v:.0f}" for v in gap.point)
     text = f"`{gap.a}` and `{gap.b}` overlap by {-1000.0 * gap.distance:.1f} mm at ({at}) mm"
     if certain(apart) is None:

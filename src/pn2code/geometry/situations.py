@@ -78,7 +78,7 @@ class Situations:
         self._arm_of = {names[r]: i for i, r in enumerate(self.robots) if r in names}
         self._seen: set[tuple[object, ...]] = set()
         cell = doing.start.parts.cell
-        tables = {r.name: r.axes.tables for r in cell.robots} if cell.parts else {}
+        tables = {r.name: r.carrying for r in cell.moving} if cell.parts else {}
         self._with_tables = frozenset(name for name, own in tables.items() if own)
         self._owner_names = {o.index: o.name for o in graph.partition.owners}
         self._acting = {

@@ -47,7 +47,7 @@ def describe(generated: Generated, robot_cell: RobotCell, document: Document, sp
         "cell": None,
         "motion": None,
     }
-    if robot_cell.robots:
+    if robot_cell.moving:
         described["cell"] = {
             **cell.describe(robot_cell),
             "parts": [
@@ -69,6 +69,6 @@ def describe(generated: Generated, robot_cell: RobotCell, document: Document, sp
             "marks": [],
         }
         described["motion"] = {
-            r.name: {"t": [0.0], "q": [float(v) for v in r.home]} for r in robot_cell.robots
+            r.name: {"t": [0.0], "q": [float(v) for v in r.home]} for r in robot_cell.moving
         }
     return described

@@ -31,7 +31,7 @@ def describe(cell: RobotCell) -> Json:
     """Everything that is to be seen, and how the arms move."""
     store = Meshes()
     found: Json = {
-        "robots": [_robot(r, store) for r in cell.robots],
+        "robots": [_robot(r, store) for r in cell.moving],
         "bodies": [{"name": b.name, "visuals": _looks(b.looks, store)} for b in bodies(cell)],
         "kinds": {
             name: _looks(body_of(kind.shape).looks, store) for name, kind in cell.parts.items()
@@ -101,6 +101,7 @@ def _robot(robot: CellRobot, store: Meshes) -> Json:
         joints.insert(at, mount)
     return {
         "name": robot.name,
+        **({"device": True} if robot.is_device else {}),
         "base": frame(robot.T_world_base),
         "home": [float(v) for v in robot.home],
         "links": [

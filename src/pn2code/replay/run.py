@@ -54,7 +54,7 @@ def describe(result: RunResult, motion: Motion, document: Document) -> Json:
         "cell": None,
         "motion": None,
     }
-    if robot_cell.robots:
+    if robot_cell.moving:
         described["cell"] = {
             **cell.describe(robot_cell),
             "parts": _parts(record, robot_cell, motion),

@@ -32,7 +32,6 @@ from pn2code.robot.backend import (
     ClearanceKind,
     Picture,
 )
-from pn2code.robot.carried import WithAxes
 from pn2code.robot.commands import Pose
 from pn2code.robot.geometry import Body, Solid, bodies, body_of
 from pn2code.robot.looks import Look
@@ -162,7 +161,7 @@ class BulletBackend:
                 self._p.configureDebugVisualizer(
                     self._p.COV_ENABLE_GUI, 0, physicsClientId=self._client
                 )
-            self._robots = {r.name: self._load_robot(r, looks) for r in cell.robots}
+            self._robots = {r.name: self._load_robot(r, looks) for r in cell.moving}
             self._scene = [self._load_body(b, looks) for b in bodies(cell)]
         self._looks = looks
         self._parts: dict[str, _Placed] = {}
@@ -172,7 +171,7 @@ class BulletBackend:
         self._searched = 0.0
         self._q: dict[str, tuple[float, ...]] = {}
         self._rules: dict[tuple[str, str], float | None] = {}
-        for robot in cell.robots:
+        for robot in cell.moving:
             self.set_joints(robot.name, robot.home)
         self._sunk = dict(self._depths_of_lifted())
 
@@ -347,10 +346,8 @@ class BulletBackend:
         """Where a turntable is, `T_world_plate`."""
         name, _, axis = plate.partition("/")
         robot = self._robots[name].robot
-        assert isinstance(robot.kinematics, WithAxes), "a turntable is an external axis"
-        i = robot.index(axis)
-        own = robot.kinematics.T_base_table(i, self._q.get(name, robot.home)[i])
-        return robot.T_world_base @ own
+        own = next(a for a in robot.carrying if a.name == axis)
+        return robot.T_world_plate(own, self._q.get(name, robot.home))
 
     def remove_part(self, name: str) -> None:
         """The part has left the cell."""
@@ -378,6 +375,8 @@ class BulletBackend:
     def tcp(self, robot: str) -> Array:
         """`T_world_tcp` as PyBullet has it."""
         loaded = self._robots[robot]
+        if loaded.robot.is_device:
+            return np.asarray(loaded.robot.kinematics.forward(self._q[robot]))
         tip = "tool_tcp" if loaded.robot.tool is not None else loaded.robot.arm.flange
         state = self._p.getLinkState(
             loaded.body,
@@ -620,6 +619,8 @@ class BulletBackend:
         On a turntable it may be put.
         """
         name = a.robot.name
+        if a.robot.is_device:
+            return []
         last = a.joints[a.robot.kinematics.joints.stop - 1]
         tables = {a.index[t] for t in a.robot.arm.tables}
         near = {i for i, link in a.links.items() if link.startswith("tool_") or i >= last} - tables

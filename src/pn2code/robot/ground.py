@@ -47,6 +47,7 @@ class Plate:
         hulls: of it and what is on it, in its own frame.
         reach: m: nothing of it is further from its axis.
         upright: whether it turns about a line that is upright, so that what lies on it stays where it is.
+        does: what it does when it moves, for messages.
     """
 
     robot: str
@@ -54,6 +55,7 @@ class Plate:
     hulls: tuple[Hull, ...]
     reach: float
     upright: bool
+    does: str = "turns"
 
 
 @frozen
@@ -227,6 +229,16 @@ def _hulls(body: Body) -> Iterator[Hull]:
 
 
 def _plates(cell: RobotCell) -> Iterator[tuple[str, Plate]]:
+    for device in cell.devices:
+        for belt in device.carrying:
+            # Its body is a thing of the scene, which stands.
+            width = belt.belt.width if belt.belt is not None else 0.0
+            own_reach = float(np.hypot(belt.upper, width / 2.0))
+            index = device.index(belt.name)
+            yield (
+                f"{device.name}/{belt.name}",
+                Plate(device.name, index, (), own_reach, True, "runs"),
+            )
     for robot in cell.robots:
         for axis in robot.axes.tables:
             hulls = []

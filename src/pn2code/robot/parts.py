@@ -21,7 +21,6 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from pn2code.base.frozen import frozen
-from pn2code.robot.carried import WithAxes
 from pn2code.robot.commands import Handling, Pose
 from pn2code.robot.ground import REST_GAP, Ground, Rest
 from pn2code.robot.parts_table import PartKind
@@ -95,7 +94,7 @@ class Parts:
     def __post_init__(self) -> None:
         """Puts the parts of the start into the cell."""
         self._plates = {}
-        for robot in self.cell.robots:
+        for robot in self.cell.moving:
             self.stand(robot.name, robot.home)
         self._numbers = {kind: itertools.count(1) for kind in self.cell.parts}
         for kind in self.cell.parts.values():
@@ -151,14 +150,8 @@ class Parts:
     def stand(self, robot: str, q: Sequence[float] | Array) -> None:
         """A robot is at this joint position now: where its turntables are counts for what is handled."""
         own = self.cell.robot(robot)
-        if not own.axes.tables:
-            return
-        assert isinstance(own.kinematics, WithAxes), "a turntable is an external axis"
-        for axis in own.axes.tables:
-            i = own.index(axis.name)
-            self._plates[f"{robot}/{axis.name}"] = own.T_world_base @ own.kinematics.T_base_table(
-                i, float(q[i])
-            )
+        for axis in own.carrying:
+            self._plates[f"{robot}/{axis.name}"] = own.T_world_plate(axis, q)
 
     def held_by(self, robot: str) -> Part | None:
         """The part that a robot carries."""
@@ -183,7 +176,7 @@ class Parts:
         return self._ground.rest(part.kind, self.world(part), others, self._plates, self.slack)
 
     def turn(self, plate: str) -> None:
-        """A turntable begins to turn. Raises PartFault if something on it would not stay there."""
+        """A turntable or belt begins to move. Raises PartFault if something on it would not go with it."""
         riders = self.riders(plate)
         if not riders:
             return
@@ -197,8 +190,31 @@ class Parts:
             off = [x for x in rest.on if x not in own] if rest is not None else []
             if off:
                 raise PartFault(
-                    f"`{plate}` turns, but `{part.name}` on it also stands on `{off[0]}`, which does not"
+                    f"`{plate}` {self._ground.plates[plate].does}, but `{part.name}` on it also stands on `{off[0]}`, "
+                    "which does not"
                 )
+
+    def run_out(self, plate: str) -> None:
+        """A belt has come to rest. Raises PartFault if something on it has come off its end.
+
+        What stands on something else now is in `settled`.
+        """
+        self.settled = ()
+        for part in self.riders(plate):
+            rest = self.rest(part)
+            trouble = rest.trouble(self.slack) if rest is not None else ""
+            if trouble:
+                where = describe(pose_of(self.world(part)))
+                raise PartFault(
+                    f"`{plate}` takes `{part.name}` along until it is {trouble}, part at {where}"
+                )
+        self._settle_again()
+
+    def rewind(self, plate: str, frame: Array) -> None:
+        """The same belt with its beginning counted from where it is now: `T_world_plate` of that."""
+        for part in self.riders(plate):
+            self.present[part.name] = replace(part, frame=inverse(frame) @ self.world(part))
+        self._plates[plate] = frame
 
     def handle(self, who: str, handling: Handling, T_world_tcp: Array | None) -> PartChange:
         """Does to a part what an action does at its end.
@@ -284,7 +300,7 @@ class Parts:
         on = rest.on if rest is not None else ()
         plate = self._plate_of(on)
         if plate in self.turning:
-            raise PartFault(f"{does} on `{plate}` while that turns")
+            raise PartFault(f"{does} on `{plate}` while that {self._ground.plates[plate].does}")
         kept = self._keep(part, part.frame, plate)
         on_plate = pose_of(kept.frame) if plate else None
         return PartChange(effect, part.name, pose_of(part.frame), on, plate, on_plate)
@@ -311,7 +327,8 @@ class Parts:
         Gives whether others stand on it, and on something else as well.
         """
         if part.plate in self.turning:
-            raise PartFault(f"{does} from `{part.plate}` while that turns, {at}")
+            verb = self._ground.plates[part.plate].does
+            raise PartFault(f"{does} from `{part.plate}` while that {verb}, {at}")
         carries = False
         place = self.world(part)[:3, 3]
         near = self._ground.radius(part.kind.name) + 2.0 * REST_GAP

@@ -28,11 +28,14 @@ from pn2code.cell.partition import Partition
 from pn2code.emission.output import Block, OutputFile
 from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.backend import Backend
+from pn2code.robot.belts import until_stop
+from pn2code.robot.clamps import holding
 from pn2code.robot.commands import (
     Along,
     Command,
     Handling,
     Measure,
+    Move,
     MoveAxes,
     MoveCircular,
     MoveExternal,
@@ -49,7 +52,7 @@ from pn2code.robot.monitor import Monitor, Sample
 from pn2code.robot.motion import LinearTrajectory, MotionFault
 from pn2code.robot.parts import PartFault
 from pn2code.robot.robot_cell import RobotCell
-from pn2code.robot.transforms import Array, matrix_of, pose_of
+from pn2code.robot.transforms import Array, describe, matrix_of, pose_of
 from pn2code.run.accuracy import distance, distance_to_line
 from pn2code.run.device import DeviceExecutor
 from pn2code.run.files import RobotFiles
@@ -422,11 +425,12 @@ class Engine:
 
     def _begin_command(self, robot: RobotRunner, command: Command, line: int) -> None:
         try:
-            motion = robot.executor.begin(command, self.now)
+            motion = robot.executor.begin(self._stopped(robot, command), self.now)
         except MotionFault as fault:
             where = robot.element_at(line)
             at = f" (net transition {where})" if where else ""
             raise CellStoppedError(f"{robot.script}:{line}{at}: {fault}") from None
+        self._expect_let_go(robot, command, line)
         self._expect_riders_stay(robot, motion, line)
         if self.stops is not None:
             motion = self._held_up(robot, motion, self.stops)
@@ -442,6 +446,46 @@ class Engine:
                     "duration": command.duration,
                 }
             )
+
+    def _stopped(self, robot: RobotRunner, command: Command) -> Command:
+        """Belts run until a part comes to their stop."""
+        if robot.arm is None or not robot.arm.robot.is_device or not robot.arm.robot.carrying:
+            return command
+        self._look_at_turntables()
+        return until_stop(robot.arm.robot, self.parts.parts, command)
+
+    def _run_out(self, robot: RobotRunner, motion: Motion) -> None:
+        """What belts that have come to rest have taken along stands there, or on something else."""
+        if robot.arm is None or not robot.arm.robot.is_device:
+            return
+        for plate in turned(robot.arm.robot, motion):
+            self._look_at_turntables()
+            try:
+                settled = self.parts.run_out(plate)
+            except PartFault as fault:
+                where = robot.element_at(robot.line)
+                at = f" (net transition {where})" if where else ""
+                raise CellStoppedError(f"{robot.script}:{robot.line}{at}: {fault}") from None
+            for change in settled:
+                self.record.parts.append(PartRecord(self.now, robot.name, change))
+
+    def _expect_let_go(self, robot: RobotRunner, command: Command, line: int) -> None:
+        """What an arm carries away is in no clamp that still holds it."""
+        if robot.arm is None or not isinstance(command, Move):
+            return
+        part = self.parts.parts.held_by(robot.name)
+        if part is None:
+            return
+        stands = {r.name: r for r in self._arms()}
+        for held in holding(self.cell, part.kind, matrix_of(robot.arm.pose) @ part.frame):
+            q = stands[held.device.name].joints(self.now)
+            if held.holds(q):
+                where = robot.element_at(line)
+                at = f" (net transition {where})" if where else ""
+                words = held.words(robot.name, part.name, q)
+                raise CellStoppedError(
+                    f"{robot.script}:{line}{at}: {words}, at TCP pose {describe(robot.arm.pose)}"
+                )
 
     def _expect_riders_stay(self, robot: RobotRunner, motion: Motion, line: int) -> None:
         """What stands on a turntable that begins to turn stays there, or the cell stops."""
@@ -538,6 +582,7 @@ class Engine:
             arm = robot.arm.robot
             reached = pose_of(arm.T_world_base @ arm.kinematics.forward(robot.arm.q))
             self.record.note_error("TCP off the commanded pose", distance(reached, motion.target))
+        self._run_out(robot, motion)
         if isinstance(motion.command, ToolAction) and motion.command.handling is not None:
             self._handle(robot, motion.command.handling)
         self._follow(robot, motion.result)

@@ -61,6 +61,14 @@ class PartKeeper:
             )
         return change
 
+    def run_out(self, plate: str) -> tuple[PartChange, ...]:
+        """A belt has come to rest: what stands on something else now. PartFault if something has come off its end."""
+        self.parts.run_out(plate)
+        for kept in self.parts.present.values():
+            if self._shown.get(kept.name) is not kept:
+                self._show(kept)
+        return self.parts.settled
+
     def _show(self, part: Part) -> None:
         self._shown[part.name] = part
         self.backend.set_part(part)
