@@ -6,6 +6,7 @@ import math
 import tomllib
 from pathlib import Path
 from random import Random
+from typing import Any
 
 import numpy as np
 import pytest
@@ -39,8 +40,9 @@ TAKE = ToolAction("suck", 0.5, Handling("takes", "box"))
 RELEASE = ToolAction("blow", 0.3, Handling("releases", "box"))
 
 
-def cell_of(*at: tuple[float, float, float]) -> RobotCell:
+def cell_of(*at: tuple[float, float, float], **devices: Any) -> RobotCell:
     data = tomllib.loads(TOML)
+    data["devices"] |= devices
     data["parts"]["box"]["at"] = [dict(zip("xyz", place, strict=True)) for place in at]
     d = Diagnostics()
     found = load(data, Path(), lambda *_: Origin("cell.toml"), d)
@@ -208,3 +210,39 @@ def test_distances_on_the_way_are_no_less_than_what_is_certain(
                 nearest = min(nearest, off)
             least = min(least, swept.least)
     assert clear >= 4 and least < nearest < 0.2
+
+
+@pytest.mark.bullet
+def test_a_part_on_a_lift_is_swept_as_that_moves(request: pytest.FixtureRequest) -> None:
+    platform = {
+        "kind": "slide",
+        "pose": {"x": 1.2, "y": -1.3, "z": 0.3},
+        "direction": [0.0, 0.0, 1.0],
+        "from": 0.0,
+        "to": 1.0,
+        "objects": [{"name": "top", "size": [0.4, 0.4, 0.05], "pose": {"z": -0.025}}],
+    }
+    under = (1.2, -1.3, 0.875)
+    cell = cell_of((1.2, -1.3, 0.375), under, elevator={"axes": {"platform": platform}})
+    backend = BulletBackend(cell, looks=False)
+    request.addfinalizer(backend.close)
+    planner = Planner(cell)
+    doing = Doing(planner, cell, Shown(backend))
+    comparison = Comparison(cell, planner, Shown(backend))
+    (hangs,) = doing.start.standing.values()
+    stand = planner.home("elevator")
+
+    def moved(to: float) -> str:
+        command = MoveExternal((Along("platform", to, is_track=True),))
+        found = doing.of("elevator", (command,), stand, doing.start, (stand,))
+        ((leg, contents),) = found.legs
+        assert found.turns == {"elevator/platform"} and not found.fault and not found.kinds
+        load = contents.load("elevator")
+        assert [p.name for p in load] == ["box.1"]
+        return comparison.beside((leg, load), hangs).outcome
+
+    assert (moved(0.3), moved(0.4)) == ("clear", "touch")
+    near = (matrix_of(Pose(1.2, -1.3, 1.2, 0.0, 0.0, 0.0))[:3, 3], 0.2)
+    far = (matrix_of(Pose(1.2, -0.4, 1.2, 0.0, 0.0, 0.0))[:3, 3], 0.2)
+    seen = [doing.within("elevator/platform", x, (doing.start,)) for x in (near, far)]
+    assert seen == [True, False]
