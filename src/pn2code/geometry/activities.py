@@ -189,7 +189,7 @@ class Doing:
             standing = (*(s for s in others if s.robot != owner), *((stand,) if stand else ()))
             if stand is not None:
                 own = self._cell.robot(owner)
-                if own.is_device and own.carrying:
+                if own.belts:
                     command = until_stop(own, _parts(contents, standing, 0.0), command)
                 leg = self.planner.leg(stand, command)
                 if leg.path is not None and leg.is_moving:
@@ -204,7 +204,8 @@ class Doing:
                     done = replace(done, fault=leg.fault.message, command=None, doubt="")
                     break
                 stand = leg.end
-                if own.is_device and leg.path is not None and (ran := turned_by(own, leg.path)):
+                ran = turned_by(own, leg.path, own.belts) if leg.path is not None else None
+                if ran:
                     kinds |= frozenset(self._cell.parts)
                     done = replace(done, kinds=kinds)
                     try:
@@ -250,7 +251,7 @@ class Doing:
             parts = _parts(contents, standing, slack)
             parts.stand(device.name, leg.path.q(leg.path.duration))
             try:
-                for axis in device.carrying:
+                for axis in device.belts:
                     plate = f"{device.name}/{axis.name}"
                     if plate in ran:
                         parts.run_out(plate)
@@ -292,11 +293,20 @@ class Doing:
             riders = [p for inside in contents for p in inside.parts.riders(plate)]
             wide = max((ground.radius(p.kind.name) for p in riders), default=0.0)
             return float(np.hypot(*beside)) <= wide + around
+        if axis.is_track:
+            # Wherever it is on its way.
+            along = float(np.clip(off[:3] @ axis.direction, axis.lower, axis.upper))
+            apart = float(np.linalg.norm(off[:3] - along * axis.direction))
+            lying = [p for inside in contents for p in inside.parts.riders(plate)]
+            far = [
+                float(np.linalg.norm(p.frame[:3, 3])) + ground.radius(p.kind.name) for p in lying
+            ]
+            return bool(apart <= max([own.reach, *far]) + around)
         reach = own.reach
         for inside in contents:
             for part in inside.parts.riders(plate):
-                far = float(np.hypot(*part.frame[:2, 3])) + ground.radius(part.kind.name)
-                reach = max(reach, far)
+                off_axis = float(np.hypot(*part.frame[:2, 3]))
+                reach = max(reach, off_axis + ground.radius(part.kind.name))
         return float(np.hypot(*off[:2])) <= reach + around
 
     def _turning(

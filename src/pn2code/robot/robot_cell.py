@@ -141,8 +141,14 @@ class CellRobot:
 
     @property
     def carrying(self) -> tuple[ExternalAxis, ...]:
-        """The axes with which parts go that stand on them: turntables of a robot, belts of a device."""
-        return tuple(a for a in self.axes.tables if not self.is_device or a.belt is not None)
+        """The axes with which parts go that stand on them: turntables of a robot, those of a device but for jaws."""
+        jaws = {name for clamp in self.axes.clamps for name in clamp.jaws}
+        return tuple(a for a in self.axes.tables if a.name not in jaws)
+
+    @property
+    def belts(self) -> tuple[ExternalAxis, ...]:
+        """Those that are belts."""
+        return tuple(a for a in self.axes.tables if a.belt is not None)
 
     def T_world_plate(self, axis: ExternalAxis, q: Sequence[float] | Array) -> Array:  # noqa: N802
         """Where one of these is, with what goes with it."""

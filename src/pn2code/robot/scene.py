@@ -268,8 +268,8 @@ def _scene(
     depth = t.number("tool_contact_depth")
     contacts = _default_contacts(robots, depth) if depth > 0.0 else []
     objects = tuple(o for e in t.tables("objects") if (o := read_object(e, folder)) is not None)
-    belts = [f"{r.name}/{a.name}" for r in devices for a in r.carrying]
-    contacts += [*_gripping(robots, kinds, objects, belts), *_clamping(devices, kinds)]
+    plates = [f"{r.name}/{a.name}" for r in devices for a in r.carrying]
+    contacts += [*_gripping(robots, kinds, objects, plates), *_clamping(devices, kinds)]
     _named_once(t, objects, kinds)
     things = [
         *names,

@@ -47,7 +47,7 @@ from pn2code.robot.commands import (
     Wait,
     tcp_of,
 )
-from pn2code.robot.executor import Motion, RobotExecutor, turned
+from pn2code.robot.executor import Motion, RobotExecutor, turned, turned_by
 from pn2code.robot.monitor import Monitor, Sample
 from pn2code.robot.motion import LinearTrajectory, MotionFault
 from pn2code.robot.parts import PartFault
@@ -458,7 +458,7 @@ class Engine:
         """What belts that have come to rest have taken along stands there, or on something else."""
         if robot.arm is None or not robot.arm.robot.is_device:
             return
-        for plate in turned(robot.arm.robot, motion):
+        for plate in turned_by(robot.arm.robot, motion.trajectory, robot.arm.robot.belts):
             self._look_at_turntables()
             try:
                 settled = self.parts.run_out(plate)
