@@ -164,6 +164,18 @@ jaw = [0.04, 0.1, 0.05]
 colour = [0.2, 0.2, 0.2]
 holds = "here"
 
+[devices.belt.axes.conveyor]
+kind = "belt"
+pose = { x = 6.0, z = 0.5, yaw = 30.0 }
+length = 1.5
+width = 0.4
+height = 0.2
+speed = 0.25
+acceleration = 0.4
+jerk = 4.0
+colour = [0.1, 0.1, 0.1]
+stop = "here"
+
 [sensors.gauge]
 variable = "v"
 file = "gauge.txt"
