@@ -16,6 +16,8 @@ const FINE_MS = 400;
 const FINE = 2;
 /** How coarse it is while the run goes on. */
 const COARSE = 0.75;
+/** How many sizes of a pixel are told apart on the way to twice that size. */
+const PIXEL_STEPS = 2;
 /** Of a run that goes on: samples of a path that are drawn, and how often they are drawn anew. */
 const LIVE_SAMPLES = 600;
 const PATHS_MS = 500;
@@ -31,6 +33,7 @@ export class CellView {
     this.run = run;
     this.pane = pane;
     this.t = 0;
+    this.ratio = 1;
     this.buttons = el("div", { class: "views", role: "group", "aria-label": "Views" });
     this.pathsButton = el("button", {
       class: "toggle", "aria-pressed": "true", text: "Paths", title: "Paths of the TCPs, coloured by conditioning (P)",
@@ -44,10 +47,14 @@ export class CellView {
       this.fail(missing || "three.js is not in this page");
       return;
     }
-    /** Whether the rest of the page should not be drawn with each picture: drawing is slow here. */
-    this.isSparing = drawsInSoftware();
     try {
-      this.renderer = new THREE.WebGLRenderer({ antialias: !this.isSparing, powerPreference: "high-performance" });
+      this.renderer = new THREE.WebGLRenderer({ powerPreference: "high-performance" });
+      /** Whether the rest of the page should not be drawn with each picture: drawing is slow here. */
+      this.isSparing = drawsInSoftware(this.renderer.getContext());
+      if (!this.isSparing) {
+        this.renderer.forceContextLoss();
+        this.renderer = new THREE.WebGLRenderer({ antialias: true, powerPreference: "high-performance" });
+      }
     } catch (problem) {
       this.fail(`this browser has no WebGL (${problem instanceof Error ? problem.message : problem})`);
       return;
@@ -421,6 +428,7 @@ export class CellView {
     const { clientWidth: w, clientHeight: h } = this.host;
     if (!w || !h) return;
     this.cell?.plain(isPlain);
+    this.cell?.coarsen(isPlain && this.isGoing ? this.pixel(ratio) : 0);
     for (const trail of this.trails ?? []) {
       if (!trail) continue;
       const n = upperBound(trail.t, this.t);
@@ -435,6 +443,16 @@ export class CellView {
     this.gaps?.size(w, h);
     if (this.renderer.getPixelRatio() !== ratio) this.renderer.setPixelRatio(ratio);
     this.renderer.render(this.cell?.scene, this.camera);
+  }
+
+  /**
+   * The size of a pixel where the camera looks (m), in steps, so that shapes are not made anew for each little turn.
+   * @param {number} ratio
+   */
+  pixel(ratio) {
+    const away = this.camera.position.distanceTo(this.controls.target);
+    const size = (2 * away * Math.tan((FIELD * Math.PI) / 360)) / (this.host.clientHeight * ratio);
+    return 2 ** (Math.floor(PIXEL_STEPS * Math.log2(size)) / PIXEL_STEPS);
   }
 
   /** @param {boolean} wanted */

@@ -6,8 +6,8 @@ import { el, shorten, svg } from "./dom.js";
 import { LongList } from "./list.js";
 
 const ROW = 24;
-const COLUMN = 84;
-const TIME = 62;
+/** Of a party, as in the style sheet; narrow where one pane is shown at a time. */
+const COLUMN = matchMedia("(max-width: 900px), (orientation: portrait) and (max-width: 1100px)").matches ? 58 : 84;
 
 /** @typedef {import("./clock.js").Clock} Clock */
 

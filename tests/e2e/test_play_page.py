@@ -249,6 +249,12 @@ def test_a_timed_net_on_a_phone_in_the_dark(root: Path, chromium: Any, tmp_path:
         assert browser.page.locator(".flight").count() == 0
         browser.page.get_by_role("button", name="More").click()
         assert browser.page.get_by_role("list", name="Enabled transitions").is_visible()
+        browser.ask("""() => void play.page.enabled.list(
+            play.page.net.net.transitions.findIndex((t) => t.sensors?.some((s) => s.variable === "v")))""")
+        sensor = browser.page.get_by_role("group", name="Sensor gauge", exact=True)
+        assert "what the gauge finds of the bond" in sensor.inner_text()
+        sensor.get_by_role("button", name="good").click()
+        assert browser.page.get_by_label("A part of the binding").input_value() == "v = good"
         assert browser.errors == []
 
 

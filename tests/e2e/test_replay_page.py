@@ -240,6 +240,63 @@ class TestRivetingCell:
         }""")
         assert drawn == [True, False, 11, 1, "10.50"]
 
+    def test_without_a_gpu_shapes_are_as_coarse_as_the_picture_while_they_move(
+        self, browser: Page
+    ) -> None:
+        found = browser.ask("""() => {
+            const { page } = replay, { cell } = page;
+            const count = (isGoing) => {
+                cell.isGoing = isGoing;
+                cell.draw(0.75, true);
+                return cell.renderer.info.render.triangles;
+            };
+            const [whole, coarse] = [count(false), count(true)];
+            const size = cell.cell.size;
+            let worst = 0, meshes = 0;
+            cell.cell.scene.traverse((o) => {
+                if (!o.fine) return;
+                meshes++;
+                const { geometry, whole } = o;
+                geometry.computeBoundingBox();
+                whole.computeBoundingBox();
+                const [a, b] = [geometry.boundingBox, whole.boundingBox];
+                for (const end of ["min", "max"]) {
+                    for (const axis of "xyz") {
+                        worst = Math.max(worst, Math.abs(a[end][axis] - b[end][axis]) * o.grows / size);
+                    }
+                }
+                const { array } = geometry.index;
+                for (let i = 0; i < array.length; i += 3) {
+                    if (new Set(array.subarray(i, i + 3)).size < 3) worst = Infinity;
+                }
+            });
+            const again = count(false);
+            return [coarse / whole, worst, meshes > 50, again === whole];
+        }""")
+        share, worst, are_many, is_whole_again = found
+        assert 0.1 < share < 0.7
+        assert worst < 1.0, "no shape has lost more than a cell of the grid"
+        assert are_many and is_whole_again
+
+    def test_what_stays_in_the_time_is_not_drawn_anew(self, browser: Page) -> None:
+        drawn = browser.ask("""() => {
+            const { timeline } = replay.page;
+            let lanes = 0;
+            const own = timeline.drawLane;
+            timeline.drawLane = (...how) => (lanes++, own.apply(timeline, how));
+            const seen = [];
+            const draw = (work) => { lanes = 0; work(); timeline.draw(); seen.push(lanes); };
+            draw(() => (timeline.drawn = ""));
+            draw(() => replay.seek(20));
+            draw(() => timeline.zoom(0.5, 20));
+            draw(() => timeline.whole());
+            draw(() => replay.page.frame.dark());
+            draw(() => replay.page.frame.dark());
+            delete timeline.drawLane;
+            return seen.map((n) => n / timeline.lanes.length);
+        }""")
+        assert drawn == [1, 0, 1, 1, 1, 1]
+
     def test_nothing_was_complained_of_or_asked_for(self, browser: Page, shown: Shown) -> None:
         assert browser.errors == []
         own = {
@@ -250,6 +307,29 @@ class TestRivetingCell:
         assert [
             url for url in browser.asked if url not in own and not url.startswith("data:")
         ] == []
+
+
+@pytest.mark.cc
+def test_with_a_gpu_there_are_shadows_and_all_of_the_shapes(shown: Shown, chromium: Any) -> None:
+    with opened(chromium) as browser:
+        browser.page.add_init_script("""
+            for (const kind of [WebGLRenderingContext, WebGL2RenderingContext]) {
+                const own = kind.prototype.getParameter;
+                kind.prototype.getParameter = function (name) {
+                    return name === 0x9246 ? "A GPU" : own.call(this, name);
+                };
+            }
+        """)
+        browser.open(shown.file)
+        browser.wait("replay.page.cell.hasShadows")
+        seen = browser.ask("""() => {
+            const { cell } = replay.page;
+            cell.isGoing = true;
+            cell.draw(cell.ratio, cell.isSparing);
+            return [cell.isSparing, cell.cell.size, cell.renderer.getContext().getContextAttributes().antialias];
+        }""")
+        assert seen == [False, 0, True]
+        assert browser.errors == []
 
 
 HOSTILE = "<img src=x onerror=alert(1)>"
@@ -277,6 +357,36 @@ def test_a_trace_without_arms_on_a_phone_in_the_dark(tmp_path: Path, chromium: A
         assert browser.ask("() => document.querySelectorAll('.flight').length") == 0
         browser.page.get_by_role("button", name="More").click()
         assert browser.page.get_by_role("listbox", name="Steps").is_visible()
+        assert browser.errors == []
+
+
+def test_on_a_phone_what_occurs_can_be_read(shown: Shown, chromium: Any) -> None:
+    text = """() => {
+        const { net } = replay.page, t = net.course.occurred(replay.page.clock.k);
+        const node = net.draw(net.net.instances[net.current].page).elements.get(t.id)[0];
+        const [box, sheet] = [node.getBoundingClientRect(), net.sheet.getBoundingClientRect()];
+        const isSeen = box.left >= sheet.left && box.right <= sheet.right && box.top >= sheet.top;
+        return [net.net.style.size * net.sheet.getScreenCTM().a, isSeen && box.bottom <= sheet.bottom];
+    }"""
+    with opened(chromium, **TURNED) as browser:
+        browser.open(shown.file, "#step=30")
+        for step in (30, 31, 60, 90):
+            browser.ask("k => replay.step(k)", step)
+            size, is_seen = browser.ask(text)
+            assert size > 8 and is_seen, step
+        browser.page.get_by_role("button", name="Fit").click()
+        browser.ask("""() => {
+            const { course, clock, net } = replay.page;
+            let k = clock.k + 1;
+            while (course.occurred(k).instance !== net.current) k++;
+            replay.step(k);
+        }""")
+        assert browser.ask(text)[0] < 5, "whoever wants the whole page keeps it"
+        browser.page.get_by_role("button", name="Follow").click(click_count=2)
+        assert browser.ask(text)[0] > 8
+        browser.page.get_by_role("button", name="More").click()
+        said = browser.page.locator(".panel.messages .said").first
+        assert said.bounding_box()["width"] > 100
         assert browser.errors == []
 
 

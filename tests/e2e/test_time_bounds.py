@@ -15,7 +15,7 @@ from typer.testing import CliRunner
 from helpers import meeting_cell
 from helpers.netbuilder import cpn
 from helpers.thorough import amount
-from helpers.timed_runs_cell import write
+from helpers.timed_runs_cell import NET, write
 from pn2code.cli.main import app
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.front import load
@@ -89,6 +89,24 @@ def test_an_answer_may_come_too_late(tmp_path: Path) -> None:
         others = found["layouts"][0]["cycle"]["others"]
         late = "an answer of device `press` may come after 3.000 s, later than reply_timeout_s (2.5 s) allows"
         assert others == ([late] if code else [])
+
+
+def test_an_answer_may_come_too_late_in_a_timed_net(tmp_path: Path) -> None:
+    """When time stamps are reached is not followed, but what the press does takes 3 s, whatever they are."""
+    cell = write(tmp_path)
+    timed = NET.replace("AGAIN", "n + 1").replace("    place Busy2\n", "    place Busy2 : TIMED\n")
+    timed = timed.replace("  fun drill", "  colset TIMED = unit timed;\n  fun drill")
+    (cell / "cell.cpn").write_bytes(cpn(timed.replace("out Busy2 : ()", "out Busy2 : ()@+1")))
+    toml = (cell / "cell.toml").read_text(encoding="utf-8")
+    for timeout, late in (("3.5", []), ("2.5", ["device `press`"])):
+        text = toml.replace('["Finished"]', f'["Finished"]\nreply_timeout_s = {timeout}')
+        (cell / "cell.toml").write_text(text, encoding="utf-8")
+        cycle = asked(str(cell), code=3)["layouts"][0]["cycle"]
+        assert "the net is timed" in cycle["why"]
+        assert cycle["late"] == [
+            f"an answer of {who} may come after 3.000 s, later than reply_timeout_s (2.5 s) allows"
+            for who in late
+        ]
 
 
 def test_what_can_be_repeated_has_no_upper_bound(tmp_path: Path) -> None:

@@ -183,6 +183,7 @@ default = 4
 seed = 5
 sees = "here"
 part = "box"
+says = "how thick the part is"
 
 [scene]
 floor = false

@@ -7,6 +7,7 @@
   these does so in those, and what is said of those is true of these.
 * *the checks of the supervisor*: with turns and without, wherever turns say anything; and with limits.
 * *the medium*: the same; and what the cell as it runs says of its files (`files`).
+* *the closed net*: what is said of it where its tokens are counted up to a limit (`closed`).
 """
 
 from __future__ import annotations
@@ -19,10 +20,11 @@ from random import Random
 from typing import Any
 
 from tools.adversary.cells import random_cell as adversary_cell
-from tools.reduction_cells import files
+from tools.reduction_cells import closed, files
 from tools.reduction_cells.flows import flow
 from tools.reduction_cells.limited import Limited
 from tools.reduction_cells.mutants import MUTANTS, NO_GROUPS, RASH
+from tools.reduction_cells.shops import shop
 
 from helpers.netbuilder import cpn
 from helpers.random_cells import random_cell
@@ -57,12 +59,14 @@ class Verdict:
     counts: Counter[str]
 
 
-def make(seed: int, folder: Path) -> None:
-    """The files of a cell of one of three families."""
+def make(seed: int, folder: Path, *, is_shop: bool = False) -> None:
+    """The files of a cell: a shop, or one of three families that are wrong more often."""
     r = Random(seed)
     family = r.random()
     inputs: tuple[tuple[str, str], ...] = ()
-    if family < 0.6:
+    if is_shop:
+        net, toml = shop(r)
+    elif family < 0.6:
         net, toml = flow(r, many=family >= 0.5)
     elif family < 0.75:
         net, toml = random_cell(r)
@@ -196,9 +200,11 @@ def _sorted(b: Bounds) -> Bounds:
     )
 
 
-def judge(seed: int, folder: Path, *, mutants: bool, wants_medium: bool) -> Verdict:
+def judge(
+    seed: int, folder: Path, *, mutants: bool, wants_medium: bool, is_shop: bool = False
+) -> Verdict:
     """Makes a cell, and compares."""
-    make(seed, folder)
+    make(seed, folder, is_shop=is_shop)
     d = Diagnostics()
     opened = open_net(folder, {}, warnings=d)
     partition = divide(opened.flat, opened.config, d) if opened.config is not None else None
@@ -242,7 +248,8 @@ def judge(seed: int, folder: Path, *, mutants: bool, wants_medium: bool) -> Verd
             bed = Limited.of(partition, cell.plan)
             wrong += [] if bed is None else bed.judged(whole, counts)
             shown |= set() if bed is None or not mutants else bed.shown(whole)
-    wrong += _of_checks(cell, counts)
+    wrong += _of_checks(cell, Random(seed).choice(FEW), counts)
+    wrong += closed.judged(opened, partition, counts)
     if wants_medium:
         wrong += _of_medium(cell, counts)
         wrong += files.judged(partition, opened.storage, counts, shown if mutants else None)
@@ -261,25 +268,26 @@ def _shown(space: _Space, table: Turns, whole: Exploration, reduced: Exploration
         yield RASH
 
 
-def _of_checks(cell: _Cell, counts: Counter[str]) -> Iterator[str]:
-    counted = cell.checked(MOST, FEW)
-    is_counted = counted is not None and counted.is_counted
-    counts["checks with limits"] += is_counted
+def _of_checks(cell: _Cell, first: int, counts: Counter[str]) -> Iterator[str]:
+    """`first`: states before tokens are counted up to a limit."""
+    found = cell.checked(MOST, first)
+    counted = found if found is not None and found.is_counted else None
+    counts["checks with limits"] += counted is not None
     reduced = cell.checked(1)
     if reduced is None or not reduced.reduced or reduced.found is None:
         counts["checks of the whole"] += 1
-        if not is_counted:
+        if counted is None:
             return
         reduced = None
     counts["checks in turns"] += reduced is not None
-    whole = cell.checked(None)
+    whole = cell.checked(None) if counted is not None else found
     if whole is None or whole.found is None:
         yield "the whole cannot be checked"
         return
     if not whole.found.complete:
         counts["only in turns"] += 1
         return
-    if counted is not None and is_counted:
+    if counted is not None:
         yield from (f"with limits: {x}" for x in _other_checks(counted, whole, _LIMITED))
         if counted.row()["dead_transitions"] != whole.row()["dead_transitions"]:
             yield "with limits: transitions that never occur"
@@ -302,10 +310,14 @@ def _other_checks(mine: Control, whole: Control, sizes: tuple[str, ...]) -> Iter
 
 _SIZES = ("non-blocking", "confluence")
 """Checks of which the value is a number of states, or of steps of one run."""
-_LIMITED = (*_SIZES, "bounded-response", "messages", "reach")
-"""The same where a state stands for many markings: there may be more of what is counted."""
-FEW = 40
-"""States before tokens are counted up to a limit."""
+_LIMITED = (*_SIZES, "bounded-response", "messages", "reach", "memory")
+"""The same where a state stands for many markings: there may be more of what is counted.
+
+What memory is needed while questions about orders are answered counts in `memory`, too, and they are not asked then;
+what firings need is compared by `Limited`.
+"""
+FEW = (40, 150, 400)
+"""States before tokens are counted up to a limit: one of these."""
 
 
 def _of_medium(cell: _Cell, counts: Counter[str]) -> Iterator[str]:

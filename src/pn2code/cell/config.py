@@ -109,6 +109,7 @@ class SensorConfig:
             at random.
         seed: of what is drawn at random.
         sees: the place at which it looks for a part in a run, of the kind `part` ("": any); "": it sees nothing.
+        says: what it tells, in plain words.
     """
 
     name: str
@@ -119,6 +120,7 @@ class SensorConfig:
     origin: Origin
     sees: str = ""
     part: str = ""
+    says: str = ""
 
 
 @frozen

@@ -692,7 +692,8 @@ def _sensors(r: Tables, data: dict[str, Any]) -> Iterable[SensorConfig]:
             default = None
         seed = r.get(table, at, SENSOR["seed"])
         sees, part = _seen(r, data, table, at)
-        yield SensorConfig(name, variable, file, default, seed, r.at(*at), sees, part)
+        says = r.get(table, at, SENSOR["says"])
+        yield SensorConfig(name, variable, file, default, seed, r.at(*at), sees, part, says)
 
 
 def _seen(r: Tables, data: dict[str, Any], table: dict[str, Any], at: KeyPath) -> tuple[str, str]:

@@ -117,9 +117,9 @@ CHANNEL = Section(
         Key(
             "kind",
             "text",
-            '`"data"` is written before `"flag"`. A program that receives a flag owes an answer (I8), so a message '
-            "that is never answered should be data. Without the key a token of one scalar is a flag, of several "
-            "data. `check` prints a table of all channels, with what decided their kind.",
+            '`"data"` is written before `"flag"`. A program that receives a flag of the supervisor owes it an '
+            "answer (I8), so a message that is never answered should be data. Without the key a token of one scalar "
+            "is a flag, of several data. `check` prints a table of all channels, with what decided their kind.",
             words=("data", "flag"),
         ),
     )
@@ -357,6 +357,13 @@ SENSOR = Section(
             "text",
             "with `sees`: Only a part of this kind, a name of `[parts]`, is seen; without it, any part.",
             "the name of a kind of parts",
+        ),
+        Key(
+            "says",
+            "text",
+            "What it tells, in plain words: pages show them where a person may choose it.",
+            "a text",
+            default="",
         ),
     )
 )

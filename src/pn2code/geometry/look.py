@@ -116,8 +116,10 @@ class Look:
                 looked.add(key)
                 row = self._move(found, leg, load, met)
                 # Whatever stands on its turntables meanwhile, it is one move: the worst of them is told.
-                own = (leg.number, spots(tuple(p for p in load if p.holder)))
-                if leg.command is not None or row.answer != "yes":
+                held = tuple(p for p in load if p.holder)
+                own = (leg.number, spots(held))
+                is_told = leg.command is not None and not (is_at_rest and not held)
+                if is_told or row.answer != "yes":
                     rows[own] = min(rows[own], row, key=_how_bad) if own in rows else row
             if activity.is_part or activity.doubt:
                 row = self._handling(found, activity, met)

@@ -614,24 +614,33 @@ class BulletBackend:
         return [*touching.values(), best] if best is not None else list(touching.values())
 
     def _carried(self, a: _Loaded, limit: float) -> list[Clearance]:
-        """Between the part that a robot carries and the robot itself, but for its tool and the last axis."""
+        """Between the part that a robot carries and the robot itself, but for its tool and the last axis.
+
+        On a turntable it may be put.
+        """
         name = a.robot.name
         if a.robot.is_device:
             return []
         last = a.joints[a.robot.kinematics.joints.stop - 1]
-        near = {i for i, link in a.links.items() if link.startswith("tool_") or i >= last}
+        tables = {a.index[t] for t in a.robot.arm.tables}
+        near = {i for i, link in a.links.items() if link.startswith("tool_") or i >= last} - tables
         best: Clearance | None = None
+        plates = []
         for side in self._sides(a):
             for i in a.links if not side.links and not side.rides else ():
                 if i in near:
                     continue
+                other = f"{name}/{a.links[i]}"
+                allowed = self.allowed(side.whole, other) if i in tables else None
                 for c in self._p.getClosestPoints(
                     side.id, a.body, limit, -1, i, physicsClientId=self._client
                 ):
-                    if best is None or c[8] < best.distance:
-                        other = f"{name}/{a.links[i]}"
-                        best = Clearance("self", name, side.whole, other, c[8], None, c[5], c[6])
-        return [] if best is None else [best]
+                    gap = Clearance("self", name, side.whole, other, c[8], allowed, c[5], c[6])
+                    if i in tables:
+                        plates.append(gap)
+                    elif best is None or c[8] < best.distance:
+                        best = gap
+        return plates if best is None else [best, *plates]
 
     def _self(self, a: _Loaded, limit: float) -> list[Clearance]:
         key = ("self", a.robot.name)

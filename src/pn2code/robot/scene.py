@@ -336,6 +336,7 @@ def _gripping(
         *belts,
         *(o.name for o in objects),
         *(f"{kind}.*" for kind in kinds),
+        *(f"{r.name}/{table}" for r in robots for table in r.arm.tables),
     ]
     return [
         rule

@@ -195,7 +195,8 @@ class _Look:
                 way, _ = anyhow.most()
                 at_most = None if way is None else way.ns
         owed = [] if search.why else [*self._owed()]
-        late = tuple(self._late(owed))
+        work = [*self._owed_by_work()] if search.why and not anyhow.why else []
+        late = tuple(self._late([*owed, *work]))
         # Of robots without an arm, and of what is told by more than tokens, nothing is known.
         stops = [] if self.doings.why else [*search.faults, *anyhow.faults.values()]
         stops = [why for why in dict.fromkeys(stops) if why]
@@ -264,6 +265,24 @@ class _Look:
             is_never_answered = not stuck.isdisjoint(owing)
             ns = None if is_never_answered else longest_inside(self.search.successors, owing)
             yield owner.phrase, ns
+
+    def _owed_by_work(self) -> Iterator[tuple[str, int | None]]:
+        """The same of a net that is timed: how long by what they do themselves while they owe it.
+
+        Whoever waits meanwhile owes it for longer still, so only what is too long is known.
+        """
+        places = {p.name: p.index for p in self.graph.running.net.places}
+        elements, marked = self.graph.elements, self.graph.marked
+        for owner in self.graph.partition.owners:
+            place = places.get(f"cell.{owner.name}.owes")
+            if place is None:
+                continue
+            own = [
+                [(to, ns if elements[mark].owner == owner.index else 0, mark) for to, ns, mark in x]
+                for x in self.anyhow.successors
+            ]
+            owing = [i for i, (state, _) in enumerate(self.anyhow.nodes) if place in marked[state]]
+            yield owner.phrase, longest_inside(own, owing)
 
     def _late(self, owed: Sequence[tuple[str, int | None]]) -> Iterator[str]:
         """Who may owe an answer for longer than the supervisor waits for it."""

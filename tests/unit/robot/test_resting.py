@@ -14,7 +14,8 @@ import pytest
 from helpers.carrying_cell import TOML
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.robot.choose_backend import open_backend
-from pn2code.robot.commands import Handling, Pose
+from pn2code.robot.commands import Handling, MoveJoint, Pose
+from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.ground import Ground
 from pn2code.robot.parts import Part, PartFault, Parts
 from pn2code.robot.robot_cell import RobotCell
@@ -284,3 +285,29 @@ def test_the_collision_library_takes_a_part_along_with_a_turntable(
 
     assert nearest(0.0) > 0.05
     assert nearest(90.0) < -0.03
+
+
+@pytest.mark.bullet
+@pytest.mark.parametrize(("z", "distance"), [(0.6, 0.05), (0.55, 0.0), (0.5, -0.05)])
+def test_what_a_tool_carries_keeps_clear_of_its_own_turntable(
+    z: float, distance: float, request: pytest.FixtureRequest
+) -> None:
+    """It may be put there: it touches by no more than what it is put on permits."""
+    cell = cell_of({"x": 1.7, "y": 0.6, "z": 0.475}, plate=PLATE)
+    backend = open_backend("bullet", cell, looks=False)
+    request.addfinalizer(backend.close)
+    keeper = PartKeeper(cell, backend)
+    keeper.begin()
+    robot = cell.robot("robot")
+    executor = RobotExecutor(robot, cell.motion)
+    executor.begin(MoveJoint(Pose(1.7, 0.6, 0.55, math.pi, 0.0, 0.0)), 0.0)
+    executor.finish()
+    backend.set_joints("robot", executor.q)
+    keeper.handle("robot", TAKE, matrix_of(executor.pose))
+    executor.begin(MoveJoint(Pose(1.7, 0.6, z, math.pi, 0.0, 0.0)), 0.0)
+    executor.finish()
+    backend.set_joints("robot", executor.q)
+    for found in (backend.clearances(0.5) or (), backend.pairs("self", "robot", 0.5)):  # type: ignore[attr-defined]
+        gaps = [c for c in found if (c.a, c.b) == ("robot/box.1", "robot/plate")]
+        assert min(c.distance for c in gaps) == pytest.approx(distance, abs=1e-4)
+        assert {c.allowed for c in gaps} == {0.001} and not any(c.stands for c in gaps)

@@ -6,11 +6,13 @@ from pathlib import Path
 
 import pytest
 
+from helpers import netbuilder
 from helpers.small_cell import NET, write
 from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
 from pn2code.robot_scripts.machine import Machine, analyse
 from pn2code.verdict.opened import read
+from pn2code.verify.controller.replies import Replies
 from pn2code.verify.controller.unanswered import ADVICE, unanswered
 
 REPORT = """    trans Report
@@ -55,3 +57,94 @@ def test_where_a_script_goes_without_an_answer(report: str, does: str, tmp_path:
     assert unanswered(program(tmp_path, net)) == (
         f"after a message of `flag.robcad` {does}, and no answer has been given: {ADVICE}"
     )
+
+
+PEERS = """net Cell
+  standard
+  fun work () = ();
+  page Top
+    place order
+    place done
+    place pass
+    place back
+    subst Supervisor = Supervisor (order -> order, done -> done)
+    subst First = First (order -> order, pass -> pass, back -> back)
+    subst Second = Second (pass -> pass, back -> back, done -> done)
+  page Supervisor
+    place order port out
+    place done port in
+    place Ready = ()
+    place Finished
+    trans Send
+      in Ready : ()
+      out order : ()
+    trans Done
+      in done : ()
+      out Finished : ()
+  page First
+    place order port in
+    place pass port out
+    place back port in
+    place Waiting = ()
+    place Passed
+    trans Pass
+      in Waiting : ()
+      in order : ()
+      out pass : ()
+      out Passed : ()
+    trans Back code action (work ())
+      in Passed : ()
+      in back : ()
+      out Waiting : ()
+  page Second
+    place pass port in
+    place back port out
+    place done port out
+    place Waiting = ()
+    trans Report
+      both Waiting : ()
+      in pass : ()
+      out back : ()
+      out done : ()
+"""
+CHANNELS = "".join(
+    f'[[channel]]\nplace = "{place}"\nfile = "{place}.robcad"\n{kind}\n'
+    for place, kind in (("order", 'kind = "data"'), ("done", ""), ("pass", ""), ("back", ""))
+)
+TOML = f"""[net]
+file = "cell.cpn"
+[supervisor]
+instance = "Supervisor"
+final = ["Finished"]
+{CHANNELS}
+[primitives]
+work = {{ command = "tool", action = "work", duration_s = 1 }}
+[robots.first]
+instance = "First"
+[robots.second]
+instance = "Second"
+"""
+
+
+@pytest.mark.parametrize(
+    ("toml", "late"),
+    [
+        (TOML, ""),
+        (
+            TOML.replace('kind = "data"', ""),
+            "robot `first` may give no answer: after a message of `order.robcad` `Top.First.Back` leads back to "
+            f"where the script waits for the next message, and no answer has been given: {ADVICE}",
+        ),
+    ],
+    ids=["the flag of a robot", "a flag of the supervisor"],
+)
+def test_only_the_supervisor_is_owed_an_answer(toml: str, late: str, tmp_path: Path) -> None:
+    """It counts the flags that it writes itself; it does not see those between robots."""
+    netbuilder.write(PEERS, tmp_path / "cell.cpn")
+    (tmp_path / "cell.toml").write_text(toml)
+    d = Diagnostics()
+    opened = read(tmp_path / "cell.toml", {}, d)
+    assert opened is not None and opened.config is not None, [x.message for x in d.errors]
+    partition = divide(opened.flat, opened.config, d)
+    assert partition is not None, [x.message for x in d.errors]
+    assert Replies.of(partition, opened.config).late == late

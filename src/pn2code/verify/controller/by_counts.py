@@ -135,7 +135,7 @@ def look(
     if lengths is None:
         return None
     rising = made.ranking.rising()
-    is_decided = len(order) > CONFLUENCE and order[CONFLUENCE]["answer"] == "no"
+    is_certain = is_decided(order)
     own = replace(
         options,
         turns=made.turns,
@@ -145,7 +145,7 @@ def look(
         traces=None,
         evidence=None,
         bindings=(),
-        questions=questions(made, plan, rising) + ("" if is_decided else in_order),
+        questions=questions(made, plan, rising) + ("" if is_certain else in_order),
         stem="counts",
         quick=True,
         first_states=SOON,
@@ -159,17 +159,17 @@ def look(
     count = sum(line.startswith("? ") for line in own.questions.split("\n"))
     if len(found.answers) != count:
         return None
-    rows = [*(found.answers if is_decided else found.answers[: count - in_order.count("? ")])]
+    rows = [*(found.answers if is_certain else found.answers[: count - in_order.count("? ")])]
     quiet, *rows = rows
     if any(row["answer"] != "yes" for row in rows):
         return None
-    if not is_decided:
+    if not is_certain:
         is_choiceless = found.seen.arcs and found.answers[len(rows) + 1]["answer"] != "unknown"
         if not is_choiceless:
             return None
     if not _all_occur(partition, plan, limits, own, made, found, part):
         return None
-    confluence = order[CONFLUENCE:] if is_decided else (YES, YES)
+    confluence = order[CONFLUENCE:] if is_certain else (YES, YES)
     longest, firings = lengths
     asked = (YES, {**YES, "value": firings}, *confluence)
     said = _said(partition, plan, made, found, rows, longest)
@@ -179,6 +179,11 @@ def look(
 
 CONFLUENCE = 2
 """The first question about orders that weights do not answer."""
+
+
+def is_decided(order: Sequence[Mapping[str, Any]]) -> bool:
+    """Whether a part of the space of all orders shows that the order of firings matters."""
+    return len(order) > CONFLUENCE and order[CONFLUENCE]["answer"] == "no"
 
 
 def questions(made: Abstract, plan: Plan, rising: frozenset[int]) -> str:

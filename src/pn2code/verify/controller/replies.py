@@ -83,7 +83,9 @@ class Replies:
     def of(partition: Partition, config: CellConfig) -> Replies:
         """Those of a cell."""
         limit = config.supervisor.reply_timeout_s
-        asked = {c.reader for c in partition.channels if c.kind is ChannelKind.FLAG} - {0}
+        asked = {
+            c.reader for c in partition.channels if c.kind is ChannelKind.FLAG and c.writer == 0
+        }
         most = Time()
         durations = Durations(partition.net, config.storage)
         for owner in sorted(asked):

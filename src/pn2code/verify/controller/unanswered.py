@@ -39,7 +39,7 @@ def _asked(program: Machine) -> Iterator[tuple[Step, int]]:
             channel = program.channels.get(place)
             if channel is None or channel.kind is not ChannelKind.FLAG:
                 continue
-            if channel.reader == program.owner.index:
+            if channel.reader == program.owner.index and channel.writer == 0:
                 yield step, place
 
 
