@@ -17,11 +17,12 @@ import numpy as np
 
 from pn2code.base.frozen import frozen
 from pn2code.geometry.activities import Activity, Contents, Load, spot, spots
-from pn2code.geometry.answers import Nearest
+from pn2code.geometry.answers import Nearest, Verdict
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.sweeps import SEARCHED, Apart, Sweeper, much_less
 from pn2code.geometry.tracks import ArmShape, Track
+from pn2code.geometry.zone_speeds import slow_enough
 from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.backend import Clearance
 from pn2code.robot.clamps import holding
@@ -30,6 +31,7 @@ from pn2code.robot.motion import LinearTrajectory
 from pn2code.robot.parts import Part
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array
+from pn2code.robot.zones import ZoneWatch
 
 _PIECES = 16
 _SAMPLES = 65
@@ -62,6 +64,8 @@ class Comparison:
         self._beside: dict[tuple[tuple[int, str], str], Apart] = {}
         self._margins: dict[int, Margins] = {}
         self.compared = 0
+        self._watch = ZoneWatch(cell)
+        self._hurries: dict[tuple[int, str], tuple[Verdict, str]] = {}
 
     def _track(self, leg: Leg, load: Load) -> tuple[tuple[int, str], Track]:
         if leg.path is None:
@@ -79,6 +83,15 @@ class Comparison:
             links = tuple(shape.holding(p, *self._boxes[p.kind.name]) for p in named)
             self._tracks[key] = Track(shape, leg, links, named)
         return key, self._tracks[key]
+
+    def hurries(self, leg: Leg, load: Load) -> tuple[Verdict, str]:
+        """Whether a leg is slow enough in zones, and why it is not."""
+        if not self._watch.limited or not leg.is_moving or not self._has_shape((leg, load)):
+            return "yes", ""
+        key, track = self._track(leg, load)
+        if key not in self._hurries:
+            self._hurries[key] = slow_enough(self._watch, track, load)
+        return self._hurries[key]
 
     def _has_shape(self, moved: tuple[Leg, Load]) -> bool:
         """Whether anything moves: of a device with a belt only what stands on it."""

@@ -53,6 +53,7 @@ from pn2code.robot.motion import LinearTrajectory, MotionFault
 from pn2code.robot.parts import PartFault
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array, describe, matrix_of, pose_of
+from pn2code.robot.zones import ZoneWatch
 from pn2code.run.accuracy import distance, distance_to_line
 from pn2code.run.device import DeviceExecutor
 from pn2code.run.files import RobotFiles
@@ -199,6 +200,7 @@ class Engine:
     now: float = 0.0
     activity: str = ""
     parts: PartKeeper = field(init=False)
+    zones: ZoneWatch = field(init=False)
     _next_model_time: float | None = None
     _answer_due: float = math.inf
     _steps: Iterator[int] = field(default_factory=lambda: itertools.count(1))
@@ -213,6 +215,7 @@ class Engine:
         divided = self.partition
         readers = {c.place: divided.owners[c.reader].name for c in divided.channels}
         self.parts = PartKeeper(self.cell, self.backend)
+        self.zones = ZoneWatch(self.cell)
         self._ids = {t.name: t.id for t in divided.net.transitions}
         self._commanded = {
             t.name: tuple({readers[a.place] for a in t.arcs if a.place in readers})
@@ -407,9 +410,19 @@ class Engine:
     def _sensor_says(self, robot: RobotRunner, request: Sense) -> Scalar | None:
         looks = self.sensors.seen.get(request.sensor)
         if looks is not None:
-            self._look_at_turntables()
-            return self.parts.parts.is_seen(*looks)
+            return self._sees(*looks, self.sensors.at.get(request.sensor, 0.0))
         return self.sensors.ask(robot.name, request.sensor)
+
+    def _sees(self, name: str, kind: str, at: float) -> bool:
+        """Whether a part is at a place, an arm in a zone, an axis of a device where it is seen."""
+        self._look_at_turntables()
+        joints = {r.name: r.joints(self.now) for r in self._arms()}
+        device, dot, axis = name.partition(".")
+        if dot:
+            return self.cell.robot(device).is_at(axis, joints[device], at)
+        if name in self.cell.zones:
+            return self.zones.occupied(name, joints, self.parts.parts.present.values())
+        return self.parts.parts.is_seen(name, kind)
 
     def _told(self, robot: RobotRunner, request: Sense, said: Said) -> Request:
         """A sensor has said something: what the script wants next."""
@@ -662,6 +675,20 @@ class Engine:
         if verdict.fault is not None:
             self.now = t
             raise CellStoppedError(f"{verdict.fault.message}; {self._doing()}")
+        self._expect_slow(t, joints)
+
+    def _expect_slow(self, t: float, joints: Mapping[str, Array]) -> None:
+        """Nothing is faster in a zone than may be there."""
+        if not self.zones.limited:
+            return
+        speeds = {
+            r.name: r.motion.trajectory.qd(t - r.motion.began) for r in self._arms() if r.motion
+        }
+        found = self.zones.too_fast(joints, speeds, self.parts.parts.present.values())
+        if found is not None:
+            self.now = t
+            who = self.cell.robot(found.robot).words
+            raise CellStoppedError(f"{who}: {found.words()}; {self._doing()}")
 
     def _doing(self) -> str:
         """What everybody was doing, for messages: script line, net transition, command."""
