@@ -29,7 +29,7 @@ from pn2code.emission.output import Block, OutputFile
 from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.backend import Backend
 from pn2code.robot.belts import until_stop
-from pn2code.robot.clamps import holding
+from pn2code.robot.clamps import holding, taken_along
 from pn2code.robot.commands import (
     Along,
     Command,
@@ -443,7 +443,7 @@ class Engine:
             where = robot.element_at(line)
             at = f" (net transition {where})" if where else ""
             raise CellStoppedError(f"{robot.script}:{line}{at}: {fault}") from None
-        self._expect_let_go(robot, command, line)
+        self._expect_let_go(robot, motion, line)
         self._expect_riders_stay(robot, motion, line)
         if self.stops is not None:
             motion = self._held_up(robot, motion, self.stops)
@@ -482,23 +482,23 @@ class Engine:
             for change in settled:
                 self.record.parts.append(PartRecord(self.now, robot.name, change))
 
-    def _expect_let_go(self, robot: RobotRunner, command: Command, line: int) -> None:
-        """What an arm carries away is in no clamp that still holds it."""
-        if robot.arm is None or not isinstance(command, Move):
+    def _expect_let_go(self, robot: RobotRunner, motion: Motion, line: int) -> None:
+        """What an arm, a turntable or a belt takes along is in no clamp that still holds it."""
+        if robot.arm is None or not isinstance(motion.command, Move):
             return
-        part = self.parts.parts.held_by(robot.name)
-        if part is None:
-            return
+        arm, q = robot.arm.robot, robot.arm.q
+        present = self.parts.parts.present.values()
         stands = {r.name: r for r in self._arms()}
-        for held in holding(self.cell, part.kind, matrix_of(robot.arm.pose) @ part.frame):
-            q = stands[held.device.name].joints(self.now)
-            if held.holds(q):
-                where = robot.element_at(line)
-                at = f" (net transition {where})" if where else ""
-                words = held.words(robot.name, part.name, q)
-                raise CellStoppedError(
-                    f"{robot.script}:{line}{at}: {words}, at TCP pose {describe(robot.arm.pose)}"
-                )
+        for part, frame in taken_along(arm, q, present, turned(arm, motion)):
+            for held in holding(self.cell, part.kind, frame):
+                own = stands[held.device.name].joints(self.now)
+                if held.holds(own):
+                    where = robot.element_at(line)
+                    at = f" (net transition {where})" if where else ""
+                    words = held.words(robot.name, part.name, own)
+                    raise CellStoppedError(
+                        f"{robot.script}:{line}{at}: {words}, part at {describe(pose_of(frame))}"
+                    )
 
     def _expect_riders_stay(self, robot: RobotRunner, motion: Motion, line: int) -> None:
         """What stands on a turntable that begins to turn stays there, or the cell stops."""

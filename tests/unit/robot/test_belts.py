@@ -128,6 +128,25 @@ def test_over_all_states_parts_are_where_the_belt_has_taken_them() -> None:
     assert fallen.is_part and "takes `box.1` along until it is in the air" in fallen.fault
 
 
+def test_a_belt_does_not_pull_parts_out_of_a_clamp() -> None:
+    data = tomllib.loads(TOML)
+    data["devices"]["feeder"]["axes"]["side"] = {
+        "kind": "clamp", "pose": {"x": 1.5, "y": -1.5, "z": 0.58}, "from": 0.199, "to": 0.3,
+        "home": 0.199, "jaw": [0.02, 0.1, 0.1], "holds": "entry",
+    }  # fmt: skip
+    cell = load(data, Path(), nowhere, Diagnostics())
+    assert cell is not None
+    doing = Doing(Planner(cell), cell)
+    feeder = cell.robot("feeder")
+    home = doing.planner.home("feeder")
+    held = doing.of("feeder", (FEED, run(1.2)), home, doing.start, (home,))
+    assert held.is_part and "`feeder` pulls `box.1` out of `feeder/side`" in held.fault
+    wide = MoveExternal((Along("side", 0.3, True),))
+    free = doing.of("feeder", (FEED, wide, run(1.2)), home, doing.start, (home,))
+    assert not free.fault, free.fault
+    assert [a.name for a in feeder.carrying] == ["belt"]
+
+
 def test_whoever_handles_parts_near_a_belt_that_runs_is_seen() -> None:
     cell = right((0.2,))
     doing = Doing(Planner(cell), cell)
