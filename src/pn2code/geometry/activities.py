@@ -18,12 +18,13 @@ from pn2code.geometry.legs import Leg, Planner, Stand
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.sweeps import ROUNDING
 from pn2code.robot.belts import until_stop
+from pn2code.robot.clamps import holding, taken_along
 from pn2code.robot.commands import Command, Handling, ToolAction
 from pn2code.robot.executor import turned_by
 from pn2code.robot.ground import Ground
 from pn2code.robot.lying import Trouble, overlap
 from pn2code.robot.parts import Part, PartChange, PartFault, Parts
-from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, describe, inverse, matrix_of
 
 _DIGITS = 6
@@ -196,6 +197,8 @@ class Doing:
                     plates = turned_by(self._cell.robot(owner), leg.path)
                     turns |= plates
                     done = self._turning(done, command, plates, standing, contents)
+                    if pulled := self._pulled(own, leg, plates, contents):
+                        done = replace(done, fault=pulled, is_part=True, command=command, doubt="")
                     if done.fault:
                         legs = legs or [(self.planner.standing(stand), contents)]
                         break
@@ -308,6 +311,16 @@ class Doing:
                 off_axis = float(np.hypot(*part.frame[:2, 3]))
                 reach = max(reach, off_axis + ground.radius(part.kind.name))
         return float(np.hypot(*off[:2])) <= reach + around
+
+    def _pulled(self, own: CellRobot, leg: Leg, plates: frozenset[str], contents: Contents) -> str:
+        """That a device takes a part along which a clamp of its own holds then; "": it does not."""
+        if not own.axes.clamps:
+            return ""
+        for part, frame in taken_along(own, leg.start.q, contents.load(own.name), plates):
+            for held in holding(self._cell, part.kind, frame):
+                if held.device is own and held.holds(leg.start.q):
+                    return held.words(own.name, part.name, leg.start.q)
+        return ""
 
     def _turning(
         self,
