@@ -31,7 +31,7 @@ class Arms:
 
     def __init__(self, cells: Mapping[str, RobotCell]) -> None:
         self._cells = cells
-        self.robots = frozenset(r.name for cell in cells.values() for r in cell.robots)
+        self.robots = frozenset(r.name for cell in cells.values() for r in cell.moving)
         self._known: dict[tuple[str, Move], str] = {}
 
     @staticmethod
@@ -84,7 +84,7 @@ class Arms:
     def _looked(self, name: str, command: Move) -> str:
         is_free = isinstance(command, MoveLinear | MoveCircular)
         for layout, cell in self._cells.items():
-            for robot in cell.robots:
+            for robot in cell.moving:
                 if robot.name != name:
                     continue
                 own = replace(robot, branch=None) if is_free else robot

@@ -100,11 +100,11 @@ def told(primitive: Primitive, argument: Any) -> tuple[commands.Command, ...]:
     speed = primitive.speed
     # A tuple whose first value is a tuple: that of a pose or a joint position is a number.
     is_several = isinstance(argument, tuple) and (
-        primitive.command == "move_external"
+        (primitive.command == "move_external" and primitive.to is None)
         or (primitive.command in GOING and len(argument) > 0 and isinstance(argument[0], tuple))
     )
     values = argument if is_several else (argument,)
-    if primitive.command in GOING and len(values) > primitive.takes:
+    if primitive.command in GOING and primitive.to is None and len(values) > primitive.takes:
         *values, speed = values
     along = _along(primitive, values)
     # The factors are those of scripts (`pn2code.tdl`), so that speeds are equal to the last digit.
@@ -154,6 +154,8 @@ def _along(primitive: Primitive, values: Any) -> tuple[commands.Along, ...]:
     """Where external axes go: mm and degrees, behind the poses."""
     if not primitive.along:
         return ()
+    if primitive.to is not None:
+        values = (*[None] * primitive.places, primitive.to)
     return tuple(
         commands.Along(axis, float(v) / 1000.0 if is_track else math.radians(float(v)), is_track)
         for (axis, is_track), v in zip(primitive.along, values[primitive.places :], strict=True)

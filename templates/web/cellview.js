@@ -16,8 +16,12 @@ const FINE_MS = 400;
 const FINE = 2;
 /** How coarse it is while the run goes on. */
 const COARSE = 0.75;
+/** How many sizes of a pixel are told apart on the way to twice that size. */
+const PIXEL_STEPS = 2;
 /** Of a run that goes on: samples of a path that are drawn, and how often they are drawn anew. */
 const LIVE_SAMPLES = 600;
+/** How near to a path a click must be (CSS pixels). */
+const REACH_PX = 6;
 const PATHS_MS = 500;
 const ARM_COLOURS = [0x0072b2, 0xcc79a7, 0x009e73, 0xe69f00, 0x56b4e9, 0xd55e00];
 
@@ -26,11 +30,14 @@ export class CellView {
    * @param {HTMLElement} pane
    * @param {any} run
    * @param {string} missing why there is no 3D, "" if there is
+   * @param {{onArm: (robot: number, t: number) => void}} actions
    */
-  constructor(pane, run, missing) {
+  constructor(pane, run, missing, actions) {
     this.run = run;
+    this.actions = actions;
     this.pane = pane;
     this.t = 0;
+    this.ratio = 1;
     this.buttons = el("div", { class: "views", role: "group", "aria-label": "Views" });
     this.pathsButton = el("button", {
       class: "toggle", "aria-pressed": "true", text: "Paths", title: "Paths of the TCPs, coloured by conditioning (P)",
@@ -44,10 +51,14 @@ export class CellView {
       this.fail(missing || "three.js is not in this page");
       return;
     }
-    /** Whether the rest of the page should not be drawn with each picture: drawing is slow here. */
-    this.isSparing = drawsInSoftware();
     try {
-      this.renderer = new THREE.WebGLRenderer({ antialias: !this.isSparing, powerPreference: "high-performance" });
+      this.renderer = new THREE.WebGLRenderer({ powerPreference: "high-performance" });
+      /** Whether the rest of the page should not be drawn with each picture: drawing is slow here. */
+      this.isSparing = drawsInSoftware(this.renderer.getContext());
+      if (!this.isSparing) {
+        this.renderer.forceContextLoss();
+        this.renderer = new THREE.WebGLRenderer({ antialias: true, powerPreference: "high-performance" });
+      }
     } catch (problem) {
       this.fail(`this browser has no WebGL (${problem instanceof Error ? problem.message : problem})`);
       return;
@@ -81,7 +92,11 @@ export class CellView {
     this.controls.enableDamping = false;
     this.controls.screenSpacePanning = true;
     this.controls.addEventListener("change", () => this.request());
-    canvas.addEventListener("pointerdown", () => (this.mounted = -1));
+    canvas.addEventListener("pointerdown", (/** @type {PointerEvent} */ e) => {
+      this.mounted = -1;
+      this.pressed = [e.clientX, e.clientY];
+    });
+    canvas.addEventListener("click", (/** @type {PointerEvent} */ e) => this.click(e));
     canvas.addEventListener("keydown", (/** @type {KeyboardEvent} */ e) => this.key(e));
     this.hasPaths = true;
     this.thrift = new Thrift();
@@ -131,7 +146,7 @@ export class CellView {
       ["Tools", () => this.lookAtTools(-28, 16), -1],
     ];
     this.run.cell.robots.forEach((/** @type {any} */ r, /** @type {number} */ i) => {
-      if (i < 5) this.views?.push([r.name, () => {}, i]);
+      if (i < 5 && !r.device) this.views?.push([r.name, () => {}, i]);
     });
     this.buttons.append(
       ...this.views.map(([name], i) =>
@@ -201,6 +216,57 @@ export class CellView {
     this.camera.lookAt(this.controls.target);
   }
 
+  /**
+   * A click on an arm leads to what it is doing; one on the way of its tool to the moment when it was there.
+   * @param {PointerEvent} e
+   */
+  click(e) {
+    const [x, y] = this.pressed ?? [e.clientX, e.clientY];
+    if (Math.hypot(e.clientX - x, e.clientY - y) > 4) return; // the view was turned
+    const box = this.renderer.domElement.getBoundingClientRect();
+    const at = new THREE.Vector2(((e.clientX - box.left) / box.width) * 2 - 1, 1 - ((e.clientY - box.top) / box.height) * 2);
+    const way = this.hasPaths ? this.wayAt(at, box) : null;
+    const robot = way ? way.robot : this.armAt(at);
+    if (robot >= 0) this.actions.onArm(robot, way ? way.t : this.t);
+  }
+
+  /**
+   * The sample of a path that is nearest to a point of the picture (from -1 to 1), if one is near.
+   * @param {any} at
+   * @param {DOMRect} box
+   */
+  wayAt(at, box) {
+    /** @type {{robot: number, t: number} | null} */
+    let found = null;
+    let least = REACH_PX;
+    const point = new THREE.Vector3();
+    this.camera.updateMatrixWorld();
+    for (const [robot, trail] of (this.trails ?? []).entries()) {
+      for (let i = 0; i < (trail?.count ?? 0); i++) {
+        point.fromArray(trail.points, 3 * i).project(this.camera);
+        if (Math.abs(point.z) > 1) continue;
+        // Of those at one place the one that is nearest in time counts.
+        const away = Math.hypot((point.x - at.x) * box.width, (point.y - at.y) * box.height) / 2 + Math.abs(trail.t[i] - this.t) * 1e-3;
+        if (away >= least) continue;
+        least = away;
+        found = { robot, t: trail.t[i] };
+      }
+    }
+    return found;
+  }
+
+  /**
+   * The arm at a point of the picture, before which nothing stands; -1: none.
+   * @param {any} at
+   */
+  armAt(at) {
+    const ray = new THREE.Raycaster();
+    ray.setFromCamera(at, this.camera);
+    const groups = this.cell?.scene.children.filter((/** @type {any} */ c) => c.isGroup && c.visible);
+    const [hit] = ray.intersectObjects(groups, true);
+    return this.cell?.robots.findIndex((/** @type {any} */ r) => r.links.includes(hit?.object.parent)) ?? -1;
+  }
+
   /** @param {KeyboardEvent} e */
   key(e) {
     const spin = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[e.key];
@@ -225,8 +291,9 @@ export class CellView {
   // --- paths ---------------------------------------------------------------------------------
 
   tips() {
-    return this.frames.map((/** @type {any} */ links, /** @type {number} */ i) => {
-      const tcp = links[this.cell?.robots[i].robot.tcp];
+    const arms = this.frames.filter((/** @type {any} */ _, /** @type {number} */ i) => !this.run.cell.robots[i].device);
+    return arms.map((/** @type {any} */ links) => {
+      const tcp = links[this.run.cell.robots[this.frames.indexOf(links)].tcp];
       return new THREE.Vector3(tcp[3], tcp[7], tcp[11]);
     });
   }
@@ -236,7 +303,7 @@ export class CellView {
     const curves = this.run.happenings?.curves ?? [];
     this.trails = this.cell?.robots.map((/** @type {any} */ { robot }, /** @type {number} */ i) => {
       const path = this.paths[i];
-      if (!path || path.t.length < 2) return null;
+      if (!path || path.t.length < 2 || robot.device) return null;
       const first = this.run.live ? Math.max(path.t.length - LIVE_SAMPLES, 0) : 0;
       const count = path.t.length - first;
       const condition = curves.find((/** @type {any} */ c) => c.kind === "condition" && c.of === robot.name);
@@ -293,7 +360,7 @@ export class CellView {
     const thin = new THREE.Line(past, new THREE.LineBasicMaterial({ vertexColors: true }));
     thin.frustumCulled = false;
     this.cell?.scene.add(behind, thin, ahead);
-    return { behind, thin, ahead, material, t, count: t.length };
+    return { behind, thin, ahead, material, t, points, count: t.length };
   }
 
   /** @param {boolean} on */
@@ -352,8 +419,9 @@ export class CellView {
         return;
       }
       const at = /** @type {number} */ (index.get(state.holder));
+      // In the tool of the robot, or on a link of it: a turntable.
       const tcp = new THREE.Matrix4();
-      tcp.set(.../** @type {[any]} */ (this.frames[at][this.run.cell.robots[at].tcp]));
+      tcp.set(.../** @type {[any]} */ (this.frames[at][state.link ?? this.run.cell.robots[at].tcp]));
       const own = new THREE.Matrix4();
       own.set(.../** @type {[any]} */ (state.frame));
       object.matrixAutoUpdate = false;
@@ -374,6 +442,14 @@ export class CellView {
       const bar = happenings.bars.find((/** @type {any} */ b) => b.party === party && b.start <= t && t < b.end);
       const curve = happenings.curves.find((/** @type {any} */ c) => c.kind === "condition" && c.of === r.name);
       const condition = curve ? valueAt(curve, t) : NaN;
+      if (r.device) {
+        const q = this.joints(i, t);
+        const axes = r.joints.map((/** @type {any} */ j) => {
+          const name = r.links[j.child].name;
+          return j.slides ? `${name} ${(q[j.moves] * 1000).toFixed(1)} mm` : `${name} ${((q[j.moves] * 180) / Math.PI).toFixed(1)}°`;
+        });
+        return el("span", { class: "arm" }, el("b", { text: r.name }), ` ${bar ? bar.label : "rests"} · ${axes.join("  ")}`);
+      }
       const tcp = this.frames[i][r.tcp];
       const at = [tcp[3], tcp[7], tcp[11]].map((v) => (v * 1000).toFixed(1)).join("  ");
       return el(
@@ -411,6 +487,7 @@ export class CellView {
     const { clientWidth: w, clientHeight: h } = this.host;
     if (!w || !h) return;
     this.cell?.plain(isPlain);
+    this.cell?.coarsen(isPlain && this.isGoing ? this.pixel(ratio) : 0);
     for (const trail of this.trails ?? []) {
       if (!trail) continue;
       const n = upperBound(trail.t, this.t);
@@ -425,6 +502,16 @@ export class CellView {
     this.gaps?.size(w, h);
     if (this.renderer.getPixelRatio() !== ratio) this.renderer.setPixelRatio(ratio);
     this.renderer.render(this.cell?.scene, this.camera);
+  }
+
+  /**
+   * The size of a pixel where the camera looks (m), in steps, so that shapes are not made anew for each little turn.
+   * @param {number} ratio
+   */
+  pixel(ratio) {
+    const away = this.camera.position.distanceTo(this.controls.target);
+    const size = (2 * away * Math.tan((FIELD * Math.PI) / 360)) / (this.host.clientHeight * ratio);
+    return 2 ** (Math.floor(PIXEL_STEPS * Math.log2(size)) / PIXEL_STEPS);
   }
 
   /** @param {boolean} wanted */

@@ -98,7 +98,7 @@ export class EnabledList {
   /** @param {number} t */
   open(t) {
     this.transition = t;
-    const { short } = this.position.net.transitions[t];
+    const { short, sensors = [] } = this.position.net.transitions[t];
     this.filter = field({
       label: "A part of the binding", placeholder: "n = 3, p <> \"x\"", button: "Filter",
       title: "Conditions in CPN ML on the variables, with commas", work: () => this.list(t),
@@ -115,8 +115,23 @@ export class EnabledList {
     this.chosen.replaceChildren(
       el("header", {}, el("h3", { text: short.replace(/\s+/g, " ") }), stop,
         el("button", { text: "×", "aria-label": "Close the bindings", onclick: () => this.close() })),
-      this.filter.root, this.list_);
+      ...sensors.map((/** @type {any} */ s) => this.sensor(t, s)), this.filter.root, this.list_);
     this.chosen.hidden = false;
+  }
+
+  /**
+   * What a sensor of the cell tells here, and its values to choose from.
+   * @param {number} t
+   * @param {any} sensor
+   */
+  sensor(t, { variable, sensor, says, values, allowed }) {
+    const choose = (/** @type {string} */ value) => {
+      if (this.filter) this.filter.input.value = `${variable} = ${value}`;
+      this.list(t);
+    };
+    return el("p", { class: "sensor", role: "group", "aria-label": `Sensor ${sensor}` },
+      el("b", { text: variable }), ` ${says || `what sensor ${sensor} tells`}: `,
+      ...(values ? values.flatMap((/** @type {string} */ v) => [el("button", { text: v, onclick: () => choose(v) }), " "]) : [el("span", { class: "note", text: allowed })]));
   }
 
   close() {

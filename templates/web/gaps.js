@@ -9,7 +9,7 @@ const THREE = /** @type {any} */ (globalThis).THREE;
 const STAYS = 2.5;
 const MOST = 12;
 
-/** @typedef {{pair: string[], distance: number, points: ArrayLike<number>}} Gap */
+/** @typedef {{pair: string[], distance: number, points: Float32Array | number[]}} Gap */
 
 export class Gaps {
   /**
@@ -31,8 +31,9 @@ export class Gaps {
     this.lines.renderOrder = 5;
     scene.scene.add(this.lines);
     this.warning = new THREE.MeshPhongMaterial({ color: 0xd21f1f, emissive: 0x500000, shininess: 30 });
-    /** @type {Map<any, any>} */
-    this.painted = new Map();
+    /** @type {any[]} */
+    this.painted = [];
+    this.drawn = "";
   }
 
   /**
@@ -59,17 +60,27 @@ export class Gaps {
    */
   update(t) {
     const found = this.at(t);
+    const drawn = found.map((gap) => gap.points.join(" ")).join(";");
+    if (drawn !== this.drawn) {
+      this.drawn = drawn;
+      this.draw(found);
+    }
+    this.paint(found.filter((gap) => gap.distance < this.limit).flatMap((gap) => gap.pair));
+    return found;
+  }
+
+  /** @param {Gap[]} found */
+  draw(found) {
     found.forEach((gap, i) => {
       const colour = new THREE.Color(gap.distance < this.limit ? 0xd21f1f : 0xf0a020);
       this.positions.set(Array.from(gap.points), 6 * i);
       this.colours.set([colour.r, colour.g, colour.b, colour.r, colour.g, colour.b], 6 * i);
     });
-    this.lines.geometry.setPositions(this.positions);
-    this.lines.geometry.setColors(this.colours);
-    this.lines.geometry.instanceCount = found.length;
+    const { geometry } = this.lines;
+    geometry.attributes.instanceStart.data.set(this.positions).needsUpdate = true;
+    geometry.attributes.instanceColorStart.data.set(this.colours).needsUpdate = true;
+    geometry.instanceCount = found.length;
     this.lines.visible = found.length > 0;
-    this.paint(found.filter((gap) => gap.distance < this.limit).flatMap((gap) => gap.pair));
-    return found;
   }
 
   /**
@@ -77,13 +88,16 @@ export class Gaps {
    * @param {string[]} names
    */
   paint(names) {
-    for (const [mesh, material] of this.painted) mesh.material = material;
-    this.painted.clear();
+    for (const mesh of this.painted.splice(0)) {
+      mesh.isWarned = false;
+      mesh.material = this.scene.ownMaterial(mesh);
+    }
     if (!names.length) return;
     for (const group of this.scene.scene.children) {
       if (!group.isGroup || !names.includes(group.name) || group.name === "floor") continue;
       for (const mesh of group.children) {
-        this.painted.set(mesh, mesh.material);
+        this.painted.push(mesh);
+        mesh.isWarned = true;
         mesh.material = this.warning;
       }
     }

@@ -3,7 +3,7 @@
 
 import { byId, el } from "./dom.js";
 
-/** @typedef {{number: number, party: string, sensor: string, variable: string, line: number, values: string[], own: string, left: number}} Question */
+/** @typedef {{number: number, party: string, sensor: string, variable: string, says: string, allowed: string, line: number, values: string[], own: string, left: number}} Question */
 
 const DELAY_S = 5;
 const WORDS = /** @type {Record<string, string>} */ ({ ask: "ask me", own: "as the cell says", always: "always" });
@@ -51,14 +51,14 @@ export class Hand {
       const about = `${s.sensor} of ${s.party}`;
       const value = s.values
         ? el("select", { "aria-label": `value of ${about}` }, ...s.values.map((/** @type {string} */ v) => el("option", { value: v, text: v })))
-        : el("input", { "aria-label": `value of ${about}`, class: "ml", placeholder: s.colset });
+        : el("input", { "aria-label": `value of ${about}`, class: "ml", placeholder: s.allowed });
       const send = () => this.actions.wish({ do: "way", party: s.party, sensor: s.sensor, way: way.value, value: value.value });
       const way = el("select", { "aria-label": `how ${about} decides`, onchange: send },
         ...Object.entries(WORDS).map(([word, text]) => el("option", { value: word, text })));
       value.addEventListener("change", () => way.value === "always" && send());
       const queue = el("span", { class: "note" });
       this.sensors.push({ way, value, queue });
-      return el("tr", {}, el("th", { scope: "row", text: s.party }), el("td", { text: `${s.sensor} (${s.variable})` }), el("td", {}, way, " ", value),
+      return el("tr", {}, el("th", { scope: "row", text: s.party }), el("td", { title: `variable ${s.variable}` }, el("b", { text: s.sensor }), s.says ? el("span", { class: "says", text: s.says }) : ` (${s.variable})`), el("td", {}, way, " ", value),
         el("td", {}, el("button", { text: "Next time", "aria-label": `Next time: ${about}`,
           onclick: () => this.actions.wish({ do: "next", party: s.party, sensor: s.sensor, value: value.value }) }), " ", queue));
     })));
@@ -150,11 +150,12 @@ export class Hand {
   /** @param {Question} q */
   question(q) {
     const say = (/** @type {string} */ value) => this.actions.wish({ do: "answer", number: q.number, value });
-    const words = el("span", {}, el("b", { text: q.party }), ` asks sensor ${q.sensor}: what is `, el("b", { text: q.variable }), "? ");
-    const field = el("input", { class: "ml", value: q.own, "aria-label": q.variable });
+    const what = q.says ? [el("b", { text: q.says }), ` (${q.variable})? `] : ["what is ", el("b", { text: q.variable }), "? "];
+    const words = el("span", {}, el("b", { text: q.party }), ` asks sensor ${q.sensor}: `, ...what);
+    const field = el("input", { class: "ml", value: q.own, "aria-label": q.says || q.variable, title: q.allowed });
     const buttons = q.values.length
       ? q.values.map((v) => el("button", { text: v, class: v === q.own ? "own" : null, onclick: () => say(v) }))
-      : [el("form", { onsubmit: (/** @type {Event} */ e) => (e.preventDefault(), say(field.value)) }, field, el("button", { text: "Say it" }))];
+      : [el("form", { onsubmit: (/** @type {Event} */ e) => (e.preventDefault(), say(field.value)) }, field, el("button", { text: "Say it" }), el("span", { class: "note", text: ` ${q.allowed}` }))];
     return el("p", { "data-number": q.number, role: "group", "aria-label": `Question of ${q.party}` },
       words, ...(this.hasJoined ? buttons.flatMap((b) => [b, " "]) : []), el("span", { class: "left" }));
   }

@@ -6,8 +6,8 @@ import { el, shorten, svg } from "./dom.js";
 import { LongList } from "./list.js";
 
 const ROW = 24;
-const COLUMN = 84;
-const TIME = 62;
+/** Of a party, as in the style sheet; narrow where one pane is shown at a time. */
+const COLUMN = matchMedia("(max-width: 900px), (orientation: portrait) and (max-width: 1100px)").matches ? 58 : 84;
 
 /** @typedef {import("./clock.js").Clock} Clock */
 
@@ -71,6 +71,18 @@ export class Messages {
   next(by) {
     const i = by > 0 ? this.count() : upperBound(this.times, this.clock.t - 1e-9) - 1;
     return this.times[i] ?? NaN;
+  }
+
+  /**
+   * The message of a channel's place that came last, or else the next one.
+   * @param {number} place
+   */
+  reveal(place) {
+    const sent = this.count();
+    if (sent && this.messages[this.list.current]?.place === place) return;
+    let found = -1;
+    for (let i = 0; i < this.messages.length && (i < sent || found < 0); i++) if (this.messages[i].place === place) found = i;
+    if (found >= 0) this.list.go(found);
   }
 
   /** There are more messages. */

@@ -10,6 +10,9 @@ const BINDING_LINES = 5;
 const BINDING_WIDTH = 46;
 /** A page is left when following only after it has been there so long (ms). */
 const STAY_MS = 700;
+/** Where texts of a whole page would be smaller (CSS pixels), what occurs is shown with its surroundings, this large. */
+const LEAST_TEXT = 5;
+const NEAR_TEXT = 9;
 
 /** @typedef {import("./course.js").Course} Course */
 /** @typedef {{root: any, elements: Map<string, any[]>, view: number[]}} Drawn */
@@ -28,6 +31,10 @@ export class NetView {
     this.shownAt = 0;
     this.current = -1;
     this.lastStep = -1;
+    /** Whether somebody has chosen which part of the page is seen. */
+    this.isChosen = false;
+    /** What is lit. */
+    this.lit = "";
     /** @type {Map<number, Drawn>} */
     this.drawn = new Map();
     /** @type {Map<number, {version: number, node: any}>} */
@@ -83,7 +90,7 @@ export class NetView {
       onclick: () => this.setFollowing(!this.isFollowing),
     });
     this.up = el("button", { text: "Up", title: "To the page above", onclick: () => this.goUp() });
-    const fit = el("button", { text: "Fit", title: "The whole page", onclick: () => this.fit() });
+    const fit = el("button", { text: "Fit", title: "The whole page", onclick: () => this.whole() });
     this.status = el("p", { class: "status" });
     this.sheet = svg("svg", { class: "sheet", role: "img", "aria-label": "A page of the net" });
     this.sheet.addEventListener("wheel", (/** @type {WheelEvent} */ e) => this.wheel(e), { passive: false });
@@ -101,7 +108,10 @@ export class NetView {
   setFollowing(on) {
     this.isFollowing = on;
     this.follow.setAttribute("aria-pressed", String(on));
-    if (on) this.followStep(this.lastStep, true);
+    if (!on) return;
+    this.isChosen = false;
+    this.followStep(this.lastStep, true);
+    this.near(this.lastStep);
   }
 
   /**
@@ -162,7 +172,9 @@ export class NetView {
     this.up.disabled = !this.net.instances[instance].path.includes("/");
     this.prepare(made);
     this.tokens();
+    this.isChosen = false;
     this.fit();
+    this.lit = "";
     this.light(this.lastStep, this.lastTime ?? 0);
     this.mark();
   }
@@ -222,12 +234,44 @@ export class NetView {
     this.zoomed();
   }
 
+  /** The whole page, because somebody wants to see it: it stays whole until another one is shown. */
+  whole() {
+    this.fit();
+    this.isChosen = true;
+  }
+
+  /**
+   * On a small screen, where the texts of the whole page cannot be read: what occurs, with what is around it.
+   * @param {number} k
+   */
+  near(k) {
+    if (!this.isFollowing || this.isChosen || k < 1) return;
+    const occurred = this.course.occurred(k);
+    if (occurred.instance !== this.current) return;
+    const { view: full, elements } = this.draw(this.net.instances[this.current].page);
+    const [w, h] = [this.sheet.clientWidth, this.sheet.clientHeight];
+    const { size } = this.net.style;
+    if (!w || !h || size * Math.min(w / full[2], h / full[3]) >= LEAST_TEXT) return;
+    const box = elements.get(occurred.id)?.[0].getBBox();
+    if (!box) return;
+    const shown = [(w * size) / NEAR_TEXT, (h * size) / NEAR_TEXT];
+    const from = [0, 1].map((i) => {
+      const middle = i ? box.y + box.height / 2 : box.x + box.width / 2;
+      const most = full[i] + full[i + 2] - shown[i];
+      return most < full[i] ? (full[i] + most) / 2 : Math.min(Math.max(middle - shown[i] / 2, full[i]), most);
+    });
+    this.view = [...from, ...shown];
+    this.isFitted = false;
+    this.zoomed();
+  }
+
   refit() {
     if (this.isFitted) this.zoomed();
   }
 
   zoomed() {
-    this.sheet.setAttribute("viewBox", this.view?.map((/** @type {number} */ v) => v.toFixed(2)).join(" "));
+    const box = this.view?.map((/** @type {number} */ v) => v.toFixed(2)).join(" ");
+    if (this.sheet.getAttribute("viewBox") !== box) this.sheet.setAttribute("viewBox", box);
   }
 
   /** @param {WheelEvent} e */
@@ -247,6 +291,7 @@ export class NetView {
     const scale = Math.min(Math.max(by, 40 / w), (full[2] * 4) / w);
     this.view = [at.x - (at.x - x) * scale, at.y - (at.y - y) * scale, w * scale, h * scale];
     this.isFitted = false;
+    this.isChosen = true;
     this.zoomed();
   }
 
@@ -274,6 +319,7 @@ export class NetView {
       if (!this.moved || !this.view) return;
       this.view = [this.view[0] + start.x - at.x, this.view[1] + start.y - at.y, this.view[2], this.view[3]];
       this.isFitted = false;
+      this.isChosen = true;
       this.zoomed();
     };
     const end = (/** @type {PointerEvent} */ up) => {
@@ -319,6 +365,7 @@ export class NetView {
     if (isNew) this.followStep(k, !how.isPlaying);
     this.tokens();
     this.light(k, t);
+    if (isNew) this.near(k);
     if (isNew && came > 0 && came < 40 && !how.isSparing && !isStill()) {
       for (let i = Math.max(k - came, k - 4) + 1; i <= k; i++) this.fly(i);
     }
@@ -405,6 +452,12 @@ export class NetView {
    */
   light(k, t) {
     const { elements, root } = this.draw(this.net.instances[this.current].page);
+    const since = t - LIT_S * (this.speed ?? 1);
+    let first = k;
+    while (first > 1 && first > k - 29 && this.course.time[first - 2] >= since) first--;
+    const lit = `${this.current} ${first} ${k}`;
+    if (lit === this.lit) return; // what is drawn anew costs, also where it looks the same
+    this.lit = lit;
     for (const node of root.querySelectorAll(".occurs, .recent")) node.classList.remove("occurs", "recent");
     this.callout?.remove();
     this.callout = null;
@@ -412,8 +465,7 @@ export class NetView {
       this.status.textContent = "The initial marking";
       return;
     }
-    const since = t - LIT_S * (this.speed ?? 1);
-    for (let i = k; i >= 1 && i > k - 30 && (i === k || this.course.time[i - 1] >= since); i--) {
+    for (let i = k; i >= first; i--) {
       const occurred = this.course.occurred(i);
       if (occurred.instance !== this.current) continue;
       const name = i === k ? "occurs" : "recent";

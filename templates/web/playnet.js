@@ -50,6 +50,7 @@ export class PlayNet extends NetView {
    * @param {number} t
    */
   light(k, t) {
+    this.lit = ""; // after another choice as many steps have occurred
     super.light(k, t);
     const position = this.position;
     if (!position) return; // while the page is built

@@ -1,6 +1,7 @@
 // @ts-check
 /** The cell as a scene of three.js: meshes, arms, parts, marks. What moves is set by `cellview.js`. */
 
+import { coarser } from "./coarse.js";
 import { frames } from "./kinematics.js";
 
 const THREE = /** @type {any} */ (globalThis).THREE;
@@ -24,43 +25,54 @@ export function geometryOf(mesh) {
   const faces = index.length / 3;
   const flat = new Float32Array(3 * faces);
   const length = new Float32Array(faces);
-  /** @type {number[][]} */
-  const around = Array.from({ length: n }, () => []);
+  /** Which faces meet at a point: from `first[point]` to `first[point + 1]` in `around`. */
+  const first = new Uint32Array(n + 1);
+  for (const point of index) first[point + 1]++;
+  for (let i = 0; i < n; i++) first[i + 1] += first[i];
+  const around = new Uint32Array(3 * faces);
+  const filled = first.slice(0, n);
   for (let f = 0; f < faces; f++) {
-    const [a, b, c] = [index[3 * f] * 3, index[3 * f + 1] * 3, index[3 * f + 2] * 3];
+    const a = index[3 * f] * 3, b = index[3 * f + 1] * 3, c = index[3 * f + 2] * 3;
     const ux = position[b] - position[a], uy = position[b + 1] - position[a + 1], uz = position[b + 2] - position[a + 2];
     const vx = position[c] - position[a], vy = position[c + 1] - position[a + 1], vz = position[c + 2] - position[a + 2];
     flat[3 * f] = uy * vz - uz * vy;
     flat[3 * f + 1] = uz * vx - ux * vz;
     flat[3 * f + 2] = ux * vy - uy * vx;
     length[f] = Math.hypot(flat[3 * f], flat[3 * f + 1], flat[3 * f + 2]) || 1;
-    for (let k = 0; k < 3; k++) around[index[3 * f + k]].push(f);
+    for (let k = 0; k < 3; k++) around[filled[index[3 * f + k]]++] = f;
   }
   const corners = new Float32Array(9 * faces);
   const normals = new Float32Array(9 * faces);
   const used = new Uint32Array(3 * faces);
-  /** Of each point the corners that it has become: faces that meet without an edge share one. */
-  /** @type {number[][]} */
-  const made = Array.from({ length: n }, () => []);
+  /** Of each point the last corner that it has become, and of each corner the one before; from 1. Faces that meet without an edge share one. */
+  const last = new Uint32Array(n);
+  const before = new Uint32Array(3 * faces + 1);
   let count = 0;
   for (let f = 0; f < faces; f++) {
     for (let k = 0; k < 3; k++) {
       const point = index[3 * f + k];
       let x = 0, y = 0, z = 0;
-      for (const g of around[point]) {
+      for (let i = first[point]; i < first[point + 1]; i++) {
+        const g = around[i];
         const dot = flat[3 * f] * flat[3 * g] + flat[3 * f + 1] * flat[3 * g + 1] + flat[3 * f + 2] * flat[3 * g + 2];
         if (dot < CREASE * length[f] * length[g]) continue;
         x += flat[3 * g];
         y += flat[3 * g + 1];
         z += flat[3 * g + 2];
       }
-      const size = Math.hypot(x, y, z) || 1;
-      const same = made[point].find((c) => normals[3 * c] * x + normals[3 * c + 1] * y + normals[3 * c + 2] * z > SAME * size);
-      used[3 * f + k] = same ?? count;
-      if (same !== undefined) continue;
-      normals.set([x / size, y / size, z / size], 3 * count);
-      corners.set(position.subarray(3 * point, 3 * point + 3), 3 * count);
-      made[point].push(count++);
+      const size = Math.sqrt(x * x + y * y + z * z) || 1;
+      let same = last[point];
+      while (same && normals[3 * same - 3] * x + normals[3 * same - 2] * y + normals[3 * same - 1] * z <= SAME * size) same = before[same];
+      if (!same) {
+        normals[3 * count] = x / size;
+        normals[3 * count + 1] = y / size;
+        normals[3 * count + 2] = z / size;
+        for (let axis = 0; axis < 3; axis++) corners[3 * count + axis] = position[3 * point + axis];
+        same = ++count;
+        before[same] = last[point];
+        last[point] = same;
+      }
+      used[3 * f + k] = same - 1;
     }
   }
   const geometry = new THREE.BufferGeometry();
@@ -69,6 +81,22 @@ export function geometryOf(mesh) {
   geometry.setIndex(new THREE.BufferAttribute(used, 1));
   return geometry;
 }
+
+/** Light of the scene at the corners of triangles, and no more: what a processor can draw soon. */
+const PLAIN = {
+  vertexShader: `
+    uniform vec3 own, zenith, nadir, sunlight, filling, toSun, toFill;
+    varying vec3 shade;
+    void main() {
+      vec3 n = normalize(mat3(modelMatrix) * normal);
+      shade = own * (mix(nadir, zenith, 0.5 + 0.5 * n.z) + sunlight * max(dot(n, toSun), 0.0) + filling * max(dot(n, toFill), 0.0));
+      gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));
+    }`,
+  fragmentShader: `
+    uniform float opacity;
+    varying vec3 shade;
+    void main() { gl_FragColor = vec4(shade, opacity); }`,
+};
 
 /**
  * @param {any} object
@@ -92,6 +120,9 @@ export class CellScene {
     this.geometries = new Map();
     /** @type {Map<string, any>} */
     this.materials = new Map();
+    this.isPlain = false;
+    /** Nothing smaller is shown (m). */
+    this.size = 0;
     this.light();
     for (const body of cell.bodies) {
       const group = this.group(body.visuals);
@@ -110,6 +141,13 @@ export class CellScene {
     this.sun = new THREE.DirectionalLight(0xfff4e2, 0.58);
     this.fill = new THREE.DirectionalLight(0xdfeaff, 0.16);
     this.scene.add(this.sky, this.sun, this.sun.target, this.fill, this.fill.target);
+    const shine = (/** @type {any} */ light, /** @type {any} */ colour) => ({ value: colour.clone().multiplyScalar(light.intensity) });
+    /** What all plain materials share; `aim` says where the light comes from. */
+    this.lamps = {
+      zenith: shine(this.sky, this.sky.color), nadir: shine(this.sky, this.sky.groundColor),
+      sunlight: shine(this.sun, this.sun.color), filling: shine(this.fill, this.fill.color),
+      toSun: { value: new THREE.Vector3(0, 0, 1) }, toFill: { value: new THREE.Vector3(0, 0, 1) },
+    };
   }
 
   /** @param {number} mesh */
@@ -148,12 +186,55 @@ export class CellScene {
     for (const fine of this.materials.values()) {
       if (!fine.plain) {
         const { color, transparent, opacity, side } = fine;
-        fine.plain = new THREE.MeshLambertMaterial({ color, transparent, opacity, side });
+        fine.plain = new THREE.ShaderMaterial({
+          ...PLAIN, uniforms: { ...this.lamps, own: { value: color }, opacity: { value: opacity } }, transparent, side,
+        });
       }
     }
     this.scene.traverse((/** @type {any} */ o) => {
-      if (o.fine) o.material = wanted ? o.fine.plain : o.fine;
+      if (o.fine && !o.isWarned) o.material = this.ownMaterial(o);
     });
+  }
+
+  /**
+   * The material that something has by itself, without a warning.
+   * @param {any} object
+   */
+  ownMaterial(object) {
+    return this.isPlain ? object.fine.plain : object.fine;
+  }
+
+  /**
+   * Shapes that have nothing smaller than this; 0: as they are.
+   * @param {number} size m
+   */
+  coarsen(size) {
+    if (size === this.size) return;
+    this.size = size;
+    for (const geometry of this.coarse?.values() ?? []) geometry.dispose();
+    this.coarse = new Map();
+    this.scene.traverse((/** @type {any} */ o) => {
+      if (!o.fine) return;
+      o.whole = o.whole ?? o.geometry;
+      o.geometry = size ? this.coarseOf(o.whole, size / o.grows) : o.whole;
+    });
+  }
+
+  /**
+   * @param {any} whole
+   * @param {number} size
+   */
+  coarseOf(whole, size) {
+    const key = `${whole.id} ${size}`;
+    let found = this.coarse?.get(key);
+    if (found) return found;
+    const made = coarser(whole.attributes.position.array, whole.attributes.normal.array, whole.index.array, size);
+    found = new THREE.BufferGeometry();
+    found.setAttribute("position", new THREE.BufferAttribute(made.position, 3));
+    found.setAttribute("normal", new THREE.BufferAttribute(made.normal, 3));
+    found.setIndex(new THREE.BufferAttribute(made.index, 1));
+    this.coarse?.set(key, found);
+    return found;
   }
 
   /** @param {any[][]} visuals */
@@ -163,6 +244,7 @@ export class CellScene {
       if (!this.cell.meshes[mesh]?.triangles.length) continue;
       const object = new THREE.Mesh(this.geometry(mesh), this.material(rgba));
       object.fine = object.material;
+      object.grows = Math.max(...scale) || 1;
       place(object, frame);
       object.matrix.scale(new THREE.Vector3(...scale));
       object.castShadow = object.receiveShadow = rgba[3] >= 1;
@@ -247,6 +329,8 @@ export class CellScene {
     this.sun.target.position.copy(centre);
     this.fill.position.set(centre.x - 0.6 * size, centre.y + 0.7 * size, centre.z + 0.3 * size);
     this.fill.target.position.copy(centre);
+    this.lamps?.toSun.value.subVectors(this.sun.position, centre).normalize();
+    this.lamps?.toFill.value.subVectors(this.fill.position, centre).normalize();
     this.sun.castShadow = true;
     this.sun.shadow.mapSize.set(2048, 2048);
     const camera = this.sun.shadow.camera;

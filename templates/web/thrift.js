@@ -8,18 +8,13 @@ const MOST_SLOW = 12;
 /** A longer one is no sign: the page was in the background. */
 const AWAY_MS = 2000;
 
-/** Whether the processor draws what a GPU should; false also where it is not known. */
-export function drawsInSoftware() {
-  try {
-    const gl = document.createElement("canvas").getContext("webgl", { antialias: false });
-    if (!gl) return false;
-    const told = gl.getExtension("WEBGL_debug_renderer_info");
-    const name = String(gl.getParameter(told ? told.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
-    gl.getExtension("WEBGL_lose_context")?.loseContext();
-    return SOFTWARE.test(name);
-  } catch {
-    return false;
-  }
+/**
+ * Whether the processor draws what a GPU should; false also where it is not known.
+ * @param {WebGLRenderingContext} gl
+ */
+export function drawsInSoftware(gl) {
+  const told = gl.getExtension("WEBGL_debug_renderer_info");
+  return SOFTWARE.test(String(gl.getParameter(told ? told.UNMASKED_RENDERER_WEBGL : gl.RENDERER)));
 }
 
 /** Notices that pictures come too slowly, again and again. */

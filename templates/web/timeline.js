@@ -9,7 +9,8 @@ const LEFT = 108;
 const GAP = 8;
 const LOWEST_LANE = 20;
 const HIGHEST_LANE = 32;
-const LOWEST_CURVE = 52;
+const LOWEST_CURVE = 66;
+const LABEL = 11;
 const HIGHEST_CURVE = 150;
 const MOST_LANES = 14;
 
@@ -40,7 +41,12 @@ export class Timeline {
     this.canvas.setAttribute("aria-label", "Time");
     this.canvas.setAttribute("aria-valuemin", "0");
     this.canvas.setAttribute("aria-valuemax", clock.end.toFixed(2));
-    host.append(this.canvas);
+    /** What moves with the moment lies above what does not, which is drawn when there is more of it or another window. */
+    this.above = document.createElement("canvas");
+    this.above.className = "above";
+    this.above.setAttribute("aria-hidden", "true");
+    host.append(this.canvas, this.above);
+    this.drawn = "";
     this.from = 0;
     this.to = clock.end;
     this.lane = LOWEST_LANE;
@@ -134,6 +140,7 @@ export class Timeline {
    * @param {{bars: any[], activities: any[], from: number}} more `from`: the first step that is new
    */
   grow({ bars, activities, from }) {
+    this.drawn = "";
     const { owners } = this.run.happenings;
     const course = this.clock.course;
     for (let k = from; k <= course.steps; k++) {
@@ -301,25 +308,43 @@ export class Timeline {
     const w = this.width();
     const h = Math.max(this.height(), this.host.clientHeight);
     if (!w || !h) return;
-    const ratio = Math.min(devicePixelRatio, 2);
-    if (this.canvas.width !== Math.round(w * ratio) || this.canvas.height !== Math.round(h * ratio)) {
-      this.canvas.width = Math.round(w * ratio);
-      this.canvas.height = Math.round(h * ratio);
-      this.canvas.style.width = `${w}px`;
-      this.canvas.style.height = `${h}px`;
+    const drawn = [this.from, this.to, w, h, devicePixelRatio, this.lanes.length, document.documentElement.dataset.theme].join(" ");
+    if (drawn !== this.drawn) {
+      this.drawn = drawn;
+      this.ink = { text: colour("text"), faint: colour("faint"), line: colour("line"), accent: colour("accent"), bar: colour("bar") };
+      const c = cleared(this.canvas, w, h);
+      this.axis(c, w, h);
+      this.divide();
+      this.lanes.forEach((lane, i) => this.drawLane(c, lane, HEAD + i * this.lane, w));
+      this.messages(c);
+      this.curves.forEach((chart, i) => this.chart(c, chart, HEAD + this.lanes.length * this.lane + GAP + i * (this.curve + GAP), w));
+      this.events(c, h);
     }
-    const c = /** @type {CanvasRenderingContext2D} */ (this.canvas.getContext("2d"));
-    c.setTransform(ratio, 0, 0, ratio, 0, 0);
-    c.clearRect(0, 0, w, h);
-    c.font = "12px system-ui, sans-serif";
-    c.textBaseline = "middle";
-    this.ink = { text: colour("text"), faint: colour("faint"), line: colour("line"), accent: colour("accent"), bar: colour("bar") };
-    this.axis(c, w, h);
-    this.divide();
-    this.lanes.forEach((lane, i) => this.drawLane(c, lane, HEAD + i * this.lane, w));
-    this.messages(c);
-    this.curves.forEach((chart, i) => this.chart(c, chart, HEAD + this.lanes.length * this.lane + GAP + i * (this.curve + GAP), w));
-    this.events(c, h);
+    this.drawMoment(cleared(this.above, w, h), h);
+  }
+
+  /**
+   * What is under way, the messages of this very moment, and the cursor.
+   * @param {CanvasRenderingContext2D} c
+   * @param {number} h
+   */
+  drawMoment(c, h) {
+    const { t } = this.clock;
+    c.strokeStyle = this.ink?.text ?? "";
+    c.lineWidth = 1.5;
+    this.lanes.forEach((lane, i) => {
+      for (const bar of lane.bars) {
+        if (bar.start > t || t >= bar.end || bar.kind === "activity") continue;
+        const left = Math.max(this.x(bar.start), LEFT);
+        const width = Math.max(this.x(bar.end) - left, 1.5);
+        if (bar.end > this.from && bar.start < this.to) c.strokeRect(left, HEAD + i * this.lane + 3.5, width, this.lane - 7);
+      }
+    });
+    c.strokeStyle = c.fillStyle = this.ink?.accent ?? "";
+    c.lineWidth = 1;
+    for (const m of this.run.happenings?.messages ?? []) {
+      if (Math.abs(m.t - t) < 1e-6 && m.t >= this.from && m.t <= this.to) this.arrow(c, m, true);
+    }
     this.cursor(c, h);
   }
 
@@ -373,11 +398,6 @@ export class Timeline {
       c.globalAlpha = bar.kind === "activity" ? 0.9 : 1;
       c.fillRect(x, y + 4, Math.max(width - 0.6, 1), LANE - 8);
       c.globalAlpha = 1;
-      if (bar.start <= this.clock.t && this.clock.t < bar.end && bar.kind !== "activity") {
-        c.strokeStyle = this.ink?.text ?? "";
-        c.lineWidth = 1.5;
-        c.strokeRect(x, y + 3.5, width, LANE - 7);
-      }
       const fits = Math.floor((Math.min(width, this.x(this.to) - x) - 6) / 6.2);
       if (fits > 2) {
         c.fillStyle = bar.kind === "activity" ? (this.ink?.text ?? "") : "#fff";
@@ -411,31 +431,35 @@ export class Timeline {
 
   /** @param {CanvasRenderingContext2D} c */
   messages(c) {
-    const LANE = this.lane;
     const messages = this.run.happenings?.messages ?? [];
+    const seen = messages.filter((/** @type {any} */ m) => m.t >= this.from && m.t <= this.to);
+    const isCrowded = seen.length > this.width() / 14;
     c.lineWidth = 1;
-    const seen = messages.filter((/** @type {any} */ m) => m.t >= this.from && m.t <= this.to).length;
-    const isCrowded = seen > this.width() / 14;
-    for (const m of messages) {
-      if (m.t < this.from || m.t > this.to) continue;
-      const x = Math.round(this.x(m.t)) + 0.5;
-      const [a, b] = [m.from, m.to].map((party) => HEAD + party * LANE + LANE / 2);
-      const isNow = Math.abs(m.t - this.clock.t) < 1e-6;
-      const down = b > a ? 1 : -1;
-      c.strokeStyle = c.fillStyle = isNow ? (this.ink?.accent ?? "") : (this.ink?.faint ?? "");
-      c.globalAlpha = isNow ? 1 : isCrowded ? 0.3 : 0.6;
-      c.beginPath();
-      c.moveTo(x, a + down * 7);
-      c.lineTo(x, b - down * 8);
-      c.stroke();
-      if (isCrowded && !isNow) continue;
-      c.beginPath();
-      c.moveTo(x, b - down * 6);
-      c.lineTo(x - 3, b - down * 11);
-      c.lineTo(x + 3, b - down * 11);
-      c.fill();
-    }
+    c.strokeStyle = c.fillStyle = this.ink?.faint ?? "";
+    c.globalAlpha = isCrowded ? 0.3 : 0.6;
+    for (const m of seen) this.arrow(c, m, !isCrowded);
     c.globalAlpha = 1;
+  }
+
+  /**
+   * @param {CanvasRenderingContext2D} c
+   * @param {any} m message
+   * @param {boolean} hasHead
+   */
+  arrow(c, m, hasHead) {
+    const x = Math.round(this.x(m.t)) + 0.5;
+    const [a, b] = [m.from, m.to].map((party) => HEAD + (party + 0.5) * this.lane);
+    const down = b > a ? 1 : -1;
+    c.beginPath();
+    c.moveTo(x, a + down * 7);
+    c.lineTo(x, b - down * 8);
+    c.stroke();
+    if (!hasHead) return;
+    c.beginPath();
+    c.moveTo(x, b - down * 6);
+    c.lineTo(x - 3, b - down * 11);
+    c.lineTo(x + 3, b - down * 11);
+    c.fill();
   }
 
   /**
@@ -483,7 +507,7 @@ export class Timeline {
     c.restore();
     chart.curves.slice(0, 4).forEach((/** @type {any} */ curve, /** @type {number} */ i) => {
       c.fillStyle = CURVES[i % CURVES.length];
-      c.fillText(shorten(curve.of.replace(/^(scene|self)\./, "$1 "), 14), 8, y + 22 + i * 12);
+      c.fillText(shorten(curve.of.replace(/^(scene|self)\./, "$1 "), 14), 8, y + 21 + i * LABEL);
     });
   }
 
@@ -531,4 +555,26 @@ export class Timeline {
       c.fillRect(this.hover.x, HEAD, 1, h);
     }
   }
+}
+
+/**
+ * A canvas of a size in CSS pixels, empty and sharp.
+ * @param {HTMLCanvasElement} canvas
+ * @param {number} w
+ * @param {number} h
+ */
+function cleared(canvas, w, h) {
+  const ratio = Math.min(devicePixelRatio, 2);
+  if (canvas.width !== Math.round(w * ratio) || canvas.height !== Math.round(h * ratio)) {
+    canvas.width = Math.round(w * ratio);
+    canvas.height = Math.round(h * ratio);
+    canvas.style.width = `${w}px`;
+    canvas.style.height = `${h}px`;
+  }
+  const c = /** @type {CanvasRenderingContext2D} */ (canvas.getContext("2d"));
+  c.setTransform(ratio, 0, 0, ratio, 0, 0);
+  c.clearRect(0, 0, w, h);
+  c.font = "12px system-ui, sans-serif";
+  c.textBaseline = "middle";
+  return c;
 }

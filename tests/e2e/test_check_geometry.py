@@ -310,7 +310,7 @@ def test_arms_that_nearly_touch(tmp_path: Path) -> None:
     backend = BulletBackend(arms, looks=False)
     compared = Comparison(arms, planner, Shown(backend))
     one, other = (planner.standing(planner.home(r.name)) for r in arms.robots)
-    apart = compared.two((one, None), (other, None))
+    apart = compared.two((one, ()), (other, ()))
     assert apart.outcome == "clear"
     distance = min(x.distance for x in backend.pairs("robots", "robot1", 5.0, "robot2"))
     backend.close()
@@ -320,6 +320,6 @@ def test_arms_that_nearly_touch(tmp_path: Path) -> None:
         near = replace(arms, robots=(arms.robots[0], replace(arms.robots[1], base=moved)))
         planner, backend = Planner(near), BulletBackend(near, looks=False)
         one, other = (planner.standing(planner.home(r.name)) for r in near.robots)
-        found = Comparison(near, planner, Shown(backend)).two((one, None), (other, None))
+        found = Comparison(near, planner, Shown(backend)).two((one, ()), (other, ()))
         backend.close()
         assert found.outcome == outcome, (more, found)

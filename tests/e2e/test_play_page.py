@@ -11,6 +11,7 @@ import pytest
 
 from helpers import netbuilder
 from helpers.browser import PATIENCE_MS, Page, launched, opened
+from helpers.legible import complaints
 from helpers.monitors import Spec, with_monitors
 from helpers.played import Served, marking, of, served
 from helpers.processes import pn2code
@@ -220,6 +221,14 @@ class TestPlaying:
         browser.page.wait_for_selector("body[data-ready=true]")
         at(browser, 1)
 
+    def test_all_has_names_and_stands_out_by_day_and_night(self, browser: Page) -> None:
+        tabs = browser.page.get_by_role("tab")
+        for _ in range(2):
+            browser.ask("() => play.page.frame.dark()")
+            for name in tabs.all_inner_texts():
+                browser.page.get_by_role("tab", name=name, exact=True).click()
+                assert complaints(browser) == [], name
+
     def test_nothing_else_is_asked_for(self, browser: Page, server: Served) -> None:
         browser.page.keyboard.press("Space")
         at(browser, 1)
@@ -249,6 +258,12 @@ def test_a_timed_net_on_a_phone_in_the_dark(root: Path, chromium: Any, tmp_path:
         assert browser.page.locator(".flight").count() == 0
         browser.page.get_by_role("button", name="More").click()
         assert browser.page.get_by_role("list", name="Enabled transitions").is_visible()
+        browser.ask("""() => void play.page.enabled.list(
+            play.page.net.net.transitions.findIndex((t) => t.sensors?.some((s) => s.variable === "v")))""")
+        sensor = browser.page.get_by_role("group", name="Sensor gauge", exact=True)
+        assert "what the gauge finds of the bond" in sensor.inner_text()
+        sensor.get_by_role("button", name="good").click()
+        assert browser.page.get_by_label("A part of the binding").input_value() == "v = good"
         assert browser.errors == []
 
 

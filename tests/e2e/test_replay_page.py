@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from helpers.browser import Page, launched, opened
+from helpers.legible import complaints
 from helpers.shown import PAIR, described
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.source import read
@@ -179,6 +180,61 @@ class TestRivetingCell:
         place = browser.ask("() => replay.page.course.net.places[replay.page.place].short")
         assert place == shown.result.record.traffic[0][1].channel
 
+    def test_a_place_leads_to_its_message(self, browser: Page, shown: Shown) -> None:
+        found = browser.ask("""() => {
+            const { page } = replay, { messages } = page;
+            page.tab("Messages");
+            replay.seek(50);
+            const sent = messages.messages.filter((m) => m.t <= 50);
+            const other = sent.findLastIndex((m) => m.place !== sent.at(-1).place);
+            page.selectPlace(sent[other].place);
+            return [messages.list.current, other, page.clock.t];
+        }""")
+        assert found[0] == found[1] and found[2] == 50
+
+    def test_the_way_of_an_arm_leads_to_its_moment_and_the_arm_to_what_it_does(
+        self, browser: Page, shown: Shown
+    ) -> None:
+        action = next(a for a in shown.result.record.actions if a.kind == "linear")
+        number = [r.name for r in shown.result.prepared.robot_cell.robots].index(action.robot)
+        where = """([robot, t, kind]) => {
+            replay.seek(t);
+            const { cell } = replay.page, { camera } = cell;
+            camera.updateMatrixWorld();
+            const f = replay.tcp(robot, t);
+            const points = [[f[3], f[7], f[11]]];
+            if (kind === "arm") {
+                const { links } = cell.cell.robots[robot];
+                const box = new THREE.Box3().setFromObject(links.find((l) => l.name.endsWith("link_1")));
+                points[0] = box.getCenter(new THREE.Vector3()).toArray();
+            }
+            const p = new THREE.Vector3().fromArray(points[0]).project(camera);
+            const b = cell.renderer.domElement.getBoundingClientRect();
+            return [b.left + (p.x + 1) * b.width / 2, b.top + (1 - p.y) * b.height / 2];
+        }"""
+        middle = (action.start + action.end) / 2
+        at = browser.ask(where, [number, middle, "way"])
+        browser.ask("() => (replay.page.cell.showPaths(true), replay.seek(0))")
+        browser.page.mouse.click(*at)
+        chosen = browser.ask("""() => {
+            const { clock, transition, course, cell } = replay.page;
+            return [clock.t, course.net.transitions[transition].name, cell.isGoing];
+        }""")
+        tcp = "([robot, t]) => { const f = replay.tcp(robot, t); return [f[3], f[7], f[11]]; }"
+        away = np.subtract(
+            browser.ask(tcp, [number, chosen[0]]), browser.ask(tcp, [number, middle])
+        )
+        assert np.linalg.norm(away) < 0.2, "it is at a moment when the tool was there"
+        browser.ask("() => replay.page.cell.showPaths(false)")
+        at = browser.ask(where, [number, middle, "arm"])
+        browser.page.mouse.click(*at)
+        assert browser.ask("() => replay.page.clock.t") == pytest.approx(middle)
+        selected = browser.ask(
+            "() => replay.page.course.net.transitions[replay.page.transition].name"
+        )
+        assert selected == action.transition
+        browser.ask("() => replay.page.cell.showPaths(true)")
+
     def test_keys_move_the_cursor(self, browser: Page, shown: Shown) -> None:
         browser.page.locator("body").click(position={"x": 200, "y": 12})
         keys = browser.page.keyboard
@@ -240,6 +296,71 @@ class TestRivetingCell:
         }""")
         assert drawn == [True, False, 11, 1, "10.50"]
 
+    def test_without_a_gpu_shapes_are_as_coarse_as_the_picture_while_they_move(
+        self, browser: Page
+    ) -> None:
+        found = browser.ask("""() => {
+            const { page } = replay, { cell } = page;
+            const count = (isGoing) => {
+                cell.isGoing = isGoing;
+                cell.draw(0.75, true);
+                return cell.renderer.info.render.triangles;
+            };
+            const [whole, coarse] = [count(false), count(true)];
+            const size = cell.cell.size;
+            let worst = 0, meshes = 0;
+            cell.cell.scene.traverse((o) => {
+                if (!o.fine) return;
+                meshes++;
+                const { geometry, whole } = o;
+                geometry.computeBoundingBox();
+                whole.computeBoundingBox();
+                const [a, b] = [geometry.boundingBox, whole.boundingBox];
+                for (const end of ["min", "max"]) {
+                    for (const axis of "xyz") {
+                        worst = Math.max(worst, Math.abs(a[end][axis] - b[end][axis]) * o.grows / size);
+                    }
+                }
+                const { array } = geometry.index;
+                for (let i = 0; i < array.length; i += 3) {
+                    if (new Set(array.subarray(i, i + 3)).size < 3) worst = Infinity;
+                }
+            });
+            const again = count(false);
+            return [coarse / whole, worst, meshes > 50, again === whole];
+        }""")
+        share, worst, are_many, is_whole_again = found
+        assert 0.1 < share < 0.7
+        assert worst < 1.0, "no shape has lost more than a cell of the grid"
+        assert are_many and is_whole_again
+
+    def test_what_stays_in_the_time_is_not_drawn_anew(self, browser: Page) -> None:
+        drawn = browser.ask("""() => {
+            const { timeline } = replay.page;
+            let lanes = 0;
+            const own = timeline.drawLane;
+            timeline.drawLane = (...how) => (lanes++, own.apply(timeline, how));
+            const seen = [];
+            const draw = (work) => { lanes = 0; work(); timeline.draw(); seen.push(lanes); };
+            draw(() => (timeline.drawn = ""));
+            draw(() => replay.seek(20));
+            draw(() => timeline.zoom(0.5, 20));
+            draw(() => timeline.whole());
+            draw(() => replay.page.frame.dark());
+            draw(() => replay.page.frame.dark());
+            delete timeline.drawLane;
+            return seen.map((n) => n / timeline.lanes.length);
+        }""")
+        assert drawn == [1, 0, 1, 1, 1, 1]
+
+    def test_all_has_names_and_stands_out_by_day_and_night(self, browser: Page) -> None:
+        browser.ask("() => replay.seek(33.42)")
+        for _ in range(2):
+            browser.ask("() => replay.page.frame.dark()")
+            for name in ("Messages", "Steps", "Code", "Watch", "Run"):
+                browser.page.get_by_role("tab", name=name).click()
+                assert complaints(browser) == [], name
+
     def test_nothing_was_complained_of_or_asked_for(self, browser: Page, shown: Shown) -> None:
         assert browser.errors == []
         own = {
@@ -250,6 +371,29 @@ class TestRivetingCell:
         assert [
             url for url in browser.asked if url not in own and not url.startswith("data:")
         ] == []
+
+
+@pytest.mark.cc
+def test_with_a_gpu_there_are_shadows_and_all_of_the_shapes(shown: Shown, chromium: Any) -> None:
+    with opened(chromium) as browser:
+        browser.page.add_init_script("""
+            for (const kind of [WebGLRenderingContext, WebGL2RenderingContext]) {
+                const own = kind.prototype.getParameter;
+                kind.prototype.getParameter = function (name) {
+                    return name === 0x9246 ? "A GPU" : own.call(this, name);
+                };
+            }
+        """)
+        browser.open(shown.file)
+        browser.wait("replay.page.cell.hasShadows")
+        seen = browser.ask("""() => {
+            const { cell } = replay.page;
+            cell.isGoing = true;
+            cell.draw(cell.ratio, cell.isSparing);
+            return [cell.isSparing, cell.cell.size, cell.renderer.getContext().getContextAttributes().antialias];
+        }""")
+        assert seen == [False, 0, True]
+        assert browser.errors == []
 
 
 HOSTILE = "<img src=x onerror=alert(1)>"
@@ -277,6 +421,36 @@ def test_a_trace_without_arms_on_a_phone_in_the_dark(tmp_path: Path, chromium: A
         assert browser.ask("() => document.querySelectorAll('.flight').length") == 0
         browser.page.get_by_role("button", name="More").click()
         assert browser.page.get_by_role("listbox", name="Steps").is_visible()
+        assert browser.errors == []
+
+
+def test_on_a_phone_what_occurs_can_be_read(shown: Shown, chromium: Any) -> None:
+    text = """() => {
+        const { net } = replay.page, t = net.course.occurred(replay.page.clock.k);
+        const node = net.draw(net.net.instances[net.current].page).elements.get(t.id)[0];
+        const [box, sheet] = [node.getBoundingClientRect(), net.sheet.getBoundingClientRect()];
+        const isSeen = box.left >= sheet.left && box.right <= sheet.right && box.top >= sheet.top;
+        return [net.net.style.size * net.sheet.getScreenCTM().a, isSeen && box.bottom <= sheet.bottom];
+    }"""
+    with opened(chromium, **TURNED) as browser:
+        browser.open(shown.file, "#step=30")
+        for step in (30, 31, 60, 90):
+            browser.ask("k => replay.step(k)", step)
+            size, is_seen = browser.ask(text)
+            assert size > 8 and is_seen, step
+        browser.page.get_by_role("button", name="Fit").click()
+        browser.ask("""() => {
+            const { course, clock, net } = replay.page;
+            let k = clock.k + 1;
+            while (course.occurred(k).instance !== net.current) k++;
+            replay.step(k);
+        }""")
+        assert browser.ask(text)[0] < 5, "whoever wants the whole page keeps it"
+        browser.page.get_by_role("button", name="Follow").click(click_count=2)
+        assert browser.ask(text)[0] > 8
+        browser.page.get_by_role("button", name="More").click()
+        said = browser.page.locator(".panel.messages .said").first
+        assert said.bounding_box()["width"] > 100
         assert browser.errors == []
 
 

@@ -67,10 +67,24 @@ def broken(folder: Path) -> list[str]:
 @pytest.fixture(scope="module")
 def minimal(root: Path, quick_build: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
     out = tmp_path_factory.mktemp("minimal") / "report"
+    options = ("--backend", "fake", "--durations")
     with forks():
-        done = pn2code("report", root / "examples/minimal", "-o", out, "--backend", "fake")
+        done = pn2code("report", root / "examples/minimal", "-o", out, *options)
     assert done.returncode == 0, done.stdout + done.stderr
     return out
+
+
+def test_what_was_measured_in_seconds(minimal: Path) -> None:
+    text = " ".join(first_page(minimal).text_content().split())
+    assert "nobody owes an answer for longer than `reply_timeout_s`" in text
+    assert "cycle to Finished" in text and "worst" in text
+
+
+def test_durations_need_a_cell(tmp_path: Path) -> None:
+    net = tmp_path / "net.cpn"
+    net.write_bytes(cpn("net n\n  standard\n  page Top\n    place A = 1"))
+    done = pn2code("report", net, "-o", tmp_path / "report", "--durations")
+    assert done.returncode == 2 and "only a cell has durations" in done.stderr
 
 
 def test_a_cell_that_is_as_it_should_be(minimal: Path) -> None:

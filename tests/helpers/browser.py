@@ -8,7 +8,7 @@ from __future__ import annotations
 import importlib.util
 import os
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
@@ -22,6 +22,8 @@ ARGUMENTS = (
     "--use-gl=angle",
     "--use-angle=swiftshader",
 )
+PLAIN = ("--no-sandbox", "--enable-unsafe-swiftshader")
+"""Without a GPU, and otherwise as the browser decides: it draws the page itself without SwiftShader then."""
 PATIENCE_MS = 40_000
 
 
@@ -40,13 +42,13 @@ def chromium() -> str:
 
 
 @contextmanager
-def launched() -> Iterator[Any]:
+def launched(arguments: Sequence[str] = ARGUMENTS) -> Iterator[Any]:
     """A browser, for the tests of a module (Playwright allows one at a time in a thread)."""
     program = chromium()
     from playwright.sync_api import sync_playwright
 
     with sync_playwright() as play:
-        browser = play.chromium.launch(executable_path=program, args=list(ARGUMENTS))
+        browser = play.chromium.launch(executable_path=program, args=list(arguments))
         try:
             yield browser
         finally:

@@ -64,6 +64,7 @@ arc = { command = "move_circular", frame = "tool", speed = 0.2, acceleration = 0
 grasp = { command = "move_joint", tcp = "gripper", arm_angle = 20.0 }
 both = { command = "move_external", track = "rail", turntable = "plate", speed = 0.5, acceleration = 0.4 }
 led = { command = "move_linear", frame = "seam", track = "rail", turntable = "plate" }
+shut = { command = "move_external", axis = "door", to = 0.0, speed = 0.5 }
 home = { command = "move_home", speed = 0.5, acceleration = 0.2, depart = 0.05 }
 look = { command = "measure" }
 rest = { command = "wait", duration_s = 3.0 }
@@ -127,6 +128,54 @@ objects = [{ name = "work", size = [0.1, 0.1, 0.1] }]
 [devices.belt]
 instance = "Belt"
 
+[devices.belt.axes.door]
+kind = "slide"
+pose = { x = 3.0, z = 1.0, yaw = 90.0 }
+direction = [0.0, 1.0, 0.0]
+from = -0.1
+to = 0.8
+home = 0.2
+speed = 0.3
+acceleration = 0.9
+jerk = 8.0
+objects = [{ name = "leaf", size = [0.8, 0.02, 0.6] }]
+
+[devices.belt.axes.flap]
+kind = "swing"
+pose = { x = 4.0 }
+from = -10.0
+to = 100.0
+home = 5.0
+speed = 50.0
+acceleration = 110.0
+jerk = 550.0
+objects = [{ name = "plate", kind = "cylinder", radius = 0.1, length = 0.02 }]
+
+[devices.belt.axes.vice]
+kind = "clamp"
+pose = { x = 5.0, z = 0.5 }
+from = 0.01
+to = 0.1
+home = 0.1
+speed = 0.05
+acceleration = 0.5
+jerk = 5.0
+jaw = [0.04, 0.1, 0.05]
+colour = [0.2, 0.2, 0.2]
+holds = "here"
+
+[devices.belt.axes.conveyor]
+kind = "belt"
+pose = { x = 6.0, z = 0.5, yaw = 30.0 }
+length = 1.5
+width = 0.4
+height = 0.2
+speed = 0.25
+acceleration = 0.4
+jerk = 4.0
+colour = [0.1, 0.1, 0.1]
+stop = "here"
+
 [sensors.gauge]
 variable = "v"
 file = "gauge.txt"
@@ -134,6 +183,17 @@ default = 4
 seed = 5
 sees = "here"
 part = "box"
+says = "how thick the part is"
+
+[sensors.shut]
+variable = "w"
+sees = "belt.door"
+at = 0.8
+
+[zones.front]
+pose = { x = 1.0, yaw = 10.0 }
+size = [1.0, 2.0, 2.0]
+max_speed = 0.25
 
 [scene]
 floor = false
@@ -236,9 +296,10 @@ about = "net"
 """)
 
 _NEEDED = {
-    "primitives": ("parts", "places", "frames", "robots"),
-    "sensors": ("parts", "places", "robots"),
-    "report": ("channel", "primitives", "parts", "places", "frames", "robots"),
+    "primitives": ("parts", "places", "frames", "robots", "devices"),
+    "sensors": ("parts", "places", "robots", "devices"),
+    "report": ("channel", "primitives", "parts", "places", "frames", "robots", "devices"),
+    "devices": ("places",),
     "frames": ("robots", "parts"),
     "robots": ("parts",),
     "scene": ("robots", "parts"),
@@ -303,7 +364,7 @@ def read(folder: Path, data: dict[str, Any], section: str) -> tuple[str, Diagnos
     config = load(path, d, layout="near" if section == "layouts" else None)
     if config is None:
         return "", d
-    is_placed = section in (*PLACED, "layouts")
+    is_placed = section in (*PLACED, "devices", "layouts")
     cell = scene.load(config.geometry, folder, config.locator.origin, d) if is_placed else None
     shown = [
         config.layouts,
@@ -311,7 +372,7 @@ def read(folder: Path, data: dict[str, Any], section: str) -> tuple[str, Diagnos
         [(p.name, p.says, p.holds.text, p.expect, p.fair, p.of_net) for p in from_cell(config, d)],
     ]
     if cell is not None:
-        shown += [cell.motion, cell.scene, cell.parts, cell.places, cell.frames]
+        shown += [cell.motion, cell.scene, cell.parts, cell.places, cell.frames, cell.zones]
         shown += [
             (r.name, r.arm.name, r.tool and r.tool.name, r.base, r.home, r.branch, r.turning)
             for r in cell.robots
@@ -320,7 +381,8 @@ def read(folder: Path, data: dict[str, Any], section: str) -> tuple[str, Diagnos
             (name, k.T_flange_tcp.tolist()) for r in cell.robots for name, k in r.tcps.items()
         ]
         shown += [(r.kinematics.arm_angle, r.carries) for r in cell.robots]
-        shown += [a.described() for r in cell.robots for a in r.axes]
+        shown += [a.described() for r in cell.moving for a in r.axes]
+        shown += [(c.axis.name, c.jaws, c.place) for r in cell.devices for c in r.axes.clamps]
     return re.sub(r"Origin\([^()]*\)", "", repr(shown).replace(str(folder), "")), d
 
 

@@ -142,6 +142,7 @@ def main() -> int:
     parser.add_argument(
         "--replay-of", type=Path, metavar="RUN", help="the same, of the folder of a run"
     )
+    parser.add_argument("--minutes", type=int, default=10, help="of playing, for its memory")
     parser.add_argument(
         "--live", type=Path, metavar="CELL", help="only what watchers cost the supervisor of a cell"
     )
@@ -157,7 +158,7 @@ def main() -> int:
     if options.replay or options.replay_of:
         from tools.bench import replay  # needs Playwright
 
-        return replay.measure(options.replay_of, options.repeat)
+        return replay.measure(options.replay_of, options.repeat, options.minutes)
     if options.against:
         return pairs.measure(options.against, options.repeat)
     if options.compile:

@@ -16,7 +16,7 @@ import numpy as np
 from pn2code.geometry.graph import CellGraph
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.commands import Command, ToolAction
-from pn2code.robot.executor import MotionKind, RobotExecutor
+from pn2code.robot.executor import MotionKind, RobotExecutor, turned
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion import MotionFault
 from pn2code.robot.parts import PartFault
@@ -45,9 +45,16 @@ class _Arm:
             return self.executor.q
         return np.asarray(motion.q(motion.began + self.part * motion.duration))
 
-    def begin(self) -> None:
+    def begin(self, parts: PartKeeper) -> None:
         self.part = 0.0
-        self.executor.begin(self.left.pop(0), 0.0)
+        robot = self.executor.robot
+        parts.parts.stand(robot.name, self.executor.q)
+        for plate in turned(robot, self.executor.begin(self.left.pop(0), 0.0)):
+            parts.parts.turn(plate)
+
+    def turning(self) -> frozenset[str]:
+        motion = self.executor.motion
+        return frozenset() if motion is None else turned(self.executor.robot, motion)
 
     def advance(self, most: float, parts: PartKeeper) -> bool:
         """Goes on; whether all of its commands are done."""
@@ -56,9 +63,10 @@ class _Arm:
         if self.part < 1.0 or motion is None:
             return False
         self.executor.finish()
+        parts.parts.stand(self.executor.robot.name, self.executor.q)
         handle(self.executor.robot.name, motion.command, self.executor, parts)
         if self.left:
-            self.begin()
+            self.begin(parts)
             return False
         return True
 
@@ -98,6 +106,9 @@ def _walk(
     state = 0
     pace = {owner: choice.choice([0.02, 0.1, 0.4]) for owner in arms}
     for step in range(steps):
+        parts.parts.turning = frozenset().union(*(a.turning() for a in arms.values()))
+        for arm in arms.values():
+            parts.parts.stand(arm.executor.robot.name, arm.joints())
         busy = {owner: arm for owner, arm in arms.items() if arm.element >= 0}
         free = [
             (element, target)
@@ -110,7 +121,7 @@ def _walk(
             commands = graph.commands(element)
             if owner in arms and commands:
                 arms[owner].element, arms[owner].left = element, list(commands)
-                arms[owner].begin()
+                arms[owner].begin(parts)
             else:
                 for command in commands:  # of a device
                     handle(graph.partition.owners[owner].name, command, None, parts)

@@ -5,8 +5,10 @@
   both or in none, and what is asked about single places, groups and orders has the same answers.
 * *limits*: the states in which tokens are counted up to a limit stand for all markings: whatever occurs, or is held, in
   these does so in those, and what is said of those is true of these.
-* *the checks of the supervisor*: with turns and without, wherever turns say anything; and with limits.
+* *the checks of the supervisor*: with turns and without, wherever turns say anything; and with limits, which tell what
+  is so of random properties as well (`asked`).
 * *the medium*: the same; and what the cell as it runs says of its files (`files`).
+* *the closed net*: what is said of it where its tokens are counted up to a limit (`closed`).
 """
 
 from __future__ import annotations
@@ -19,10 +21,11 @@ from random import Random
 from typing import Any
 
 from tools.adversary.cells import random_cell as adversary_cell
-from tools.reduction_cells import files
+from tools.reduction_cells import asked, closed, files
 from tools.reduction_cells.flows import flow
 from tools.reduction_cells.limited import Limited
 from tools.reduction_cells.mutants import MUTANTS, NO_GROUPS, RASH
+from tools.reduction_cells.shops import shop
 
 from helpers.netbuilder import cpn
 from helpers.random_cells import random_cell
@@ -33,6 +36,7 @@ from pn2code.channel_model import check as medium
 from pn2code.channel_model.rules import Rules
 from pn2code.cli.nets import open_net
 from pn2code.diagnostics import Diagnostics
+from pn2code.properties import meaning as m
 from pn2code.verdict.opened import OpenNet
 from pn2code.verify.controller import by_turns, control
 from pn2code.verify.controller.control_types import Control, Plan
@@ -44,6 +48,7 @@ from pn2code.verify.exploring.programs import Generated, Sizes
 from pn2code.verify.exploring.result import Bounds, Exploration
 from pn2code.verify.exploring.turns import Turns
 
+NONE = m.Properties()
 MOST = 40_000
 """States of a cell; larger ones are left out."""
 
@@ -57,12 +62,14 @@ class Verdict:
     counts: Counter[str]
 
 
-def make(seed: int, folder: Path) -> None:
-    """The files of a cell of one of three families."""
+def make(seed: int, folder: Path, *, is_shop: bool = False) -> None:
+    """The files of a cell: a shop, or one of three families that are wrong more often."""
     r = Random(seed)
     family = r.random()
     inputs: tuple[tuple[str, str], ...] = ()
-    if family < 0.6:
+    if is_shop:
+        net, toml = shop(r)
+    elif family < 0.6:
         net, toml = flow(r, many=family >= 0.5)
     elif family < 0.75:
         net, toml = random_cell(r)
@@ -88,8 +95,13 @@ class _Cell:
             arms=Arms.of(opened.config, Diagnostics()),
         )
 
-    def checked(self, turns_from: int | None, counts_from: int | None = None) -> Control | None:
-        """The checks of the supervisor."""
+    def checked(
+        self,
+        turns_from: int | None,
+        counts_from: int | None = None,
+        properties: m.Properties = NONE,
+    ) -> Control | None:
+        """The checks of the supervisor, and properties."""
         limits = Limits(
             max_states=MOST,
             threads=1,
@@ -97,7 +109,9 @@ class _Cell:
             turns_from=turns_from,
             counts_from=counts_from,
         )
-        return control.examine(self.partition, self.plan, limits, Diagnostics())
+        options = replace(self.plan.options, predicates=properties.predicates)
+        plan = replace(self.plan, properties=properties, options=options)
+        return control.examine(self.partition, plan, limits, Diagnostics())
 
     def medium(self, turns_from: int | None) -> medium.Answer:
         """That of its medium."""
@@ -196,9 +210,11 @@ def _sorted(b: Bounds) -> Bounds:
     )
 
 
-def judge(seed: int, folder: Path, *, mutants: bool, wants_medium: bool) -> Verdict:
+def judge(
+    seed: int, folder: Path, *, mutants: bool, wants_medium: bool, is_shop: bool = False
+) -> Verdict:
     """Makes a cell, and compares."""
-    make(seed, folder)
+    make(seed, folder, is_shop=is_shop)
     d = Diagnostics()
     opened = open_net(folder, {}, warnings=d)
     partition = divide(opened.flat, opened.config, d) if opened.config is not None else None
@@ -242,7 +258,10 @@ def judge(seed: int, folder: Path, *, mutants: bool, wants_medium: bool) -> Verd
             bed = Limited.of(partition, cell.plan)
             wrong += [] if bed is None else bed.judged(whole, counts)
             shown |= set() if bed is None or not mutants else bed.shown(whole)
-    wrong += _of_checks(cell, counts)
+    r = Random(seed)
+    wrong += _of_checks(cell, r, counts)
+    wrong += _of_properties(cell, r, counts, shown if mutants else None)
+    wrong += closed.judged(opened, partition, counts)
     if wants_medium:
         wrong += _of_medium(cell, counts)
         wrong += files.judged(partition, opened.storage, counts, shown if mutants else None)
@@ -261,25 +280,26 @@ def _shown(space: _Space, table: Turns, whole: Exploration, reduced: Exploration
         yield RASH
 
 
-def _of_checks(cell: _Cell, counts: Counter[str]) -> Iterator[str]:
-    counted = cell.checked(MOST, FEW)
-    is_counted = counted is not None and counted.is_counted
-    counts["checks with limits"] += is_counted
+def _of_checks(cell: _Cell, r: Random, counts: Counter[str]) -> Iterator[str]:
+    first = r.choice(FEW)
+    found = cell.checked(MOST, first)
+    counted = found if found is not None and found.is_counted else None
+    counts["checks with limits"] += counted is not None
     reduced = cell.checked(1)
     if reduced is None or not reduced.reduced or reduced.found is None:
         counts["checks of the whole"] += 1
-        if not is_counted:
+        if counted is None:
             return
         reduced = None
     counts["checks in turns"] += reduced is not None
-    whole = cell.checked(None)
+    whole = cell.checked(None) if counted is not None else found
     if whole is None or whole.found is None:
         yield "the whole cannot be checked"
         return
     if not whole.found.complete:
         counts["only in turns"] += 1
         return
-    if counted is not None and is_counted:
+    if counted is not None:
         yield from (f"with limits: {x}" for x in _other_checks(counted, whole, _LIMITED))
         if counted.row()["dead_transitions"] != whole.row()["dead_transitions"]:
             yield "with limits: transitions that never occur"
@@ -288,6 +308,24 @@ def _of_checks(cell: _Cell, counts: Counter[str]) -> Iterator[str]:
     yield from _other_checks(reduced, whole, _SIZES)
     places = len(cell.partition.net.places)
     yield from found_differences(reduced.found, whole.found, places)
+
+
+def _of_properties(
+    cell: _Cell, r: Random, counts: Counter[str], shown: set[str] | None
+) -> Iterator[str]:
+    """`shown` gets the names of wrong versions that are noticed, if they are tried."""
+    properties = asked.properties(r, cell.opened, cell.partition)
+    told = asked.OfStates.of(properties, cell.partition, cell.plan)
+    if told is None:
+        return
+    whole = cell.checked(None, properties=properties)
+    if whole is None or whole.found is None or not whole.found.complete:
+        return
+    yield from told.judged(whole, counts)
+    for name, change in asked.WRONG_PROPERTIES.items() if shown is not None else ():
+        other = asked.OfStates.of(properties, cell.partition, cell.plan, change)
+        if other is not None and any(other.wrong(whole)):
+            shown.add(name)
 
 
 def _other_checks(mine: Control, whole: Control, sizes: tuple[str, ...]) -> Iterator[str]:
@@ -302,10 +340,14 @@ def _other_checks(mine: Control, whole: Control, sizes: tuple[str, ...]) -> Iter
 
 _SIZES = ("non-blocking", "confluence")
 """Checks of which the value is a number of states, or of steps of one run."""
-_LIMITED = (*_SIZES, "bounded-response", "messages", "reach")
-"""The same where a state stands for many markings: there may be more of what is counted."""
-FEW = 40
-"""States before tokens are counted up to a limit."""
+_LIMITED = (*_SIZES, "bounded-response", "messages", "reach", "memory")
+"""The same where a state stands for many markings: there may be more of what is counted.
+
+What memory is needed while questions about orders are answered counts in `memory`, too, and they are not asked then;
+what firings need is compared by `Limited`.
+"""
+FEW = (40, 150, 400)
+"""States before tokens are counted up to a limit: one of these."""
 
 
 def _of_medium(cell: _Cell, counts: Counter[str]) -> Iterator[str]:

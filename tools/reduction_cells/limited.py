@@ -140,6 +140,9 @@ class Limited:
                 yield f"place {p} holds {b.lower} to {b.upper}, not {a.lower} to {a.upper}"
         if whole.dead_count and not found.dead_count:
             yield "there are dead markings"
+        mine, its = found.arena or {}, whole.arena or {}
+        if any(mine.get(part, 0) < size for part, size in its.items()):
+            yield f"firings need memory: {its}, not {mine}"
 
 
 def everyone(table: Turns) -> Turns:

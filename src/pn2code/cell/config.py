@@ -40,10 +40,11 @@ class Primitive:
         acceleration: of moves: percent of the acceleration of the cell; None: all of it.
         approach: of move_linear: mm; the arm comes first, on a joint move, to so far before the pose; 0: it does not.
         depart: of moves but move_circular: mm; the arm goes first straight back by so much; 0: it does not.
-        along: of moves: external axes that move as well, each with whether it is a track; the function takes their
+        along: of moves: external axes that move as well, each with whether it slides; the function takes their
             positions, in mm and degrees, behind the poses.
         tcp: of moves to poses: the tool frame that comes there; "": that of the tool.
         arm_angle: of moves to poses: degrees, where the elbow of an arm with seven axes is then; None: nothing is said.
+        to: of move_external: where its axis goes, mm or degrees; None: the function says it.
     """
 
     function: str
@@ -59,6 +60,7 @@ class Primitive:
     along: tuple[tuple[str, bool], ...] = ()
     tcp: str = ""
     arm_angle: float | None = None
+    to: float | None = None
 
     @property
     def places(self) -> int:
@@ -68,7 +70,7 @@ class Primitive:
     @property
     def takes(self) -> int:
         """How many values the function takes, but for a speed."""
-        return self.places + len(self.along)
+        return self.places + (len(self.along) if self.to is None else 0)
 
     @property
     def is_linear(self) -> bool:
@@ -106,7 +108,9 @@ class SensorConfig:
         default: what it says where there is no such file; None: the file must be there. With neither, it is drawn
             at random.
         seed: of what is drawn at random.
-        sees: the place at which it looks for a part in a run, of the kind `part` ("": any); "": it sees nothing.
+        sees: the place at which it looks for a part in a run, of the kind `part` ("": any), a zone, or an axis of a
+            device, `mill.door`, which it sees `at` (m, degrees); "": it sees nothing.
+        says: what it tells, in plain words.
     """
 
     name: str
@@ -117,6 +121,8 @@ class SensorConfig:
     origin: Origin
     sees: str = ""
     part: str = ""
+    says: str = ""
+    at: float = 0.0
 
 
 @frozen
@@ -220,13 +226,19 @@ class CellConfig:
         frames = self.geometry.get("frames")
         return tuple(frames) if isinstance(frames, dict) else ()
 
-    def external_axes(self, robot: str) -> dict[str, str]:
-        """The kinds of the external axes of a robot, by name; what is wrong in these tables, `robot.scene` reports."""
-        robots = self.geometry.get("robots")
-        table = robots.get(robot) if isinstance(robots, dict) else None
-        axes = table.get("axes") if isinstance(table, dict) else None
-        named = axes.items() if isinstance(axes, dict) else ()
-        return {name: str(x.get("kind", "track")) for name, x in named if isinstance(x, dict)}
+    def external_axes(self, owner: str) -> dict[str, str]:
+        """The kinds of the axes of a device or the external ones of a robot, by name.
+
+        What is wrong in these tables, `robot.scene` reports.
+        """
+        out: dict[str, str] = {}
+        for section, default in (("robots", "track"), ("devices", "slide")):
+            tables = self.geometry.get(section)
+            table = tables.get(owner) if isinstance(tables, dict) else None
+            axes = table.get("axes") if isinstance(table, dict) else None
+            named = axes.items() if isinstance(axes, dict) else ()
+            out |= {name: str(x.get("kind", default)) for name, x in named if isinstance(x, dict)}
+        return out
 
     def tcps(self, robot: str) -> tuple[str, ...]:
         """The names of the further tool frames of a robot."""
@@ -273,7 +285,7 @@ class CellConfig:
         }
         logic["robots"] = robots
         if self.devices:
-            logic["devices"] = self.raw["devices"]
+            logic["devices"] = {d.name: {"instance": d.instance} for d in self.devices}
         if self.sensors:
             logic["sensors"] = {s.name: s.variable for s in self.sensors}
         text = json.dumps(logic, sort_keys=True)

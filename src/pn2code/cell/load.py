@@ -50,6 +50,9 @@ from pn2code.diagnostics import Diagnostics, Origin, PlacedText
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot.commands import EFFECTS, Effect, Handling
 
+AlongAxes = tuple[tuple[str, bool], ...]
+"""External axes of a move, each with whether it slides."""
+
 
 def load(path: Path, d: Diagnostics, *, layout: str | None = None) -> CellConfig | None:
     """Reads `cell.toml` (or the one in a folder), applies a layout (default: the first one, if any).
@@ -113,6 +116,11 @@ def _config(
                 if isinstance(table, dict)
             },
             **{key: merged.get(key, {}) for key in PLACED if key != "robots"},
+            "devices": {
+                name: {"axes": table["axes"]}
+                for name, table in _table(data.get("devices")).items()
+                if isinstance(table, dict) and "axes" in table
+            },
             "primitives": _table(data.get("primitives")),
         },
         layouts={
@@ -362,6 +370,7 @@ def _primitives(r: Tables, data: dict[str, Any]) -> dict[str, Primitive]:
         action = r.get(table, at, PRIMITIVE["action"], "") if tool else ""
         if tool and not action and "action" in table:
             r.d.error(codes.CELL_VALUE, "`action` is empty", r.at(*at, "action"))
+        along = tuple(_along(r, data, table, at, command))
         timed = PRIMITIVE.key("duration_s", command) if "duration_s" in own else None
         out[name] = Primitive(
             name,
@@ -374,11 +383,12 @@ def _primitives(r: Tables, data: dict[str, Any]) -> dict[str, Primitive]:
             _scaled(r, table, at, command, "acceleration", 100.0),
             _scaled(r, table, at, command, "approach", 1000.0) or 0.0,
             _scaled(r, table, at, command, "depart", 1000.0) or 0.0,
-            tuple(_along(r, data, table, at, command)),
+            along,
             _tcp(r, data, table, at) if "tcp" in own else "",
             r.number(table, at, PRIMITIVE["arm_angle"])
             if "arm_angle" in own and "arm_angle" in table
             else None,
+            _fixed(r, data, table, at, along) if "to" in own else None,
         )
         _check_approach(r, out[name], at)
     return out
@@ -429,12 +439,13 @@ def _along(
     r: Tables, data: dict[str, Any], table: dict[str, Any], at: KeyPath, command: str
 ) -> Iterator[tuple[str, bool]]:
     """External axes that move as well, each of the kind that its key says, of some robot."""
-    if command == "move_external" and not ({"track", "turntable"} & table.keys()):
+    if command == "move_external" and not ({"track", "turntable", "axis"} & table.keys()):
         r.d.error(
             codes.CELL_KEY,
             f"`primitives.{at[1]}` names no external axis",
             r.at(*at),
-            hint='add `track = "..."` or `turntable = "..."`, the name of an axis of `[robots.NAME.axes]`',
+            hint='add `track = "..."` or `turntable = "..."`, the name of an axis of `[robots.NAME.axes]`, or `axis = '
+            '"..."`, also of `[devices.NAME.axes]`',
         )
     for kind in ("track", "turntable"):
         if kind not in table or kind not in PRIMITIVE.names(command):
@@ -456,6 +467,75 @@ def _along(
                 or f"add a table `[robots.NAME.axes.{name}]` (docs/robots.md)",
             )
         yield name, kind == "track"
+    if command == "move_external" and "axis" in table:
+        name = r.get(table, at, PRIMITIVE["axis"], "")
+        kinds = [(axis, x) for owner in axes_of_all(data).values() for axis, x in owner.items()]
+        sliding = {x not in TURNING for axis, x in kinds if axis == name}
+        if name and not sliding:
+            r.d.error(
+                codes.CELL_VALUE,
+                f"no robot or device has an axis `{name}`",
+                r.at(*at, "axis"),
+                hint=did_you_mean(name, [axis for axis, _ in kinds], "")
+                or f"add a table `[devices.NAME.axes.{name}]` (docs/robots.md)",
+            )
+        elif len(sliding) > 1:
+            r.d.error(
+                codes.CELL_VALUE,
+                f"one axis `{name}` slides and another one turns, so that its position is mm and degrees",
+                r.at(*at, "axis"),
+                hint="give one of them another name",
+            )
+        yield name, sliding != {False}
+
+
+TURNING = ("turntable", "swing")
+"""Kinds of axes that turn; all others slide."""
+
+
+def axes_of_all(data: dict[str, Any]) -> dict[str, dict[str, str]]:
+    """Of each robot and device its external axes, each with its kind; what is wrong with them is reported elsewhere."""
+    out: dict[str, dict[str, str]] = {}
+    for section, default in (("robots", "track"), ("devices", "slide")):
+        for owner, table in _table(data.get(section)).items():
+            axes = _table(_table(table).get("axes"))
+            out[owner] = {a: str(_table(x).get("kind", default)) for a, x in axes.items()}
+    return out
+
+
+def _fixed(
+    r: Tables, data: dict[str, Any], table: dict[str, Any], at: KeyPath, along: AlongAxes
+) -> float | None:
+    """Where the only axis of a move goes that the function does not say, in mm or degrees."""
+    if "to" not in table:
+        return None
+    to = r.number(table, at, PRIMITIVE["to"], 0.0)
+    if len(along) != 1:
+        r.d.error(
+            codes.CELL_VALUE,
+            f"`to` is where one axis goes, and there are {len(along)}",
+            r.at(*at, "to"),
+            hint="make an entry for each of them, or let the function take the positions",
+        )
+        return None
+    axis, slides = along[0]
+    for section in ("robots", "devices"):
+        for table_ in _table(data.get(section)).values():
+            own = _table(_table(_table(table_).get("axes")).get(axis))
+            said = {"from": 0.0, "to": own.get("length")} if own.get("kind") == "belt" else own
+            ends = [x for key in ("from", "to") if isinstance(x := said.get(key), int | float)]
+            if len(ends) < 2:
+                continue  # that is reported elsewhere
+            low, high = ends
+            if not low <= to <= high:
+                r.d.error(
+                    codes.CELL_VALUE,
+                    f"`to` is {to:g}, but axis `{axis}` goes from {low:g} to {high:g}",
+                    r.at(*at, "to"),
+                    hint="a position in m, or in degrees of what turns",
+                )
+                return None
+    return to * 1000.0 if slides else to
 
 
 def _scaled(
@@ -611,15 +691,57 @@ def _sensors(r: Tables, data: dict[str, Any]) -> Iterable[SensorConfig]:
             )
             default = None
         seed = r.get(table, at, SENSOR["seed"])
-        sees, part = _seen(r, data, table, at)
-        yield SensorConfig(name, variable, file, default, seed, r.at(*at), sees, part)
+        sees, part, where = _seen(r, data, table, at)
+        says = r.get(table, at, SENSOR["says"])
+        yield SensorConfig(name, variable, file, default, seed, r.at(*at), sees, part, says, where)
 
 
-def _seen(r: Tables, data: dict[str, Any], table: dict[str, Any], at: KeyPath) -> tuple[str, str]:
-    """The place at which a sensor looks, and for which kind of parts."""
+def _seen(
+    r: Tables, data: dict[str, Any], table: dict[str, Any], at: KeyPath
+) -> tuple[str, str, float]:
+    """The place, zone or axis at which a sensor looks; for which kind of parts; at which position of the axis."""
     sees, part = (r.get(table, at, SENSOR[key], "") for key in ("sees", "part"))
-    for name, key, section in ((sees, "sees", "places"), (part, "part", "parts")):
-        _expect_named(r, data, name, (*at, key), section)
+    where = r.number(table, at, SENSOR["at"], 0.0) if "at" in table else 0.0
+    _expect_named(r, data, part, (*at, "part"), "parts")
+    device, dot, axis = sees.partition(".")
+    # How far a belt has run says nothing of where it is.
+    is_axis = bool(dot) and axes_of_all(data).get(device, {}).get(axis, "belt") != "belt"
+    zones = _table(_layered(data, "zones"))
+    if dot and not is_axis:
+        known = [f"{x}.{a}" for x in _table(data.get("devices")) for a in axes_of_all(data)[x]]
+        r.d.error(
+            codes.CELL_VALUE,
+            f"`sees` names `{sees}`, but no device has such an axis",
+            r.at(*at, "sees"),
+            hint=did_you_mean(sees, known) or "give DEVICE.AXIS, of `[devices.DEVICE.axes.AXIS]`",
+        )
+    elif not dot and sees not in zones:
+        _expect_named(r, data, sees, (*at, "sees"), "places")
+    elif sees in zones and sees in _table(_layered(data, "places")):
+        r.d.error(
+            codes.CELL_VALUE,
+            f"`sees` names `{sees}`, which is a place and a zone",
+            r.at(*at, "sees"),
+            hint="give one of them another name",
+        )
+    if is_axis is not ("at" in table) and not (dot and not is_axis):
+        r.d.error(
+            codes.CELL_KEY,
+            f"`sees` names axis `{sees}`, but not at which position it is seen"
+            if is_axis
+            else "`at` says where an axis is seen, but `sees` names none",
+            r.at(*at),
+            hint="add `at`, in m, or in degrees of what turns"
+            if is_axis
+            else "remove `at`, or let `sees` name an axis, DEVICE.AXIS",
+        )
+    if part and (is_axis or sees in zones):
+        r.d.error(
+            codes.CELL_KEY,
+            f"`part` says which kind of parts the sensor sees, but `{sees}` is no place",
+            r.at(*at, "part"),
+            hint="remove it",
+        )
     if part and not sees:
         r.d.error(
             codes.CELL_KEY,
@@ -627,7 +749,15 @@ def _seen(r: Tables, data: dict[str, Any], table: dict[str, Any], at: KeyPath) -
             r.at(*at, "part"),
             hint="add `sees` with the name of a place",
         )
-    return sees, part
+    return sees, part, where
+
+
+def _layered(data: dict[str, Any], section: str) -> dict[str, Any]:
+    """The tables of a section, in the cell and in its layouts."""
+    out = dict(_table(data.get(section)))
+    for layout in _table(data.get("layouts")).values():
+        out |= _table(_table(layout).get(section))
+    return out
 
 
 def _report(r: Tables, data: dict[str, Any], config: CellConfig) -> ReportConfig:

@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 from pn2code.cell import codes
 from pn2code.cell.axes_types import is_axes
 from pn2code.cell.config import GOING, CellConfig, CommandName, Primitive
-from pn2code.cell.partition import Owner, Partition
+from pn2code.cell.partition import Owner, OwnerKind, Partition
 from pn2code.cell.pose_types import is_pose, pose_types
 from pn2code.cell.reach import Reach, bound
 from pn2code.diagnostics import Diagnostics, Span
@@ -272,15 +272,18 @@ class _Checker:
     ) -> None:
         """External axes, and frames that turn with one, are those of the robot that is told."""
         own = self.config.external_axes(owner.name)
-        for axis, is_track in primitive.along:
-            kind = "track" if is_track else "turntable"
-            if own.get(axis) != kind:
+        section = "devices" if owner.kind is OwnerKind.DEVICE else "robots"
+        for axis, slides in primitive.along:
+            if axis not in own or (own[axis] not in ("turntable", "swing")) is not slides:
+                kind = "track" if slides else "turntable"
+                if owner.kind is OwnerKind.DEVICE:
+                    kind = "axis"
                 self.d.error(
                     codes.PRIMITIVE_AXIS,
                     f"`{symbol.name}` moves {kind} `{axis}`, which {owner.phrase} does not have",
                     code.action.span,
                     notes=[f"it is called in the code segment of transition `{t.short}`"],
-                    hint=f"add `[robots.{owner.name}.axes.{axis}]` to {self.config.path.name}, or name another axis "
+                    hint=f"add `[{section}.{owner.name}.axes.{axis}]` to {self.config.path.name}, or name another axis "
                     f"in `primitives.{symbol.name}`",
                 )
         if primitive.tcp and primitive.tcp not in self.config.tcps(owner.name):
@@ -457,6 +460,8 @@ def _taking(primitive: Primitive) -> str:
     """The type of the function of an entry."""
     text = _TAKES[primitive.command]
     count = len(primitive.along)
+    if primitive.to is not None:
+        return "unit -> unit"
     if not count:
         return text
     places = {"move_axes": ["AXES"], "move_external": [], "move_circular": ["POSE", "POSE"]}
@@ -474,7 +479,7 @@ def _parts(t: Type, primitive: Primitive) -> list[Type] | None:
 
 def moves_at_speed(t: Type, primitive: Primitive) -> bool:
     """Whether a function takes a speed beside where to go: mm/s of the TCP, or percent of the speeds of the axes."""
-    if not isinstance(t, TFun) or primitive.command not in GOING:
+    if not isinstance(t, TFun) or primitive.command not in GOING or primitive.to is not None:
         return False
     parts = _parts(t.argument, primitive)
     return parts is not None and len(parts) > primitive.takes and _goes(parts, primitive)
@@ -498,6 +503,8 @@ def _fits(t: Type, primitive: Primitive) -> bool:
         return False
     takes, gives = t.argument, t.result
     match primitive.command:
+        case "move_external" if primitive.to is not None:
+            return (takes == UNIT or isinstance(takes, TVar)) and gives == UNIT
         case "move_joint" | "move_linear" | "move_axes" | "move_circular" | "move_external":
             parts = _parts(takes, primitive)
             return parts is not None and _goes(parts, primitive) and gives == UNIT

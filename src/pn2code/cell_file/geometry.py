@@ -18,7 +18,7 @@ POSE = Section(
         )
     )
 )
-_POSE = "a table { x, y, z, roll, pitch, yaw }: m, degrees"
+POSE_WORDS = "a table { x, y, z, roll, pitch, yaw }: m, degrees"
 FRAME = Section(
     (
         *POSE,
@@ -307,39 +307,50 @@ PANEL = Section(
 OBJECT = Section(
     (
         Key("name", "text", "How it is called, once in a scene.", "a name", required=True),
-        Key("pose", "table", "Where it is in the world.", _POSE, inner=POSE),
+        Key("pose", "table", "Where it is in the world.", POSE_WORDS, inner=POSE),
         *_shape(),
     ),
     by="kind",
 )
 
 
-def _travel(
+def travel(
+    only: tuple[str, ...],
+    unit: str,
+    pace: tuple[float, float, float],
+    between: tuple[tuple[float, float], ...],
+    means: str = "Its {} position.",
+) -> tuple[Key, ...]:
+    """How far an external axis goes, and how fast; `between`: the least and greatest of each of these."""
+    return (
+        Key("from", "number", means.format("least"), required=True, unit=unit, only=only),
+        Key("to", "number", means.format("greatest"), required=True, unit=unit, only=only),
+        Key("home", "number", "Where it is when a run begins.", default=0.0, unit=unit, only=only),
+        *pace_of(only, unit, pace, between),
+    )
+
+
+def pace_of(
     only: tuple[str, ...],
     unit: str,
     pace: tuple[float, float, float],
     between: tuple[tuple[float, float], ...],
 ) -> tuple[Key, ...]:
-    """How far an external axis goes, and how fast; `between`: the least and greatest of each of these."""
+    """How fast it is."""
     words = ("speed", "acceleration", "jerk")
     units = (f"{unit}/s", f"{unit}/s\u00b2", f"{unit}/s\u00b3")
-    return (
-        Key("from", "number", "Its least position.", required=True, unit=unit, only=only),
-        Key("to", "number", "Its greatest position.", required=True, unit=unit, only=only),
-        Key("home", "number", "Where it is when a run begins.", default=0.0, unit=unit, only=only),
-        *(
-            Key(
-                word,
-                "number",
-                f"Its greatest {word}.",
-                default=value,
-                unit=own,
-                low=least,
-                high=most,
-                only=only,
-            )
-            for word, value, own, (least, most) in zip(words, pace, units, between, strict=True)
-        ),
+    return tuple(
+        Key(
+            word,
+            "number",
+            f"Its greatest {word}.",
+            default=value,
+            unit=own,
+            low=least,
+            high=most,
+            only=only,
+        )
+        for word, value, own, (least, most) in zip(words, pace, units, between, strict=True)
     )
 
 
@@ -362,17 +373,17 @@ AXIS = Section(
             counts=(3,),
             only=("track",),
         ),
-        *_travel(("track",), "m", (0.5, 1.0, 10.0), ((1e-5, 100.0), (1e-4, 1e4), (1e-4, 1e6))),
+        *travel(("track",), "m", (0.5, 1.0, 10.0), ((1e-5, 100.0), (1e-4, 1e4), (1e-4, 1e6))),
         Key(
             "pose",
             "table",
             "The middle of its plate in the world; it turns about z.",
-            _POSE,
+            POSE_WORDS,
             required=True,
             inner=POSE,
             only=("turntable",),
         ),
-        *_travel(
+        *travel(
             ("turntable",), _DEGREES, (60.0, 120.0, 600.0), ((1e-3, 1e4), (0.1, 1e6), (0.1, 1e8))
         ),
         Key(
@@ -404,6 +415,31 @@ AXIS = Section(
         ),
     ),
     by="kind",
+)
+ZONE = Section(
+    (
+        Key("pose", "table", "The middle of the box in the world.", POSE_WORDS, inner=POSE),
+        Key(
+            "size",
+            "numbers",
+            "Full lengths of the box.",
+            "three numbers: full lengths, m",
+            required=True,
+            unit="m",
+            counts=(3,),
+            low=0.0,
+            above=True,
+        ),
+        Key(
+            "max_speed",
+            "number",
+            "Where people may be: no point of what moves may be faster in it; without it, as fast as may be.",
+            "a number",
+            unit="m/s",
+            low=1e-4,
+            high=100.0,
+        ),
+    )
 )
 _SIGNS = ("plus", "minus")
 BRANCHES = (
@@ -439,7 +475,7 @@ ROBOT = Section(
             "base",
             "table",
             "Where its base is in the world. A run needs it.",
-            _POSE,
+            POSE_WORDS,
             required="together",
             inner=POSE,
         ),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Literal, get_args
 
+from pn2code.cell_file.devices import DEVICE_AXIS
 from pn2code.cell_file.keys import Key, Section
 
 NET = Section(
@@ -229,6 +230,21 @@ PRIMITIVE = Section(
             only=WITH_AXES,
         ),
         Key(
+            "axis",
+            "text",
+            "An axis of the robot or device that moves: the function takes its position, in mm, or degrees of what "
+            "turns.",
+            "the name of an axis of a robot or device",
+            only=("move_external",),
+        ),
+        Key(
+            "to",
+            "number",
+            "Where the only axis that is named goes, m, or degrees of what turns; then the function takes nothing.",
+            "a number",
+            only=("move_external",),
+        ),
+        Key(
             "approach",
             "number",
             "The arm comes on a joint move to so far before the pose, against the z of the tool, and goes on from "
@@ -291,10 +307,19 @@ DEVICE = Section(
             "instance",
             "text",
             "The substitution transition whose page instance is the program of this device: a conveyor, a gauge, an "
-            "operator's panel. It has a script like a robot, but no arm: it waits, acts (`tool`), reads and writes "
-            "messages.",
+            "operator's panel. It has a script like a robot, but no arm: it waits, acts (`tool`), moves its own axes, "
+            "reads and writes messages.",
             "a substitution transition",
             required=True,
+        ),
+        Key(
+            "axes",
+            "named",
+            "What moves of it, by its name, as of a robot: a door, a clamp "
+            "([robots.md](robots.md#devices-that-move)).",
+            inner=DEVICE_AXIS,
+            entry="NAME",
+            is_word=True,
         ),
     )
 )
@@ -323,15 +348,29 @@ SENSOR = Section(
         Key(
             "sees",
             "text",
-            "A name of `[places]`: in a run the sensor, of a truth value, says whether a part stands there at the time "
-            "it is asked. See *Sensors that see the scene*.",
-            "the name of a place",
+            "In a run the sensor, of a truth value, says at the time it is asked: of a name of `[places]`, whether a "
+            "part stands there; of one of `[zones]`, whether an arm is in it; of `DEVICE.AXIS`, whether the axis is at "
+            "`at`. See *Sensors that see the scene*.",
+            "the name of a place, a zone or an axis",
         ),
         Key(
             "part",
             "text",
             "with `sees`: Only a part of this kind, a name of `[parts]`, is seen; without it, any part.",
             "the name of a kind of parts",
+        ),
+        Key(
+            "at",
+            "number",
+            "with `sees` of an axis: Where that is seen, to 1 mm or 0.1 degrees; m, or degrees of what turns.",
+            "a number",
+        ),
+        Key(
+            "says",
+            "text",
+            "What it tells, in plain words: pages show them where a person may choose it.",
+            "a text",
+            default="",
         ),
     )
 )

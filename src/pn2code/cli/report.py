@@ -68,6 +68,13 @@ def report(
     max_seconds: Annotated[
         float | None, seconds_option("Stop verification after S seconds.")
     ] = None,
+    durations: Annotated[
+        bool,
+        typer.Option(
+            "--durations",
+            help="Measure how long commands take, as `verify --durations` does, for properties in seconds.",
+        ),
+    ] = False,
     inputs: InputOption = None,
     settings: SetOption = [],  # noqa: B006 - typer reads the default only
     form: FormatOption = Format.FULL,
@@ -91,6 +98,8 @@ def report(
         stop(d, form)
     path, config = found
     console = Console(highlight=False)
+    if durations and config is None:
+        _refuse(f"only a cell has durations, and there is no cell.toml beside `{net}`")
     if config is not None and config.folder.resolve().is_relative_to(out.resolve()):
         _refuse(f"the cell is in `{out}`: give another folder with -o")
     _prepare(out)
@@ -102,6 +111,7 @@ def report(
         values=settings,
         inputs=None if inputs is None else _seen_from(out, inputs),
         max_seconds=max_seconds,
+        durations=durations,
     )
 
     def told(step: Step, done: Done | None) -> None:

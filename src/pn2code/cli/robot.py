@@ -202,7 +202,7 @@ def _in_cell(
     sensors = load_sensors(config, partition.net, (config.folder,), None, d)
     if sensors is None:
         return None
-    if name in {r.name for r in config.devices}:
+    if name not in {r.name for r in loaded.moving}:
         return specs_of(partition), DeviceExecutor(name), sensors
     return (
         specs_of(partition),

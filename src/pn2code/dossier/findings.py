@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,7 @@ Json = Mapping[str, Any]
 YES, NO, OPEN = "yes", "no", "not known"
 NOTED = "noted"
 """A figure or a warning, which is nothing that was asked."""
+_IN_SECONDS = re.compile(r"\bwithin\s+[0-9.]+\s+(?:seconds?|time)\s*$")
 _MOST = 2_000
 """Characters of a message that are shown."""
 
@@ -143,12 +145,16 @@ def _geometry(said: Json) -> tuple[str, list[Finding]]:
 
 
 def _verified(said: Json) -> tuple[str, list[Finding]]:
+    durations = said.get("durations")
     found = [
-        _answer(p.get("name") or p["holds"], p, p["says"] or p["holds"])
+        _answer(
+            p.get("name") or p["holds"], p, f"{p['says'] or p['holds']}{_longest(p, durations)}"
+        )
         for p in said.get("properties", ())
     ]
     found += [_answer(c["check"], c, c["says"]) for c in said.get("controller") or ()]
     found += [_answer(m["check"], m, m["says"]) for m in said.get("medium") or ()]
+    found += _cycles(durations) if durations else []
     whole = "all" if said["complete"] else f"a part ({said['why']}): {said['nodes']:,} of its"
     nodes = f" {said['nodes']:,}" if said["complete"] else ""
     says = f"The net was seen in {whole}{nodes} markings, with {said['arcs']:,} steps between them."
@@ -157,6 +163,38 @@ def _verified(said: Json) -> tuple[str, list[Finding]]:
         part = "" if cell["complete"] else ", not to the end"
         says += f" The cell as its programs run has {cell['states']:,} states{part}."
     return says, found
+
+
+def _longest(row: Json, durations: Json | None) -> str:
+    """How long the longest wait of a property in seconds is, as a clause."""
+    if not durations or row.get("value") is None or not _IN_SECONDS.search(row["holds"]):
+        return ""
+    return f": {row['value']:g} s at most" if row["answer"] == "yes" else f": {row['value']:g} s"
+
+
+def _cycles(durations: Json) -> list[Finding]:
+    """The best and the worst time of each way to end, in each layout."""
+    if durations["why"]:
+        return [Finding("durations", OPEN, durations["why"])]
+    rows = []
+    for layout in durations["layouts"]:
+        where = f"layout {layout['layout']}: " if layout["layout"] else ""
+        cycle = layout["cycle"]
+        if cycle["why"]:
+            rows.append(Finding(f"{where}cycle", NOTED, f"not known: {cycle['why']}"))
+        for ending in cycle["endings"]:
+            best, worst = (
+                "not known" if ending[k] is None else f"{ending[k]:g} s"
+                for k in ("least_s", "most_s")
+            )
+            if ending["most_s"] is None and cycle["repeats"]:
+                worst = "no upper bound"
+            late = "; if no answer were too late" if cycle["late"] else ""
+            places = ", ".join(x.rpartition(".")[2] for x in ending["final"])
+            rows.append(
+                Finding(f"{where}cycle to {places}", NOTED, f"best {best}, worst {worst}{late}")
+            )
+    return rows
 
 
 def _answer(about: str, row: Json, says: str) -> Finding:

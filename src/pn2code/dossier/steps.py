@@ -80,6 +80,7 @@ def steps(
     values: Sequence[str] = (),
     inputs: str | None = None,
     max_seconds: float | None = None,
+    durations: bool = False,
 ) -> tuple[Step, ...]:
     """The commands for a cell, in their order.
 
@@ -90,12 +91,13 @@ def steps(
         geometry: layouts whose moves are looked at; "" is all of them at once; none: the cell has no arms.
         values: `NAME=VALUE` of `--set`.
         inputs: of `--input`, as seen from there.
-        max_seconds: of `verify`.
+        max_seconds: of `verify`; durations: whether it measures how long commands take.
     """
     subject = [cell]
     common = [x for value in values for x in ("--set", value)]
     given = ["--input", inputs] if inputs is not None else []
     limit = ["--max-seconds", f"{max_seconds:g}"] if max_seconds is not None else []
+    timed = ["--durations"] if durations else []
     net = [*subject, *common]
     begun = [*net, *given]
     check = Step("The model", "check", (*begun, "--json"), "check.json")
@@ -115,7 +117,7 @@ def steps(
         Step(
             "Verification",
             "verify",
-            (*begun, *limit, *traces, "--json"),
+            (*begun, *limit, *timed, *traces, "--json"),
             "verification.json",
             ("verification.html", "traces"),
             needs,

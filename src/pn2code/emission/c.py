@@ -138,6 +138,7 @@ class _Emitter(Transitions):
         early = f"s_early_{member}"
         return {
             "mark": self._block(p.name, "place", p.origin),
+            "index": p.index,
             "name": p.name,
             "is_only_counted": p.is_only_counted,
             "member": member,
@@ -146,6 +147,7 @@ class _Emitter(Transitions):
             "origin": p.origin.describe(),
             "type": self._types.name(p.type),
             "packed": p.packed,
+            "kind": self._kind(p),
             "is_whole": not p.packed or not self._numbers.members(p.table),
             "number_of": self._numbers.number_of(p.table) if p.packed else "",
             "early": c_rows.early(early, p, self._net.real_time) if p.early else [],
@@ -172,6 +174,19 @@ class _Emitter(Transitions):
             "initial": s.lines,
             "initial_text": comment_lines(p.initial_text),
         }
+
+    def _kind(self, p: ir.Place) -> str:
+        """The stem of the functions that a packed place has with others; "": it has its own."""
+        packed = self._packed[p.index]
+        return packed.kind if packed else ""
+
+    def _first_of_kinds(self) -> frozenset[int]:
+        """The places at which functions are printed that places share."""
+        first: dict[str, int] = {}
+        for p in self._net.places:
+            if self._kind(p) and not p.is_only_counted:
+                first.setdefault(self._kind(p), p.index)
+        return frozenset(first.values())
 
     def _where_kept(self, p: ir.Place, member: str) -> str:
         """The macro for the offsets of what holds the tokens of a place; "": it is packed."""
@@ -226,6 +241,7 @@ class _Emitter(Transitions):
             ],
             "recursive_tables": [self._names.table(k) for k in recursive],
             "tables": [tables.print(k) for k in keys],
+            "first_of_kinds": self._first_of_kinds(),
             "places": [self._place(p) for p in net.places],
             "holders": list(
                 {self._kept[p.index]: self._holder(p) for p in net.places if not p.packed}.values()

@@ -24,11 +24,13 @@ class PackedPlace:
         colours: how many.
         colour_of: the function that makes a colour of its number.
         is_pure: always the same values are in the colour set.
+        kind: stem of the functions of all places that are alike, which are given its table; "": it has its own.
     """
 
     colours: int
     colour_of: str
     is_pure: bool
+    kind: str = ""
 
 
 class Expressions:
@@ -206,12 +208,16 @@ class Expressions:
 
     def call(self, place: int, verb: str, *operands: str) -> str:
         """A call of a function of an untimed place that is an array or packed."""
-        if self.packed and self.packed[place]:
-            name, first = self.place_names[place], ["m"]
+        packed = self.packed[place] if self.packed else None
+        if packed and packed.kind:
+            name, first = packed.kind, [self.multisets[place]]
+            first += ["m"] if verb != "check" else []
+        elif packed:
+            name, first = self.place_names[place], ["m"] if verb != "check" else []
         else:
             name, first = self.kept[place], [self.holders[place]]
             first += [self.multisets[place]] if verb == "add" else []
-        context = ["cx"] if verb.startswith("add") else []
+        context = ["cx"] if verb.startswith(("add", "check")) else []
         return f"{name}_{verb}({', '.join([*context, *first, *operands])})"
 
     def token(self, place: int, index: ir.Local) -> str:

@@ -358,7 +358,7 @@ class DirectFiring(NetStatements):
         """Of no tokens at all (``0`v``) the value may be any."""
         packed = self._packed(s.place)
         if packed and packed.is_pure:
-            check = f"{self._x.place_names[s.place]}_check(cx, {value});"
+            check = f"{self._x.call(s.place, 'check', value)};"
         else:
             check = f"pn_multiset_check(cx, {self.multisets[s.place]}, {value});"
         if is_count(s.count):

@@ -12,6 +12,7 @@ from pn2code.emission.names import Names, Scope
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import NetIR
 from pn2code.lowering.nets.packing import KEY_BITS, key_bits
+from pn2code.lowering.passes.alike import has_places_by_table
 
 _MOST_INLINED = 150
 """Transitions of a net for which the compiler is told to put searches where they are called."""
@@ -43,7 +44,11 @@ class Frame:
         self._needs_context = frozenset(f.key for f in net.functions if f.needs_context)
         self._orders = c_orders.Orders(self._types, self._names, self._descriptors)
         self._numbers = c_packed.Numbers(self._types, self._names, self._descriptors)
-        self._packed = self._numbers.of_places(net.places, lambda key: self._functions[key].is_pure)
+        self._packed = self._numbers.of_places(
+            net.places,
+            lambda key: self._functions[key].is_pure,
+            by_table=has_places_by_table(net),
+        )
         self._has_inlined = net.has_successors and len(net.transitions) <= _MOST_INLINED
         self._has_words = (
             self._has_inlined

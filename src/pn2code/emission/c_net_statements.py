@@ -133,7 +133,7 @@ class NetStatements(Statements):
                         f"if (pn_multiset_available({self.multisets[place]}, m, cx->now) > 0U) {{"
                     )
                 elif self._packed(place):
-                    self.line(f"if (!{self._x.place_names[place]}_is_empty(m)) {{")
+                    self.line(f"if (!{self._x.call(place, 'is_empty')}) {{")
                 elif place in self.slots:
                     self.line(f"if ({self._x.tokens[place]}full) {{")
                 else:
@@ -161,8 +161,7 @@ class NetStatements(Statements):
     def _for_colours(self, s: ir.ForTokens, packed: PackedPlace) -> None:
         """The loop over the tokens of a packed place: over the numbers of the colours of which there are some."""
         i = self._x.local(s.index)
-        place = self._x.place_names[s.place]
-        start, step = f"{i} = {place}_next(m, 0U)", f"{i} = {place}_next(m, {i} + 1U)"
+        start, step = (f"{i} = {self._x.call(s.place, 'next', at)}" for at in ("0U", f"{i} + 1U"))
         self.note(s.note)
         self.line(f"for (uint32_t {start}; {i} < {packed.colours}U; {step}) {{")
         self._loops += 1
@@ -232,7 +231,7 @@ class NetStatements(Statements):
         if s.place in self.slots:
             return  # there is one
         if self._packed(s.place):
-            count = f"{self._x.place_names[s.place]}_count_of(m, {self._x.local(s.index)})"
+            count = self._x.call(s.place, "count_of", self._x.local(s.index))
             self.line(f"if ({count} < {s.count}U) {{")
             self._next()
             return
@@ -260,13 +259,12 @@ class NetStatements(Statements):
         if known is None:
             self._work_out_wanted(takes, f"const bool {holds}")
         else:
-            place = self._x.place_names[known.of.place]
             total = self._scope.name(("sum", id(takes)), "sum")
             self.note(known.of.note)
             self.line(f"const uint64_t *const {total} = {known.name}(cx, &b);")
             self.line(f"bool {holds} = false;")
             self.line(f"if ({total} != NULL) {{")
-            self.line(f"{INDENT}{holds} = {place}_has_sum(m, {total});")
+            self.line(f"{INDENT}{holds} = {self._x.call(known.of.place, 'has_sum', total)};")
             self.line("} else {")
             self._depth += 1
             self._work_out_wanted(takes, holds)

@@ -49,19 +49,21 @@ class Numbers:
         ]
 
     def of_places(
-        self, places: tuple[ir.Place, ...], is_pure: Callable[[str], bool]
+        self, places: tuple[ir.Place, ...], is_pure: Callable[[str], bool], *, by_table: bool
     ) -> tuple[PackedPlace | None, ...]:
         """What statements print of the places that are packed.
 
         Args:
             places: of the net.
             is_pure: whether the function that decides about the members of a subset gives always the same answers.
+            by_table: places that are alike have the same functions.
         """
         return tuple(
             PackedPlace(
                 p.packed.colours,
                 self.colour_of(p.table),
                 all(map(is_pure, self.members(p.table))),
+                self._names.kept(p.table, f"packed_{p.packed.width}") if by_table else "",
             )
             if p.packed
             else None

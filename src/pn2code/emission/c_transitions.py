@@ -9,7 +9,7 @@ from pn2code.emission.c_net_statements import NetStatements
 from pn2code.emission.c_own import OwnPlaces
 from pn2code.emission.c_sums import SumFunction
 from pn2code.emission.c_texts import where
-from pn2code.emission.environment import c_comment
+from pn2code.emission.environment import c_comment, c_string
 from pn2code.emission.names import Members
 from pn2code.emission.needs import SIDE
 from pn2code.ir import nodes as ir
@@ -32,10 +32,14 @@ class Transitions(Frame):
         table = self._net.place_tables[shared.table]
         members = self._member_names(table)
         return OwnPlaces(
-            self._names.page_places(table.page, table.paths),
+            self._struct(table),
             {p: members[c] for p, c in zip(shared.varying, shared.columns, strict=True)},
             {p: self._kept[p] for p in shared.varying},
         )
+
+    def _struct(self, table: PlaceTable) -> str:
+        """The stem of the C type of the rows of a table."""
+        return self._names.page_places(table.page, table.paths)
 
     def _member_names(self, table: PlaceTable) -> tuple[str, ...]:
         members = Members()
@@ -44,9 +48,11 @@ class Transitions(Frame):
     def _place_table(self, table: PlaceTable) -> dict[str, object]:
         """The struct of a page, and what it is for each of its instances."""
         members = self._member_names(table)
-        struct = self._names.page_places(table.page, table.paths)
+        struct = self._struct(table)
         return {
-            "page": table.page,
+            "title": f"page {table.page}: the places that each of its instances has for its own"
+            if not table.is_of_transitions
+            else "the places that each of some transitions has for its own",
             "struct": struct,
             "members": members,
             "instances": [
@@ -59,10 +65,18 @@ class Transitions(Frame):
             ],
         }
 
+    def _is_of_page(self, shared: Shared) -> bool:
+        """Whether it is one transition, of one page."""
+        elements = {
+            (t.origin.file, t.origin.page, t.id)
+            for t in (self._net.transitions[i] for i in shared.instances)
+        }
+        return len(elements) == 1
+
     def _stem(self, shared: Shared) -> str:
         """The stem of the names of what is printed for a transition."""
         t = self._model(shared)
-        if len(shared.instances) == 1:
+        if len(shared.instances) == 1 or not self._is_of_page(shared):
             return self._names.transition(t.index, t.name)
         return self._names.page_transition(t.index, t.origin.page, t.short)
 
@@ -75,7 +89,7 @@ class Transitions(Frame):
             counting = c_rows.counting(
                 f"s_counts_of_{stem}", t, self._key if self._has_words else None
             )
-        further = [f".places = &{self._names.instance(t.path, own.struct)}"] if own else []
+        further = [f".places = &{self._own_row(t, shared, own)}"] if own else []
         if not counting:
             own_stem = "net" if self._shares_successors(t) else stem
             further += [f".successors = {own_stem}_successors"] if self._net.has_successors else []
@@ -92,6 +106,12 @@ class Transitions(Frame):
                 t, stem, further, is_others=self._is_others(t), functions=counting
             ),
         }
+
+    def _own_row(self, t: ir.Transition, shared: Shared, own: OwnPlaces) -> str:
+        """The constant with the places that an instance has for its own."""
+        assert shared.table is not None
+        is_of_transitions = self._net.place_tables[shared.table].is_of_transitions
+        return self._names.instance(t.name if is_of_transitions else t.path, own.struct)
 
     def _shares_successors(self, t: ir.Transition) -> bool:
         """Whether the function that makes its successors is one for many transitions of a large net.
@@ -110,7 +130,8 @@ class Transitions(Frame):
     def _binding_name(self, shared: Shared) -> str:
         """The name of the instance, or of the page's transition where there are several."""
         t = self._model(shared)
-        return t.name if len(shared.instances) == 1 else f"{t.origin.page}.{t.short}"
+        is_one = len(shared.instances) == 1 or not self._is_of_page(shared)
+        return t.name if is_one else f"{t.origin.page}.{t.short}"
 
     def _title(self, shared: Shared) -> list[str]:
         """The element of the net, and all of its instances that the code is of."""
@@ -120,7 +141,12 @@ class Transitions(Frame):
             return [c_comment(f"transition {t.name}: {element}")]
         names = [self._net.transitions[i].name for i in shared.instances]
         instances = [f"    {c_comment(name)}" for name in names]
-        return [c_comment(f"transition: {element}, at all of these:"), *instances]
+        if self._is_of_page(shared):
+            return [c_comment(f"transition: {element}, at all of these:"), *instances]
+        return [
+            c_comment(f"transition: {element}, and all that do the same elsewhere:"),
+            *instances,
+        ]
 
     def _counting(self, shared: Shared) -> dict[str, object]:
         """What is printed of a transition that only counts: it looks at nothing and assigns nothing."""
@@ -183,7 +209,9 @@ class Transitions(Frame):
                 ],
             ),
             "guard": c_comment(f"guard [{t.guard_text}]") if t.guard_text else "",
-            "origin": t.origin.describe(),
+            "begins": c_string(t.origin.describe())
+            if self._is_of_page(shared)
+            else "pn_net.transition[self].origin",
             "is_plain": t.is_plain,
             "keeps": search.keeps and search.releases,
             "is_flat": search.is_flat,

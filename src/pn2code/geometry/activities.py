@@ -8,6 +8,7 @@ activity.end, activity.after    # where the arm stands afterwards, and the parts
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 import numpy as np
@@ -16,18 +17,23 @@ from pn2code.base.frozen import frozen
 from pn2code.geometry.legs import Leg, Planner, Stand
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.sweeps import ROUNDING
+from pn2code.robot.belts import until_stop
+from pn2code.robot.clamps import holding, taken_along
 from pn2code.robot.commands import Command, Handling, ToolAction
-from pn2code.robot.lying import Trouble, overlap, unsupported
+from pn2code.robot.executor import turned_by
+from pn2code.robot.ground import Ground
+from pn2code.robot.lying import Trouble, overlap
 from pn2code.robot.parts import Part, PartChange, PartFault, Parts
-from pn2code.robot.robot_cell import RobotCell
-from pn2code.robot.transforms import describe
+from pn2code.robot.robot_cell import CellRobot, RobotCell
+from pn2code.robot.transforms import Array, describe, inverse, matrix_of
 
 _DIGITS = 6
+_SLACKS = (0.0, ROUNDING, -ROUNDING)
 
 
 @frozen(eq=False)
 class Contents:
-    """Which parts are where.
+    """Which parts are where: in the world, in tools, on turntables.
 
     Args:
         number: of these contents, among all.
@@ -38,18 +44,32 @@ class Contents:
 
     @property
     def standing(self) -> dict[str, Part]:
-        """Parts that nobody carries, by what makes them equal."""
-        return {spot(p): p for p in self.parts.present.values() if not p.holder}
+        """Parts that stand still, by what makes them equal."""
+        return {spot(p): p for p in self.parts.present.values() if not p.carrier}
 
     def held_by(self, robot: str) -> Part | None:
-        """What a robot carries."""
+        """What a robot carries in its tool."""
         return self.parts.held_by(robot)
+
+    def load(self, robot: str) -> Load:
+        """What a robot moves: what its tool holds, and what stands on its turntables."""
+        return tuple(
+            sorted((p for p in self.parts.present.values() if p.carrier == robot), key=spot)
+        )
+
+
+Load = tuple[Part, ...]
 
 
 def spot(part: Part) -> str:
     """The same for parts of a kind that are in the same place, or in the same hand in the same way."""
     numbers = np.round(part.frame[:3], _DIGITS) + 0.0
-    return f"{part.kind.name} {part.holder} {numbers.ravel().tolist()}"
+    return f"{part.kind.name} {part.holder or part.plate} {numbers.ravel().tolist()}"
+
+
+def spots(load: Load) -> str:
+    """The same for what is moved in the same way."""
+    return "; ".join(map(spot, load))
 
 
 @frozen(eq=False)
@@ -64,6 +84,8 @@ class Activity:
         kinds: the kinds of parts that it handles.
         is_part: the fault is about a part; command: what cannot be done then.
         doubt: why it is not known whether an action can be done; "": it is.
+        turns: the turntables that turn in it.
+        handled: where parts are handled in it (a place in the world, m), and how far around that (m).
     """
 
     number: int
@@ -75,6 +97,8 @@ class Activity:
     is_part: bool = False
     command: Command | None = None
     doubt: str = ""
+    turns: frozenset[str] = frozenset()
+    handled: tuple[tuple[Array, float], ...] = ()
 
     @property
     def between(self) -> tuple[Contents, ...]:
@@ -86,7 +110,7 @@ class Doing:
     """Works activities out, each once.
 
     Args:
-        shown: where what is put down is looked at: does it lie on something, and overlap nothing? None: nowhere.
+        shown: where what is put down is looked at: does it overlap nothing? None: nowhere.
     """
 
     def __init__(self, planner: Planner, cell: RobotCell, shown: Shown | None = None) -> None:
@@ -95,6 +119,7 @@ class Doing:
         self._contents: dict[tuple[str, ...], Contents] = {}
         self._standing: dict[tuple[int, int], Activity] = {}
         self.activities: list[Activity] = []
+        self._with_tables = frozenset(r.name for r in cell.moving if r.carrying)
         self.start = self._kept(Parts(cell))
 
     def overlaps_at_start(self) -> list[tuple[Part, Trouble]]:
@@ -121,12 +146,22 @@ class Doing:
         return self._standing[key]
 
     def of(
-        self, owner: str, commands: tuple[Command, ...], stand: Stand | None, contents: Contents
+        self,
+        owner: str,
+        commands: tuple[Command, ...],
+        stand: Stand | None,
+        contents: Contents,
+        others: tuple[Stand, ...] = (),
     ) -> Activity:
-        """What an owner does on these commands."""
-        key = (owner, commands, None if stand is None else stand.number, contents.number)
+        """What an owner does on these commands; `others`: where arms with turntables stand meanwhile."""
+        handles = any(isinstance(c, ToolAction) and c.handling is not None for c in commands)
+        if not handles and owner not in self._with_tables:
+            others = ()
+        turned = tuple(s.number for s in others if s.robot != owner)
+        key = (owner, commands, None if stand is None else stand.number, contents.number, turned)
         if key not in self._known:
-            self._known[key] = self._added(self._worked_out(owner, commands, stand, contents))
+            made = self._worked_out(owner, commands, stand, contents, others)
+            self._known[key] = self._added(made)
         return self._known[key]
 
     def _added(self, a: Activity) -> Activity:
@@ -135,79 +170,247 @@ class Doing:
         return made
 
     def _worked_out(
-        self, owner: str, commands: tuple[Command, ...], stand: Stand | None, contents: Contents
+        self,
+        owner: str,
+        commands: tuple[Command, ...],
+        stand: Stand | None,
+        contents: Contents,
+        others: tuple[Stand, ...],
     ) -> Activity:
         legs: list[tuple[Leg, Contents]] = []
-        doubtful: tuple[str, Command | None] = ("", None)
         kinds = frozenset(
             c.handling.part
             for c in commands
             if isinstance(c, ToolAction) and c.handling is not None
         )
+        turns: frozenset[str] = frozenset()
+        handled: list[tuple[Array, float]] = []
+        done = Activity(0, (), stand, contents, kinds=kinds)
         for command in commands:
+            standing = (*(s for s in others if s.robot != owner), *((stand,) if stand else ()))
             if stand is not None:
+                own = self._cell.robot(owner)
+                if own.belts:
+                    command = until_stop(own, _parts(contents, standing, 0.0), command)
                 leg = self.planner.leg(stand, command)
+                if leg.path is not None and leg.is_moving:
+                    plates = turned_by(self._cell.robot(owner), leg.path)
+                    turns |= plates
+                    done = self._turning(done, command, plates, standing, contents)
+                    if pulled := self._pulled(own, leg, plates, contents):
+                        done = replace(done, fault=pulled, is_part=True, command=command, doubt="")
+                    if done.fault:
+                        legs = legs or [(self.planner.standing(stand), contents)]
+                        break
                 legs.append((leg, contents))
                 if leg.fault is not None:
-                    return Activity(0, tuple(legs), stand, contents, leg.fault.message, kinds)
+                    done = replace(done, fault=leg.fault.message, command=None, doubt="")
+                    break
                 stand = leg.end
+                ran = turned_by(own, leg.path, own.belts) if leg.path is not None else None
+                if ran:
+                    kinds |= frozenset(self._cell.parts)
+                    done = replace(done, kinds=kinds)
+                    try:
+                        contents, doubt = self._run_out(leg, ran, standing, contents)
+                    except PartFault as fault:
+                        done = replace(
+                            done, fault=str(fault), is_part=True, command=command, doubt=""
+                        )
+                        break
+                    if doubt and not done.doubt:
+                        done = replace(done, doubt=doubt, command=command)
             if isinstance(command, ToolAction) and command.handling is not None:
-                parts = contents.parts.copy()
                 tcp = None
                 if stand is not None:
-                    base = self._cell.robot(owner).T_world_base
-                    tcp = base @ stand.T_base_tcp
+                    tcp = self._cell.robot(owner).T_world_base @ stand.T_base_tcp
+                handled.append(self._around(command.handling, tcp))
+                doing = _Handled(owner, command.handling, tcp, standing)
                 try:
-                    change = parts.handle(owner, command.handling, tcp)
-                    doubt = self._expect_lying(owner, command.handling, change, parts)
+                    contents, doubt = self._handle(doing, contents)
                 except PartFault as fault:
-                    return Activity(
-                        0,
-                        tuple(legs),
-                        stand,
-                        contents,
-                        str(fault),
-                        kinds,
-                        is_part=True,
-                        command=command,
-                    )
-                contents = self._kept(parts)
-                if doubt and not doubtful[0]:
-                    doubtful = (doubt, command)
-        return Activity(
-            0,
-            tuple(legs),
-            stand,
-            contents,
-            kinds=kinds,
-            command=doubtful[1],
-            doubt=doubtful[0],
+                    done = replace(done, fault=str(fault), is_part=True, command=command, doubt="")
+                    break
+                if doubt and not done.doubt:
+                    done = replace(done, doubt=doubt, command=command)
+        return replace(
+            done,
+            legs=tuple(legs),
+            end=stand,
+            after=contents,
+            turns=turns,
+            handled=tuple(handled),
         )
 
-    def _expect_lying(self, who: str, handling: Handling, change: PartChange, parts: Parts) -> str:
-        """Whether a part that is put down lies on something and overlaps nothing, as a run looks at it.
+    def _run_out(
+        self, leg: Leg, ran: frozenset[str], standing: tuple[Stand, ...], contents: Contents
+    ) -> tuple[Contents, str]:
+        """What belts have taken along, and why that is not known ("": it is). Raises PartFault: off their ends."""
+        assert leg.path is not None
+        device = self._cell.robot(leg.robot)
+        found: list[Contents] = []
+        faults: list[PartFault] = []
+        for slack in _SLACKS:
+            parts = _parts(contents, standing, slack)
+            parts.stand(device.name, leg.path.q(leg.path.duration))
+            try:
+                for axis in device.belts:
+                    plate = f"{device.name}/{axis.name}"
+                    if plate in ran:
+                        parts.run_out(plate)
+                        parts.rewind(plate, device.T_world_plate(axis, leg.end.q))
+            except PartFault as fault:
+                faults.append(fault)
+                continue
+            found.append(self._kept(parts))
+        if not found:
+            raise faults[0]
+        if faults:
+            return found[0], _nearly(str(faults[0]))
+        same = len({after.number for after in found}) == 1
+        return found[0], "" if same else _nearly(f"`{min(ran)}` takes parts along")
 
-        Gives why that is not known; "": it is so.
-        Raises PartFault if it is not so.
+    def _around(self, handling: Handling, tcp: Array | None) -> tuple[Array, float]:
+        """Where a part is handled, and how far around that it reaches, whichever it is and however it lies."""
+        frame = matrix_of(self._cell.places[handling.place]) if tcp is None else tcp
+        if handling.place:
+            frame = matrix_of(self._cell.places[handling.place])
+        kind = self._cell.parts[handling.part]
+        return frame[:3, 3], 2.0 * Ground.of(self._cell).radius(kind.name) + kind.tolerance
+
+    def within(self, plate: str, where: tuple[Array, float], contents: Iterable[Contents]) -> bool:
+        """Whether a place is so near to a turntable that it, or what stands on it, can come there when it turns."""
+        ground = Ground.of(self._cell)
+        own = ground.plates[plate]
+        robot = self._cell.robot(own.robot)
+        axis = next(a for a in robot.carrying if robot.index(a.name) == own.index)
+        frame = robot.T_world_base @ axis.T_base_axis
+        point, around = where
+        off = inverse(frame) @ np.append(point, 1.0)
+        if axis.belt is not None:
+            # What stands on it is above it, before and after.
+            beside = (
+                max(-off[0], off[0] - axis.upper, 0.0),
+                max(abs(off[1]) - axis.belt.width / 2.0, 0.0),
+            )
+            riders = [p for inside in contents for p in inside.parts.riders(plate)]
+            wide = max((ground.radius(p.kind.name) for p in riders), default=0.0)
+            return float(np.hypot(*beside)) <= wide + around
+        if axis.is_track:
+            # Wherever it is on its way.
+            along = float(np.clip(off[:3] @ axis.direction, axis.lower, axis.upper))
+            apart = float(np.linalg.norm(off[:3] - along * axis.direction))
+            lying = [p for inside in contents for p in inside.parts.riders(plate)]
+            far = [
+                float(np.linalg.norm(p.frame[:3, 3])) + ground.radius(p.kind.name) for p in lying
+            ]
+            return bool(apart <= max([own.reach, *far]) + around)
+        reach = own.reach
+        for inside in contents:
+            for part in inside.parts.riders(plate):
+                off_axis = float(np.hypot(*part.frame[:2, 3]))
+                reach = max(reach, off_axis + ground.radius(part.kind.name))
+        return float(np.hypot(*off[:2])) <= reach + around
+
+    def _pulled(self, own: CellRobot, leg: Leg, plates: frozenset[str], contents: Contents) -> str:
+        """That a device takes a part along which a clamp of its own holds then; "": it does not."""
+        if not own.axes.clamps:
+            return ""
+        for part, frame in taken_along(own, leg.start.q, contents.load(own.name), plates):
+            for held in holding(self._cell, part.kind, frame):
+                if held.device is own and held.holds(leg.start.q):
+                    return held.words(own.name, part.name, leg.start.q)
+        return ""
+
+    def _turning(
+        self,
+        done: Activity,
+        command: Command,
+        plates: frozenset[str],
+        standing: tuple[Stand, ...],
+        contents: Contents,
+    ) -> Activity:
+        """Whether what stands on turntables stays there when they begin to turn."""
+        for plate in sorted(plates):
+            said = []
+            for slack in _SLACKS:
+                parts = _parts(contents, standing, slack)
+                try:
+                    parts.turn(plate)
+                    said.append("")
+                except PartFault as fault:
+                    said.append(str(fault))
+            if all(said):
+                return replace(done, fault=said[0], is_part=True, command=command, doubt="")
+            if any(said) and not done.doubt:
+                done = replace(done, doubt=_nearly(max(said)), command=command)
+        return done
+
+    def _handle(self, doing: _Handled, contents: Contents) -> tuple[Contents, str]:
+        """What an action does to a part, and why it is not known that it can ("": it can).
+
+        Raises PartFault if it cannot. It is done again as if what it stands on were a little further away, and a
+        little nearer: where that comes to something else, it is not known.
+        """
+        found: list[tuple[Contents, PartChange, Parts]] = []
+        faults: list[PartFault] = []
+        for slack in _SLACKS:
+            parts = _parts(contents, doing.standing, slack)
+            try:
+                change = parts.handle(doing.owner, doing.handling, doing.tcp)
+            except PartFault as fault:
+                faults.append(fault)
+                continue
+            found.append((self._kept(parts), change, parts))
+        if not found:
+            raise faults[0]
+        doubt = ""
+        if faults:
+            doubt = _nearly(str(faults[0]))
+        elif len({after.number for after, _, _ in found}) > 1:
+            part = found[0][1].part
+            doubt = _nearly(f"`{doing.owner}` {doing.handling.effect} `{part}` beside a turntable")
+        after, change, parts = found[0]
+        return after, self._expect_apart(doing, change, parts) or doubt
+
+    def _expect_apart(self, doing: _Handled, change: PartChange, parts: Parts) -> str:
+        """Whether a part that is put down overlaps nothing, as a run looks at it.
+
+        Gives why that is not known; "": it is so. Raises PartFault if it is not so.
         """
         if self._shown is None or change.effect not in ("releases", "creates"):
             return ""
         self._shown.show(p for p in parts.present.values() if not p.holder)
-        does = f"`{who}` releases `{change.part}`"
+        for stand in doing.standing:
+            self._shown.backend.set_joints(stand.robot, stand.q)
+        does = f"`{doing.owner}` releases `{change.part}`"
         if change.effect == "creates":
-            does = f"`{who}` puts `{change.part}` at `{handling.place}`"
-        found = [(f"{does}, which", overlap(self._shown.backend, change.part, ROUNDING))]
-        if change.effect == "releases":
-            hangs = unsupported(self._shown.backend, change.part, ROUNDING)
-            found.append((f"{does} in the air:", hangs))
-        for what, trouble in found:
-            if trouble is not None and trouble.margin < -ROUNDING:
-                raise PartFault(f"{what} {trouble.text}, part at {describe(change.pose)}")
-        return next(
-            (
-                f"{what} {x.text}: that is as much as is permitted, to {1000.0 * ROUNDING:g} mm"
-                for what, x in found
-                if x is not None
-            ),
-            "",
-        )
+            does = f"`{doing.owner}` puts `{change.part}` at `{doing.handling.place}`"
+        trouble = overlap(self._shown.backend, change.part, ROUNDING)
+        if trouble is None:
+            return ""
+        if trouble.margin < -ROUNDING:
+            raise PartFault(f"{does}, which {trouble.text}, part at {describe(change.pose)}")
+        return _nearly(f"{does}, which {trouble.text}")
+
+
+@frozen(eq=False)
+class _Handled:
+    """Who handles a part, where its TCP is, and where arms with turntables stand."""
+
+    owner: str
+    handling: Handling
+    tcp: Array | None
+    standing: tuple[Stand, ...]
+
+
+def _parts(contents: Contents, standing: tuple[Stand, ...], slack: float) -> Parts:
+    """The parts, to be handled otherwise, with turntables where they are."""
+    parts = contents.parts.copy(slack)
+    for stand in standing:
+        parts.stand(stand.robot, stand.q)
+    return parts
+
+
+def _nearly(what: str) -> str:
+    return f"{what}: that is as much as is permitted, to {1000.0 * ROUNDING:g} mm"

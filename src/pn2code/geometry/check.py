@@ -90,7 +90,7 @@ def examine(
     cells = cells_of(config, layout, d)
     if cells is None:
         return None
-    if not any(cell.robots for _, cell in cells):
+    if not any(cell.moving for _, cell in cells):
         return Geometry((), "no robot of the cell has an arm")
     stage("exploring the cell as its programs run ...")
     try:

@@ -1,8 +1,8 @@
 """Sweeps what situations show: each leg against the scene, legs of two arms against each other, legs and parts.
 
     compared = Comparison(cell, planner, Shown(backend))
-    compared.move(leg, held)                     # Swept: clearances, margins
-    compared.two((leg, held), (other, held))     # Apart
+    compared.around(leg, load)                   # Apart, from the scene and from itself
+    compared.two((leg, load), (other, load))     # Apart
 
 Everything is swept once, in whatever situations it occurs.
 """
@@ -16,18 +16,23 @@ from dataclasses import replace
 import numpy as np
 
 from pn2code.base.frozen import frozen
-from pn2code.geometry.activities import Activity, spot
-from pn2code.geometry.answers import Nearest
+from pn2code.geometry.activities import Activity, Contents, Load, spot, spots
+from pn2code.geometry.answers import Nearest, Verdict
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.sweeps import SEARCHED, Apart, Sweeper, much_less
 from pn2code.geometry.tracks import ArmShape, Track
+from pn2code.geometry.zone_speeds import slow_enough
 from pn2code.robot.along import AlongTrajectory
+from pn2code.robot.backend import Clearance
+from pn2code.robot.clamps import holding, taken_along
+from pn2code.robot.executor import turned_by
 from pn2code.robot.kinematics import MOST_CONDITION
 from pn2code.robot.motion import LinearTrajectory
 from pn2code.robot.parts import Part
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array
+from pn2code.robot.zones import ZoneWatch
 
 _PIECES = 16
 _SAMPLES = 65
@@ -51,7 +56,7 @@ class Comparison:
         backend = shown.backend
         self.cell, self._planner, self._backend = cell, planner, backend
         self.sweeper = Sweeper(shown)
-        self._shapes = {r.name: ArmShape.of(r, backend) for r in cell.robots}
+        self._shapes = {r.name: ArmShape.of(r, backend) for r in cell.moving}
         self._boxes = {k.name: backend.part_box(k) for k in cell.parts.values()}
         self._tracks: dict[tuple[int, str], Track] = {}
         self._extents: dict[tuple[int, str], tuple[Array, Array]] = {}
@@ -60,20 +65,39 @@ class Comparison:
         self._beside: dict[tuple[tuple[int, str], str], Apart] = {}
         self._margins: dict[int, Margins] = {}
         self.compared = 0
+        self._watch = ZoneWatch(cell)
+        self._hurries: dict[tuple[int, str], tuple[Verdict, str]] = {}
 
-    def _track(self, leg: Leg, held: Part | None) -> tuple[tuple[int, str], Track]:
+    def _track(self, leg: Leg, load: Load) -> tuple[tuple[int, str], Track]:
         if leg.path is None:
             leg = self._planner.standing(leg.start)
-        key = (leg.number, "" if held is None else spot(held))
+        key = (leg.number, spots(load))
         if key not in self._tracks:
             shape = self._shapes[leg.robot]
-            link = None
-            if held is not None:
-                # A name for the collision library that no other part has that is shown at the same time.
-                held = replace(held, name=f"{held.kind.name}.held_by_{leg.robot}")
-                link = shape.holding(held, *self._boxes[held.kind.name])
-            self._tracks[key] = Track(shape, leg, link, held)
+            # Names for the collision library that no other part has that is shown at the same time.
+            named = tuple(
+                replace(p, name=f"{p.kind.name}.held_by_{leg.robot}")
+                if p.holder
+                else replace(p, name=f"{p.kind.name}.{i}_on_{p.plate.replace('/', '_')}")
+                for i, p in enumerate(load, 1)
+            )
+            links = tuple(shape.holding(p, *self._boxes[p.kind.name]) for p in named)
+            self._tracks[key] = Track(shape, leg, links, named)
         return key, self._tracks[key]
+
+    def hurries(self, leg: Leg, load: Load) -> tuple[Verdict, str]:
+        """Whether a leg is slow enough in zones, and why it is not."""
+        if not self._watch.limited or not leg.is_moving or not self._has_shape((leg, load)):
+            return "yes", ""
+        key, track = self._track(leg, load)
+        if key not in self._hurries:
+            self._hurries[key] = slow_enough(self._watch, track, load)
+        return self._hurries[key]
+
+    def _has_shape(self, moved: tuple[Leg, Load]) -> bool:
+        """Whether anything moves: of a device with a belt only what stands on it."""
+        leg, load = moved
+        return bool(self._shapes[leg.robot].links or load)
 
     def _extent(self, key: tuple[int, str]) -> tuple[Array, Array]:
         """The corners of a box around all that an arm sweeps on a leg."""
@@ -88,8 +112,10 @@ class Comparison:
             self._extents[key] = (low, high)
         return self._extents[key]
 
-    def two(self, a: tuple[Leg, Part | None], b: tuple[Leg, Part | None]) -> Apart:
+    def two(self, a: tuple[Leg, Load], b: tuple[Leg, Load]) -> Apart:
         """Two legs of two arms."""
+        if not (self._has_shape(a) and self._has_shape(b)):
+            return Apart("clear", math.inf, math.inf)
         (one, first), (other, second) = self._track(*a), self._track(*b)
         if (one, other) not in self._pairs:
             self.compared += 1
@@ -125,11 +151,38 @@ class Comparison:
         """Each leg of one with each of the other, since nobody knows how far they are."""
         for leg, contents in a.legs:
             for other, more in b.legs:
-                own = (leg, contents.held_by(leg.robot))
-                yield leg, other, self.two(own, (other, more.held_by(other.robot)))
+                pulled = self._pulled(leg, contents, other) or self._pulled(other, more, leg)
+                if pulled is not None:
+                    yield leg, other, pulled
+                own = _meanwhile(contents.load(leg.robot), leg.robot, b, more)
+                its = _meanwhile(more.load(other.robot), other.robot, a, contents)
+                yield leg, other, self.two((leg, own), (other, its))
 
-    def beside(self, a: tuple[Leg, Part | None], part: Part) -> Apart:
+    def _pulled(self, leg: Leg, contents: Contents, other: Leg) -> Apart | None:
+        """That something goes away with a part which a clamp of a device holds then; None: it does not."""
+        robot, device = self.cell.robot(leg.robot), self.cell.robot(other.robot)
+        load = contents.load(leg.robot)
+        if not load or not device.axes.clamps or not leg.is_moving or leg.path is None:
+            return None
+        path = other.path if other.path is not None else self._planner.standing(other.start).path
+        assert path is not None
+        for part, frame in taken_along(robot, leg.start.q, load, turned_by(robot, leg.path)):
+            for held in holding(self.cell, part.kind, frame):
+                # The way of a clamp is straight, so it is narrowest at one of its ends.
+                ends = path.on_way(np.array([0.0, 1.0]))
+                q = min(ends, key=held.gap)
+                if held.device is device and held.holds(q):
+                    x, y, z = frame[:3, 3].tolist()
+                    names = f"{leg.robot}/{part.kind.name}", held.name
+                    gap = Clearance("robots", leg.robot, *names, 0.0, None, (x, y, z), (x, y, z))
+                    why = held.words(leg.robot, part.kind.name, q)
+                    return Apart("touch", 0.0, 0.0, gap, (0.0, 0.0), why, (leg.start.q, q))
+        return None
+
+    def beside(self, a: tuple[Leg, Load], part: Part) -> Apart:
         """A leg and a part that stands."""
+        if not self._has_shape(a):
+            return Apart("clear", math.inf, math.inf)
         key, track = self._track(*a)
         where = (key, spot(part))
         if where not in self._beside:
@@ -138,9 +191,11 @@ class Comparison:
             self._beside[where] = self.sweeper.beside(track, shown, self._boxes[part.kind.name])
         return self._beside[where]
 
-    def around(self, leg: Leg, held: Part | None) -> tuple[Apart, Apart]:
+    def around(self, leg: Leg, load: Load) -> tuple[Apart, Apart]:
         """A leg and the scene; a leg and the arm itself."""
-        key, track = self._track(leg, held)
+        if not self._has_shape((leg, load)):
+            return Apart("clear", math.inf, math.inf), Apart("clear", math.inf, math.inf)
+        key, track = self._track(leg, load)
         if key not in self._around:
             self._around[key] = (
                 self.sweeper.around(track, "scene"),
@@ -156,6 +211,8 @@ class Comparison:
 
     def _worst(self, leg: Leg) -> Margins:
         assert leg.path is not None
+        if self.cell.robot(leg.robot).is_device:
+            return Margins(math.inf, 0, 1.0)
         kinematics = self.cell.robot(leg.robot).kinematics
         q = leg.path.on_way(np.linspace(0.0, 1.0, _SAMPLES if leg.is_moving else 1))
         if isinstance(leg.path, LinearTrajectory | AlongTrajectory):
@@ -164,3 +221,14 @@ class Comparison:
         axis = int(np.argmin(off))
         worst = max(c.condition for c in kinematics.conditioning_many(q))
         return Margins(float(off[axis]), axis, worst if worst <= MOST_CONDITION else math.inf)
+
+
+def _meanwhile(load: Load, robot: str, other: Activity, contents: Contents) -> Load:
+    """What a robot moves while another one has put something on its turntables, or has taken something from there."""
+    before = {spot(p): p for p in other.legs[0][1].load(robot) if p.plate}
+    now = {spot(p): p for p in contents.load(robot) if p.plate}
+    if before.keys() == now.keys():
+        return load
+    kept = {spot(p): p for p in load if p.holder or spot(p) in now or spot(p) not in before}
+    kept |= {key: part for key, part in now.items() if key not in before}
+    return tuple(kept[key] for key in sorted(kept))

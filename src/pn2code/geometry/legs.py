@@ -17,7 +17,7 @@ from pn2code.base.frozen import frozen
 from pn2code.robot.commands import Command, MoveCircular, MoveJoint, MoveLinear
 from pn2code.robot.executor import MotionKind, RobotExecutor
 from pn2code.robot.motion import MotionFault, Still, Trajectory
-from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array
 
 DIGITS = 7
@@ -66,6 +66,14 @@ class Leg:
         return self.path is not None and not isinstance(self.path, Still)
 
 
+def rewound(robot: CellRobot, q: Array) -> Array:
+    """The same, with belts as if they had not run yet: however far they have, they go on in the same way."""
+    out = np.array(q)
+    for axis in robot.belts:
+        out[robot.index(axis.name)] = 0.0
+    return out
+
+
 class Planner:
     """Plans commands of the arms of a cell, each once.
 
@@ -76,7 +84,7 @@ class Planner:
     def __init__(self, cell: RobotCell, digits: int = DIGITS) -> None:
         self.cell = cell
         self._digits = digits
-        self._executors = {r.name: RobotExecutor(r, cell.motion, cell.frames) for r in cell.robots}
+        self._executors = {r.name: RobotExecutor(r, cell.motion, cell.frames) for r in cell.moving}
         self.stands: list[Stand] = []
         self.legs: list[Leg] = []
         self._stands: dict[tuple[object, ...], Stand] = {}
@@ -115,7 +123,7 @@ class Planner:
         except MotionFault as fault:
             return Leg(number, stand.robot, command, "wait", None, stand, stand, fault)
         executor.finish()
-        end = self._stand(stand.robot, executor.q, executor.T_base_tcp)
+        end = self._stand(stand.robot, rewound(executor.robot, executor.q), executor.T_base_tcp)
         return Leg(number, stand.robot, command, motion.kind, motion.trajectory, stand, end)
 
     def seen_from_arm(self, stand: Stand, command: MoveJoint | MoveLinear | MoveCircular) -> Array:

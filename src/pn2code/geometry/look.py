@@ -12,7 +12,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
-from pn2code.geometry.activities import Activity, Doing, spot
+from pn2code.geometry.activities import Activity, Doing, Load, spots
 from pn2code.geometry.answers import Layout, Move, Pair, Verdict
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.graph import CellGraph
@@ -24,7 +24,6 @@ from pn2code.geometry.sweeps import ROUNDING, Apart
 from pn2code.geometry.words import numbers, reason, words
 from pn2code.geometry.zones import Explore, Zones
 from pn2code.robot.bullet import BulletBackend
-from pn2code.robot.parts import Part
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import pose_of
 
@@ -60,7 +59,7 @@ class Look:
         shown = Shown(self.backend)
         self.doing = Doing(self.planner, cell, shown)
         self.comparison = Comparison(cell, self.planner, shown)
-        self.robots = tuple(r.name for r in cell.robots)
+        self.robots = tuple(r.name for r in cell.moving)
         self.runs: dict[tuple[int, tuple[int, ...]], Run] = {}
 
     def close(self) -> None:
@@ -104,18 +103,24 @@ class Look:
 
     def _moves(self, found: Situations) -> list[Move]:
         rows: dict[tuple[int, str], Move] = {}
+        looked: set[tuple[int, str]] = set()
         handled: dict[tuple[str, str, str], Move] = {}
         for (number, _element), met in found.activities.items():
             activity = self.doing.activities[number]
             for leg, contents in activity.legs:
-                held = contents.held_by(leg.robot)
-                key = (leg.number, "" if held is None else spot(held))
+                load = contents.load(leg.robot)
+                key = (leg.number, spots(load))
                 is_at_rest = leg.fault is None and not leg.is_moving
-                if key in rows or (is_at_rest and held is None and leg.command is not None):
+                if key in looked or (is_at_rest and not load and leg.command is not None):
                     continue
-                row = self._move(found, leg, held, met)
-                if leg.command is not None or row.answer != "yes":
-                    rows[key] = row
+                looked.add(key)
+                row = self._move(found, leg, load, met)
+                # Whatever stands on its turntables meanwhile, it is one move: the worst of them is told.
+                held = tuple(p for p in load if p.holder)
+                own = (leg.number, spots(held))
+                is_told = leg.command is not None and not (is_at_rest and not held)
+                if is_told or row.answer != "yes":
+                    rows[own] = min(rows[own], row, key=_how_bad) if own in rows else row
             if activity.is_part or activity.doubt:
                 row = self._handling(found, activity, met)
                 key_ = (row.transition, row.command, row.begins)
@@ -146,11 +151,11 @@ class Look:
         why = activity.fault or activity.doubt
         return Move(owner, t, does, begins, "tool", answer, why, run=run)
 
-    def _move(self, found: Situations, leg: Leg, held: Part | None, met: Met) -> Move:
+    def _move(self, found: Situations, leg: Leg, load: Load, met: Met) -> Move:
         t, _ = _who(found, met.elements[0])
         base = self.cell.robot(leg.robot).T_world_base
         begins = numbers(pose_of(base @ leg.start.T_base_tcp))
-        does = words(leg.command) + (f" with {held.kind.name}" if held is not None else "")
+        does = words(leg.command) + "".join(f" with {p.kind.name}" for p in load if p.holder)
         if leg.fault is not None:
             return Move(
                 leg.robot,
@@ -162,8 +167,9 @@ class Look:
                 leg.fault.message,
                 run=self._run(found, met),
             )
+        is_device = self.cell.robot(leg.robot).is_device
         margins = self.comparison.margins(leg)
-        scene, itself = self.comparison.around(leg, held)
+        scene, itself = self.comparison.around(leg, load)
         answer: Verdict = "yes"
         why = ""
         for apart, what in ((scene, ""), (itself, " of itself")):
@@ -171,6 +177,9 @@ class Look:
                 answer, why = "no", touch_in_words(apart) + what
             elif apart.outcome == "open" and answer == "yes":
                 answer, why = "unknown", apart.why
+        hurry, words_ = self.comparison.hurries(leg, load)
+        if hurry == "no" and answer != "no" or hurry == "unknown" and answer == "yes":
+            answer, why = hurry, words_
         return Move(
             leg.robot,
             t,
@@ -179,9 +188,9 @@ class Look:
             leg.kind,
             answer,
             why,
-            math.degrees(margins.limit),
-            margins.axis + 1,
-            margins.condition,
+            None if is_device else math.degrees(margins.limit),
+            0 if is_device else margins.axis + 1,
+            None if is_device else margins.condition,
             certain(scene),
             certain(itself),
             scene.where,
@@ -223,7 +232,7 @@ class Look:
             key = (leg.robot, t, part.kind.name)
             if key in bad and bad[key].answer == "no":
                 continue
-            apart = self.comparison.beside((leg, contents.held_by(leg.robot)), part)
+            apart = self.comparison.beside((leg, contents.load(leg.robot)), part)
             if apart.outcome == "clear" or (key in bad and apart.outcome == "open"):
                 continue
             stands = f"{part.kind.name} stands at {numbers(pose_of(part.frame))}"
@@ -248,6 +257,12 @@ class Look:
                 self.options.initial,
             )
         return self.runs.get(key)
+
+
+def _how_bad(row: Move) -> tuple[int, float]:
+    """The worst comes first: an answer that is not yes, then the least clearance from the scene."""
+    clearance = row.scene if row.scene is not None else -math.inf
+    return ("no", "unknown", "yes").index(row.answer), clearance
 
 
 def _who(found: Situations, element: int) -> tuple[str, str]:
@@ -298,6 +313,8 @@ def touch_in_words(apart: Apart) -> str:
     """Which links overlap, where, by how much, and that it is nowhere much more, if that is known."""
     gap = apart.where
     assert gap is not None
+    if apart.why:
+        return apart.why
     at = ", ".join(f"{1000.0 * v:.0f}" for v in gap.point)
     text = f"`{gap.a}` and `{gap.b}` overlap by {-1000.0 * gap.distance:.1f} mm at ({at}) mm"
     if certain(apart) is None:

@@ -18,7 +18,7 @@ from collections.abc import Sequence
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.partition import OwnerKind
-from pn2code.geometry.activities import Activity, Contents, Doing
+from pn2code.geometry.activities import Activity, Contents, Doing, spot
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import Stand
 from pn2code.robot.parts import Part
@@ -77,6 +77,9 @@ class Situations:
         names = {o.name: o.index for o in graph.partition.owners}
         self._arm_of = {names[r]: i for i, r in enumerate(self.robots) if r in names}
         self._seen: set[tuple[object, ...]] = set()
+        cell = doing.start.parts.cell
+        tables = {r.name: r.carrying for r in cell.moving} if cell.parts else {}
+        self._with_tables = frozenset(name for name, own in tables.items() if own)
         self._owner_names = {o.index: o.name for o in graph.partition.owners}
         self._acting = {
             o.index for o in graph.partition.owners if o.kind is not OwnerKind.SUPERVISOR
@@ -153,8 +156,12 @@ class Situations:
             arm = self._arm_of.get(e.owner)
             stand = here.stands[arm] if arm is not None else None
             name = self._owner_names[e.owner]
-            out[element] = self.doing.of(name, commands, stand, here.contents)
+            out[element] = self.doing.of(name, commands, stand, here.contents, self._turned(here))
         return out
+
+    def _turned(self, here: Situation) -> tuple[Stand, ...]:
+        """Where the arms stand that have turntables: parts can stand there."""
+        return tuple(s for s in here.stands if s.robot in self._with_tables)
 
     def _after(
         self, here: Situation, element: int, target: int, under_way: dict[int, Activity]
@@ -220,8 +227,11 @@ class Situations:
             for (e, a), (f, b) in itertools.product(one, other):
                 self.pairs.setdefault((a.number, b.number), Met(number, (e, f)))
         self._note_parts(number, here, under_way, by_arm)
-        self._note_put_down(number, under_way)
-        self._expect_order(under_way)
+        self._note_put_down(number, here, under_way)
+        self._expect_order(here, under_way)
+        if self._with_tables:
+            self._expect_still(under_way)
+            self._expect_none_between(under_way)
 
     def _note_parts(
         self,
@@ -243,10 +253,10 @@ class Situations:
                         for contents in doing.between:
                             added |= contents.standing.keys() - own.keys()
                 for i, (_, contents) in enumerate(activity.legs):
-                    for spot in contents.standing.keys() | added:
-                        self.beside.setdefault((activity.number, i, spot), Met(number, (element,)))
+                    for where in contents.standing.keys() | added:
+                        self.beside.setdefault((activity.number, i, where), Met(number, (element,)))
 
-    def _note_put_down(self, number: int, under_way: dict[int, Activity]) -> None:
+    def _note_put_down(self, number: int, here: Situation, under_way: dict[int, Activity]) -> None:
         """What is put down while somebody else is half way through with other parts: these may not be there, or be.
 
         What comes before and after all that the other one does is a situation of its own.
@@ -258,29 +268,56 @@ class Situations:
             halfway = {c.number: c for c in b.between[1:-1]}
             for contents in halfway.values():
                 if contents not in (b.between[0], b.after):
-                    again = self._again(e, a, contents)
+                    again = self._again(here, e, a, contents)
                     if again.is_part or again.doubt:
                         self.activities.setdefault((again.number, e), Met(number, (e, f)))
 
-    def _expect_order(self, under_way: dict[int, Activity]) -> None:
-        """What two do to parts of a kind must come to the same in both orders; else it depends on how far each is."""
+    def _expect_order(self, here: Situation, under_way: dict[int, Activity]) -> None:
+        """What two do to parts must come to the same in both orders; else it depends on how far each is.
+
+        Parts of different kinds stand on each other, too.
+        """
         handling = [(e, a) for e, a in under_way.items() if a.kinds]
         for (e, a), (f, b) in itertools.combinations(handling, 2):
             if self.graph.elements[e].owner == self.graph.elements[f].owner:
                 continue
-            if a.kinds & b.kinds and (a.fault or b.fault or not self._commute(e, a, f, b)):
+            if a.fault or b.fault or not self._commute(here, e, a, f, b):
                 self.why = self.why or "order"
 
-    def _commute(self, e: int, a: Activity, f: int, b: Activity) -> bool:
-        first = self._again(f, b, a.after)
-        second = self._again(e, a, b.after)
+    def _commute(self, here: Situation, e: int, a: Activity, f: int, b: Activity) -> bool:
+        first = self._again(here, f, b, a.after)
+        second = self._again(here, e, a, b.after)
         return not (first.fault or second.fault) and first.after is second.after
 
-    def _again(self, element: int, activity: Activity, contents: Contents) -> Activity:
+    def _again(
+        self, here: Situation, element: int, activity: Activity, contents: Contents
+    ) -> Activity:
         owner = self.graph.elements[element].owner
         stand = activity.legs[0][0].start if activity.legs else None
         name = self._owner_names[owner]
-        return self.doing.of(name, self.graph.commands(element), stand, contents)
+        commands = self.graph.commands(element)
+        return self.doing.of(name, commands, stand, contents, self._turned(here))
+
+    def _expect_none_between(self, under_way: dict[int, Activity]) -> None:
+        """What somebody else has put on a turntable half way through is there before or after; else it is not seen."""
+        for element, activity in under_way.items():
+            if activity.kinds and len(activity.between) > 2:
+                owner = self._owner_names[self.graph.elements[element].owner]
+                ends = _on_plates(activity.between[0], owner) | _on_plates(activity.after, owner)
+                if any(_on_plates(c, owner) - ends for c in activity.between[1:-1]):
+                    self.why = self.why or "order"
+
+    def _expect_still(self, under_way: dict[int, Activity]) -> None:
+        """Nobody handles a part on a turntable, or where that could take one, while another arm turns it."""
+        for (e, a), (f, b) in itertools.permutations(under_way.items(), 2):
+            if not a.turns or not b.handled:
+                continue
+            if self.graph.elements[e].owner == self.graph.elements[f].owner:
+                continue
+            contents = (*a.between, *b.between)
+            for plate in a.turns:
+                if any(self.doing.within(plate, x, contents) for x in b.handled):
+                    self.why = self.why or "turning"
 
     def parts(self) -> dict[str, Part]:
         """Each part that ever stands somewhere, by its spot."""
@@ -289,3 +326,9 @@ class Situations:
             for contents in activity.between:
                 out |= contents.standing
         return out
+
+
+def _on_plates(contents: Contents, but: str) -> set[str]:
+    """What stands on turntables of others."""
+    parts = contents.parts.present.values()
+    return {spot(p) for p in parts if p.plate and p.carrier != but}

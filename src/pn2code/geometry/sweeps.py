@@ -88,7 +88,7 @@ class Sweeper:
         return deepest(two, Apart("clear", known, known))
 
     def _of_two(self, a: Track, b: Track) -> Measure:
-        self._show(x for x in (a.part, b.part) if x is not None)
+        self._show((*a.parts, *b.parts))
 
         def measure(q_a: Array, q_b: Array, limit: float) -> list[Clearance]:
             self._backend.set_joints(a.robot, q_a)
@@ -105,8 +105,7 @@ class Sweeper:
 
     def beside(self, a: Track, part: Part, box: tuple[Array, Array]) -> Apart:
         """A leg and a part that stands."""
-        shown = [part] if a.part is None else [part, a.part]
-        self._show(shown)
+        self._show((part, *a.parts))
         free = a.leg.kind == "ptp"
 
         def measure(q_a: Array, _q_b: Array, limit: float) -> list[Clearance]:
@@ -153,7 +152,11 @@ class Sweeper:
                     return Apart("open", 0.0, nearest, where, at, why)
                 self.queries += 1
                 q_a, q_b = one.q[one_at[i]], two.q[two_at[i]]
-                found = measure(q_a, q_b, float(wide[i]) + 2.0 * ROUNDING)
+                limit = float(wide[i]) + FINE
+                found = measure(q_a, q_b, limit)
+                # What was not found is further away, or its capsules are.
+                unseen = np.maximum(bound[i], limit - both[i]).min()
+                least = min(least, float(unseen) - ROUNDING)
                 middle = ((own[0] + own[1]) / 2.0, (own[2] + own[3]) / 2.0)
                 is_clear = True
                 for gap in found:
@@ -187,7 +190,7 @@ class Sweeper:
 
     def around(self, a: Track, kind: Literal["scene", "self"]) -> Apart:
         """How near a leg comes to the scene, or to the arm itself; where it touches, how deep."""
-        self._show([] if a.part is None else [a.part])
+        self._show(a.parts)
         begun = self.queries
         most = MOST_QUERIES
         count = itertools.count()

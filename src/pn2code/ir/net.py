@@ -157,7 +157,8 @@ class Sum:
 
 @frozen
 class Access:
-    """What a program of a transition looks at by name in C; places that are packed have functions of their own instead.
+    """What a program of a transition looks at by name in C; places that are packed have functions of their own instead,
+    but in explorers of large nets (`lowering.passes.alike`).
 
     Args:
         holders: places whose slot or array it reads or writes itself, or by an inline function, in order.
@@ -251,12 +252,15 @@ class PlaceTable:
         paths: the page instances.
         names: of the places on the page, a column each.
         rows: for each page instance its places, in the order of `names`.
+        is_of_transitions: the rows are of transitions that are alike, and `paths` their names; see
+            `lowering.passes.alike`.
     """
 
     page: str
     paths: tuple[str, ...]
     names: tuple[str, ...]
     rows: tuple[tuple[int, ...], ...]
+    is_of_transitions: bool = False
 
 
 @frozen

@@ -8,7 +8,6 @@ from pn2code.pipeline import Generated
 from pn2code.reading.document import Document
 from pn2code.replay import cell, net, programs
 from pn2code.replay.description import VERSION
-from pn2code.robot.parts import Parts
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.run.record import GAP_S
 
@@ -48,16 +47,16 @@ def describe(generated: Generated, robot_cell: RobotCell, document: Document, sp
         "cell": None,
         "motion": None,
     }
-    if robot_cell.robots:
+    if robot_cell.moving:
         described["cell"] = {
             **cell.describe(robot_cell),
             "parts": [
                 {
-                    "name": part.name,
-                    "kind": part.name.split(".")[0],
-                    "states": [{"t": 0.0, "frame": cell.frame(part.frame), "holder": ""}],
+                    "name": name,
+                    "kind": name.split(".")[0],
+                    "states": [state],
                 }
-                for part in Parts(robot_cell).present.values()
+                for name, state in cell.at_start(robot_cell).items()
             ],
             "gaps": {
                 "pairs": [],
@@ -70,6 +69,6 @@ def describe(generated: Generated, robot_cell: RobotCell, document: Document, sp
             "marks": [],
         }
         described["motion"] = {
-            r.name: {"t": [0.0], "q": [float(v) for v in r.home]} for r in robot_cell.robots
+            r.name: {"t": [0.0], "q": [float(v) for v in r.home]} for r in robot_cell.moving
         }
     return described

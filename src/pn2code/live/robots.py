@@ -29,7 +29,7 @@ class Robots:
         blocks: Mapping[str, tuple[Block, ...]],
     ) -> None:
         self._party = {o.name: o.index for o in partition.owners if o.index}
-        self._arms = {r.name: r for r in robot_cell.robots}
+        self._arms = {r.name: r for r in robot_cell.moving}
         self._number = {t.name: t.index for t in partition.net.transitions}
         self._blocks = blocks
         self._labels = {action: label for label, action in dict(config.report.count).items()}
@@ -143,7 +143,11 @@ class Robots:
             "marks": marks,
             "doing": list(self._doing.values()),
             "joints": (min(self._at, t), dict(self._joints)),
-            "series": {f"condition.{name}": self._condition(name) for name in self._joints},
+            "series": {
+                f"condition.{name}": self._condition(name)
+                for name in self._joints
+                if not self._arms[name].is_device
+            },
             "counts": dict(self._counts),
         }
 

@@ -43,6 +43,7 @@ class Tap:
 
     def __init__(self, handing: Handing, robot_cell: RobotCell, count: Mapping[str, str]) -> None:
         self._handing = handing
+        self._cell = robot_cell
         self._arms = {r.name: r for r in robot_cell.robots}
         self._labels = {action: label for label, action in count.items()}
         self._told: dict[str, int] = {}
@@ -176,14 +177,14 @@ class Tap:
 
     def _part(self, entry: PartRecord) -> Json:
         change = entry.change
-        frame: list[float] | None = cells.frame(matrix_of(change.pose))
-        holder = ""
+        state: Json = {"t": entry.t, **cells.put(self._cell, change)}
         tcp = self._tcp(entry.robot)
         if change.effect == "takes" and tcp is not None:
-            frame, holder = cells.frame(inverse(tcp) @ matrix_of(change.pose)), entry.robot
+            state["frame"] = cells.frame(inverse(tcp) @ matrix_of(change.pose))
+            state["holder"] = entry.robot
         elif change.effect == "removes":
-            frame = None
-        return {"name": change.part, "state": {"t": entry.t, "frame": frame, "holder": holder}}
+            state["frame"] = None
+        return {"name": change.part, "state": state}
 
 
 def _supervisor(engine: RealtimeEngine) -> Json:

@@ -387,7 +387,7 @@ class Watched(Closing):
             else "not recorded: they are drawn at HOME (`pn2code robot --trace` records them)"
         )
         rows = [["marking", marking], ["messages", messages], ["stop", NO_STOP]]
-        return [*rows, ["arms", arms]] if self._cell.robot_cell.robots else rows
+        return [*rows, ["arms", arms]] if self._cell.robot_cell.moving else rows
 
     def begin_again(self) -> None:
         """The next update is for pages that know nothing, and begins with how things are now."""

@@ -203,6 +203,14 @@ class _Functions:
         if missing:
             self.d.error(MONITOR_ERROR, f"the function `{missing[0]}` is missing", m.origin)
             return None, ()
+        if m.kind is Kind.DATA_COLLECTION and m.option("timed") and not self.flat.timed:
+            self.d.error(
+                MONITOR_ERROR,
+                "a timed data collector needs a place with a timed colour set, and the net has none",
+                m.origin,
+                hint="it is left out of the simulation; switch off its option `Timed`",
+            )
+            return None, ()
         observed = "int"
         with self.elaborator.aside(self.d) as inner:
             self.elaborator.declarations(self.generated(self.binding_elements()))

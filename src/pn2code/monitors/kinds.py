@@ -13,6 +13,8 @@ from enum import Enum
 
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
+from pn2code.ml.core.colsets import Colset
+from pn2code.ml.core.colsets import Kind as ColsetKind
 from pn2code.monitors.codes import MONITOR_ERROR, UNSUPPORTED_MONITOR
 from pn2code.net.flat import FlatNet, FlatTransition, PlaceInstance
 from pn2code.net.instances import unique_names
@@ -172,12 +174,30 @@ def _resolve(raw: RawMonitor, nodes: _Nodes, d: Diagnostics) -> Monitor | None:
         options={n.lower(): value for n, value in raw.options},
         origin=raw.origin,
     )
-    return monitor if _has_nodes(monitor, d) else None
+    return monitor if _has_nodes(monitor, d) and _has_lists(monitor, nodes.net, d) else None
 
 
 def _function(name: str) -> str:
     """`Init function` and `Init` are the same."""
     return name.strip().lower().removesuffix("function").strip()
+
+
+def _has_lists(m: Monitor, net: FlatNet, d: Diagnostics) -> bool:
+    """Only the length of a list can be measured."""
+    if m.kind is not Kind.LIST_LENGTH:
+        return True
+    colset: Colset | None = net.places[m.places[0].place].colset
+    while colset is not None and colset.kind in (ColsetKind.ALIAS, ColsetKind.SUBSET):
+        colset = colset.components[0]
+    if colset is not None and colset.kind is ColsetKind.LIST:
+        return True
+    d.warning(
+        MONITOR_ERROR,
+        f"monitor `{m.name}` (list length) watches place `{m.places[0].name}`, whose tokens are no lists",
+        m.origin,
+        hint="it is left out of the simulation; a marking size monitor counts tokens",
+    )
+    return False
 
 
 def _has_nodes(m: Monitor, d: Diagnostics) -> bool:
@@ -205,6 +225,7 @@ class _Nodes:
     """Finds places and transitions by XML id and page instance."""
 
     def __init__(self, document: Document, flat: FlatNet) -> None:
+        self.net = flat
         self._places: dict[str, list[PlaceInstance]] = {}
         for place in flat.place_instances:
             self._places.setdefault(place.id, []).append(place)

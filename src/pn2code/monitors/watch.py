@@ -32,7 +32,8 @@ from pn2code.semantics.game.enabling import GameError, running
 from pn2code.semantics.game.marking import BindingElement, PlaceMarking
 from pn2code.semantics.game.report import time_text
 from pn2code.semantics.game.token_game import Game
-from pn2code.semantics.values.data import MlUnavailable, Value, int_text
+from pn2code.semantics.library.builtins_real_texts import format_real
+from pn2code.semantics.values.data import Data, MlUnavailable, Value, int_text
 from pn2code.semantics.values.multiset import MultiSet
 
 
@@ -205,6 +206,8 @@ class Watch:
                 return frozenset(t.index for t in self.net.transitions if t.id in watched)
 
     def _init(self, m: _Running) -> None:
+        if m.statistics is not None and m.monitor.option("logging"):
+            self._write(m, _log(m.monitor), _LOG_HEADER)
         match m.kind:
             case Kind.MARKING_SIZE | Kind.LIST_LENGTH:
                 self._collect(m, self._measured(m))
@@ -217,8 +220,6 @@ class Watch:
                 self._call(m, "init", self._markings(m))
             case _:
                 pass
-        if m.statistics is not None and m.monitor.option("logging") and not m.statistics.count:
-            self._write(m, _log(m.monitor), _LOG_HEADER)
 
     def _step(self, m: _Running, element: BindingElement) -> bool:
         """Lets a monitor work after a step; whether it wants to stop the game."""
@@ -340,14 +341,18 @@ class Watch:
 
     def _collect(self, m: _Running, value: Number) -> None:
         assert m.statistics is not None
-        if m.statistics.count == 0 and m.monitor.option("logging"):
-            self._write(m, _log(m.monitor), _LOG_HEADER)
         m.statistics.update(value)
         if m.monitor.option("logging"):
-            text = f"{value:.6f}".replace("-", "~") if isinstance(value, float) else int_text(value)
+            text = self._logged(value)
             time = time_text(self.game.marking.time)
             line = f"{text} {m.statistics.count} {self.game.steps} {time}\n"
             self._write(m, _log(m.monitor), line)
+
+    def _logged(self, value: Number) -> str:
+        """As CPN Tools writes it."""
+        if isinstance(value, int):
+            return int_text(value)
+        return format_real(self.game.evaluator, _LOGGED, value)
 
     def _collect_option(self, m: _Running, name: str) -> None:
         if name in m.functions:
@@ -379,6 +384,8 @@ class Watch:
             )
 
 
+_LOGGED = Data("FIX", 0)
+"""How reals are written: with six digits behind the point, of at most 15."""
 _LOG_HEADER = "#data counter step time\n"
 _FUNCTIONS = {"avrg": "avg", "vari": "variance"}
 """The names of the ML functions, where ours are others."""

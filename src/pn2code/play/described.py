@@ -8,6 +8,7 @@ import pn2code
 from pn2code.diagnostics import Severity
 from pn2code.drawing.svg import Problem
 from pn2code.play.loading import Loaded
+from pn2code.play.sensors import asked
 from pn2code.play.trouble import Json, rows
 from pn2code.reading.document import (
     RawBlock,
@@ -30,6 +31,8 @@ def describe(loaded: Loaded) -> Json:
     opened = loaded.opened
     if opened is not None:
         net = nets.describe(loaded.document, opened.flat)
+        for index, sensors in asked(opened.flat, opened.config).items():
+            net["transitions"][index]["sensors"] = sensors
     else:
         net = nets.drawing(loaded.document, _problems(loaded))
     return {

@@ -16,6 +16,7 @@ import numpy as np
 from pn2code.replay.meshes import Meshes
 from pn2code.robot.geometry import bodies, body_of
 from pn2code.robot.looks import Look
+from pn2code.robot.parts import PartChange, Parts
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, matrix_of, rotation_xyz
 from pn2code.robot.urdf import Urdf
@@ -30,7 +31,7 @@ def describe(cell: RobotCell) -> Json:
     """Everything that is to be seen, and how the arms move."""
     store = Meshes()
     found: Json = {
-        "robots": [_robot(r, store) for r in cell.robots],
+        "robots": [_robot(r, store) for r in cell.moving],
         "bodies": [{"name": b.name, "visuals": _looks(b.looks, store)} for b in bodies(cell)],
         "kinds": {
             name: _looks(body_of(kind.shape).looks, store) for name, kind in cell.parts.items()
@@ -43,6 +44,31 @@ def describe(cell: RobotCell) -> Json:
 def frame(matrix: Array) -> list[float]:
     """A frame by rows."""
     return [round(float(v), 9) for v in np.asarray(matrix).reshape(-1)]
+
+
+def standing(cell: RobotCell, pose: Array, plate: str, on_plate: Array | None) -> Json:
+    """Where a part stands: in the world, or on a turntable (`left/plate`), which is a link of its robot."""
+    if not plate or on_plate is None:
+        return {"frame": frame(pose), "holder": ""}
+    name, _, axis = plate.partition("/")
+    tree = cell.robot(name).arm.urdf
+    link = (tree.root, *_children(tree)).index(axis)
+    return {"frame": frame(on_plate), "holder": name, "link": link}
+
+
+def at_start(cell: RobotCell) -> dict[str, Json]:
+    """Where the parts of the start are, by their names."""
+    parts = Parts(cell)
+    return {
+        p.name: {"t": 0.0, **standing(cell, parts.world(p), p.plate, p.frame)}
+        for p in parts.present.values()
+    }
+
+
+def put(cell: RobotCell, change: PartChange) -> Json:
+    """Where a part stands from a change on."""
+    on = None if change.on_plate is None else matrix_of(change.on_plate)
+    return standing(cell, matrix_of(change.pose), change.plate, on)
 
 
 def _robot(robot: CellRobot, store: Meshes) -> Json:
@@ -75,6 +101,7 @@ def _robot(robot: CellRobot, store: Meshes) -> Json:
         joints.insert(at, mount)
     return {
         "name": robot.name,
+        **({"device": True} if robot.is_device else {}),
         "base": frame(robot.T_world_base),
         "home": [float(v) for v in robot.home],
         "links": [

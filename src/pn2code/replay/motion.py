@@ -50,7 +50,7 @@ class Motion:
 
     def begun(self, engine: Engine) -> None:
         """The arms stand at HOME."""
-        for robot in engine.cell.robots:
+        for robot in engine.cell.moving:
             self._paths[robot.name] = _Path([0.0], [_single(robot.home)])
 
     def advanced(self, engine: Engine) -> None:

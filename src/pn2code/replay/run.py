@@ -13,7 +13,6 @@ from pn2code.replay.arrays import packed, packed_reals
 from pn2code.replay.description import VERSION, Json, facts
 from pn2code.replay.motion import Motion
 from pn2code.replay.trace import follow
-from pn2code.robot.parts import Parts
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import inverse, matrix_of
 from pn2code.run.cell import RunResult
@@ -55,7 +54,7 @@ def describe(result: RunResult, motion: Motion, document: Document) -> Json:
         "cell": None,
         "motion": None,
     }
-    if robot_cell.robots:
+    if robot_cell.moving:
         described["cell"] = {
             **cell.describe(robot_cell),
             "parts": _parts(record, robot_cell, motion),
@@ -67,15 +66,12 @@ def describe(result: RunResult, motion: Motion, document: Document) -> Json:
 
 
 def _parts(record: RunRecord, robot_cell: RobotCell, motion: Motion) -> list[Json]:
-    """Of each part where it is from when on: in the world, in the tool of a robot, or nowhere."""
+    """Of each part where it is from when on: in the world, in the tool of a robot, on a turntable, or nowhere."""
     arms = {r.name for r in robot_cell.robots}
-    states: dict[str, list[Json]] = {
-        part.name: [{"t": 0.0, "frame": cell.frame(part.frame), "holder": ""}]
-        for part in Parts(robot_cell).present.values()
-    }
+    states = {name: [state] for name, state in cell.at_start(robot_cell).items()}
     for entry in record.parts:
         change = entry.change
-        state: Json = {"t": entry.t, "frame": cell.frame(matrix_of(change.pose)), "holder": ""}
+        state: Json = {"t": entry.t, **cell.put(robot_cell, change)}
         if change.effect == "takes" and entry.robot in arms:
             arm = robot_cell.robot(entry.robot)
             tcp = arm.T_world_base @ arm.kinematics.forward(motion.at(entry.robot, entry.t))

@@ -114,9 +114,15 @@ def _parts(record: RunRecord) -> dict[str, list[dict[str, Any]]]:
                 "effect": entry.change.effect,
                 "at": [round(v, 6) for v in (p.x, p.y, p.z)],
                 "turned": [round(math.degrees(v), 4) for v in (p.rx, p.ry, p.rz)],
+                **({"on": list(entry.change.on)} if entry.change.on else {}),
             }
         )
     return dict(sorted(out.items()))
+
+
+def _on(change: dict[str, Any]) -> str:
+    """What a part has been put on, in words."""
+    return f" on {' and '.join(change['on'])}" if "on" in change else ""
 
 
 def _minima(record: RunRecord) -> dict[str, Any]:
@@ -205,7 +211,7 @@ def page(summary: dict[str, Any]) -> RenderableType:
             f"worst {condition_text(entry['worst'], 1)} at {entry['t']:.2f} s{_counted(entry)}",
         )
     for part, changes in list(summary.get("parts", {}).items())[:MOST_PARTS]:
-        told = (f"{c['robot']} {c['effect']} it at {c['t']:.2f} s" for c in changes)
+        told = (f"{c['robot']} {c['effect']} it{_on(c)} at {c['t']:.2f} s" for c in changes)
         facts.add_row(f"part {part}", ", ".join(told))
     if len(summary.get("parts", {})) > MOST_PARTS:
         facts.add_row("further parts", f"{len(summary['parts']) - MOST_PARTS}, see summary.json")

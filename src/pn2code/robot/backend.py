@@ -33,6 +33,7 @@ class Clearance:
         allowed: overlap that is permitted between these two, m; None: they must keep apart.
         point: where, on `a`, in the world; other: the nearest point on `b`.
         stands: `a` stands on `b`, so the overlap is permitted on joint moves as well.
+        second: between robots, the other one.
     """
 
     kind: ClearanceKind
@@ -44,6 +45,7 @@ class Clearance:
     point: tuple[float, float, float] = (0.0, 0.0, 0.0)
     other: tuple[float, float, float] = (0.0, 0.0, 0.0)
     stands: bool = False
+    second: str = ""
 
     def permitted(self, *, is_free: bool) -> float | None:
         """The overlap that is permitted, m; `is_free`: on a joint move, which permits only what stands to do so."""
@@ -72,12 +74,10 @@ class Beside:
     Args:
         name: of the other thing.
         distance: m; negative when they overlap.
-        is_below: whether the part lies on it there, or above it.
     """
 
     name: str
     distance: float
-    is_below: bool
 
 
 class Backend(Protocol):
@@ -101,15 +101,15 @@ class Backend(Protocol):
         """
 
     def set_part(self, part: Part) -> None:
-        """Shows a part where it is from now on: in the world, or in the tool of the robot that carries it."""
+        """Shows a part where it is from now on: in the world, in the tool of a robot, or on a turntable."""
 
     def remove_part(self, name: str) -> None:
         """The part has left the cell."""
 
     def around(self, name: str, limit: float) -> tuple[Beside, ...] | None:
-        """The closest points of a part and each thing that stands, nearer than `limit` (m); the robots are left out.
+        """How near a part is to each thing, part and turntable that are nearer than `limit` (m).
 
-        None: this backend does not measure distances.
+        The arms are left out. None: this backend does not measure distances.
         """
 
     def render(self, camera: Camera, width: int, height: int) -> Picture | None:

@@ -42,7 +42,6 @@ from pn2code.robot.transforms import Array, pose_of, translation
 
 _SKY = (148.0, 166.0, 186.0)
 _HORIZON = (236.0, 239.0, 242.0)
-_UPRIGHT = 0.7  # of the normal where a part lies on something: at most 45 degrees steep
 _PAD = 0.004  # m: PyBullet has margins around shapes
 _FIRST_GUESS = 0.05  # m: searched first; most queries find their answer this near to the last one
 
@@ -109,6 +108,7 @@ class _Side:
         robot: whose it is, "" if it stands.
         links: names by index, of a robot; whole: the name of a body without links.
         base: the robot whose base link it has, and `root` which it is; ignored_by: robots that stand on it.
+        rides: the turntable of the robot on which it stands, a part that goes with it.
     """
 
     robot: str
@@ -118,6 +118,7 @@ class _Side:
     base: str = ""
     ignored_by: tuple[str, ...] = ()
     root: int = -1
+    rides: str = ""
 
     @property
     def key(self) -> str:
@@ -160,7 +161,7 @@ class BulletBackend:
                 self._p.configureDebugVisualizer(
                     self._p.COV_ENABLE_GUI, 0, physicsClientId=self._client
                 )
-            self._robots = {r.name: self._load_robot(r, looks) for r in cell.robots}
+            self._robots = {r.name: self._load_robot(r, looks) for r in cell.moving}
             self._scene = [self._load_body(b, looks) for b in bodies(cell)]
         self._looks = looks
         self._parts: dict[str, _Placed] = {}
@@ -170,7 +171,7 @@ class BulletBackend:
         self._searched = 0.0
         self._q: dict[str, tuple[float, ...]] = {}
         self._rules: dict[tuple[str, str], float | None] = {}
-        for robot in cell.robots:
+        for robot in cell.moving:
             self.set_joints(robot.name, robot.home)
         self._sunk = dict(self._depths_of_lifted())
 
@@ -287,7 +288,7 @@ class BulletBackend:
             loaded.body, loaded.joints, [[float(v)] for v in q], physicsClientId=self._client
         )
         for placed in self._parts.values():
-            if placed.part.holder == robot:
+            if placed.part.carrier == robot:
                 self._move(placed)
 
     def set_base(self, robot: str, base: Pose) -> None:
@@ -331,6 +332,8 @@ class BulletBackend:
         frame = placed.part.frame
         if placed.part.holder:
             frame = self.tcp(placed.part.holder) @ frame
+        elif placed.part.plate:
+            frame = self._plate(placed.part.plate) @ frame
         pose = pose_of(frame)
         self._p.resetBasePositionAndOrientation(
             placed.id,
@@ -339,27 +342,42 @@ class BulletBackend:
             physicsClientId=self._client,
         )
 
+    def _plate(self, plate: str) -> Array:
+        """Where a turntable is, `T_world_plate`."""
+        name, _, axis = plate.partition("/")
+        robot = self._robots[name].robot
+        own = next(a for a in robot.carrying if a.name == axis)
+        return robot.T_world_plate(own, self._q.get(name, robot.home))
+
     def remove_part(self, name: str) -> None:
         """The part has left the cell."""
         self._p.removeBody(self._parts.pop(name).id, physicsClientId=self._client)
         self._known = {}
 
     def around(self, name: str, limit: float) -> tuple[Beside, ...] | None:
-        """The closest points of a part and each thing that stands."""
+        """How near a part is to each thing, part and turntable."""
         own = self._parts[name]
         out = []
-        for side in self._standing():
-            if side.id == own.id:
+        others = [(side.whole, side.id, -1) for side in self._standing()]
+        for a in self._robots.values():
+            others += [(side.whole, side.id, -1) for side in self._riding(a)]
+            if not a.robot.is_device:  # what moves of devices is looked at with what moves
+                others += [(f"{a.robot.name}/{t}", a.body, a.index[t]) for t in a.robot.arm.tables]
+        for what, body, link in others:
+            if body == own.id:
                 continue
-            found = self._p.getClosestPoints(own.id, side.id, limit, physicsClientId=self._client)
+            found = self._p.getClosestPoints(
+                own.id, body, limit, -1, link, physicsClientId=self._client
+            )
             if found:
-                c = min(found, key=lambda point: float(point[8]))
-                out.append(Beside(side.whole, float(c[8]), float(c[7][2]) > _UPRIGHT))
+                out.append(Beside(what, min(float(c[8]) for c in found)))
         return tuple(sorted(out, key=lambda b: b.distance))
 
     def tcp(self, robot: str) -> Array:
         """`T_world_tcp` as PyBullet has it."""
         loaded = self._robots[robot]
+        if loaded.robot.is_device:
+            return np.asarray(loaded.robot.kinematics.forward(self._q[robot]))
         tip = "tool_tcp" if loaded.robot.tool is not None else loaded.robot.arm.flange
         state = self._p.getLinkState(
             loaded.body,
@@ -396,6 +414,7 @@ class BulletBackend:
                     *self._self(a, limit),
                     *self._on_plates(a, limit),
                     *self._carried(a, limit),
+                    *self._beside_riders(a, limit),
                 ]
             out += self._known["scene", me] + self._known["self", me]
         return tuple(_closest(out))
@@ -439,7 +458,11 @@ class BulletBackend:
                     if stands and allowed is None:
                         continue
                     who = first.robot or robot
-                    gap = Clearance(kind, who, one, two, c[8], allowed, c[5], c[6], stands)
+                    if kind == "scene" and first.rides:
+                        allowed, stands = max(allowed or 0.0, PART_CONTACT), True
+                    gap = Clearance(
+                        kind, who, one, two, c[8], allowed, c[5], c[6], stands, second.robot
+                    )
                     _keep_nearest(best, gap)
         return list(best.values())
 
@@ -452,6 +475,7 @@ class BulletBackend:
                 yield Clearance("self", a.robot.name, one, two, c[8], None, c[5], c[6])
         yield from self._on_plates(a, limit)
         yield from self._carried(a, limit)
+        yield from self._beside_riders(a, limit)
 
     def _on_plates(self, a: _Loaded, limit: float) -> Iterator[Clearance]:
         """Between the turntables of a robot, with what is on them, and the rest of it; its tool may touch them."""
@@ -501,8 +525,36 @@ class BulletBackend:
             for gap in self._between("robots", one, other, limit)
         ]
 
+    def _riding(self, a: _Loaded) -> Iterator[_Side]:
+        """The parts that stand on turntables of a robot."""
+        for part in self._parts.values():
+            plate = part.part.plate
+            if plate and part.part.carrier == a.robot.name:
+                yield _Side(a.robot.name, part.id, {}, part.part.name, rides=plate)
+
+    def _beside_riders(self, a: _Loaded, limit: float) -> Iterator[Clearance]:
+        """Between what stands on turntables of a robot and the rest of it: arm, part in its tool, other plates."""
+        riders = list(self._riding(a))
+        if not riders:
+            return
+        name = a.robot.name
+        held = [side for side in self._sides(a) if not side.links and not side.rides]
+        for rider in riders:
+            own = rider.rides.partition("/")[2]
+            others = [(f"{name}/{x}", a.body, i) for i, x in a.links.items() if x != own]
+            others += [(side.whole, side.id, -1) for side in held]
+            others += [(x.whole, x.id, -1) for x in riders if x.rides < rider.rides]
+            for other, body, link in others:
+                found = self._p.getClosestPoints(
+                    body, rider.id, limit, link, -1, physicsClientId=self._client
+                )
+                if found:
+                    c = min(found, key=lambda point: float(point[8]))
+                    allowed = self.allowed(other, rider.whole)
+                    yield Clearance("self", name, other, rider.whole, c[8], allowed, c[5], c[6])
+
     def _sides(self, a: _Loaded) -> Iterator[_Side]:
-        """A robot, and the part that it carries."""
+        """A robot, the part that it carries, and those that stand on its turntables."""
         name = a.robot.name
         links = {i: f"{name}/{link}" for i, link in a.links.items()}
         yield _Side(name, a.body, links, "", a.robot.name, root=a.root)
@@ -510,17 +562,22 @@ class BulletBackend:
             if part.part.holder == name:
                 whole = f"{name}/{part.part.name}"
                 yield _Side(name, part.id, {}, whole)
+        yield from self._riding(a)
 
     def _standing(self) -> Iterator[_Side]:
-        """What stands: the scene, and parts that nobody carries."""
+        """What stands still: the scene, and parts that neither a tool nor a turntable carries."""
         for thing in self._scene:
             yield _Side("", thing.id, {}, thing.body.name, ignored_by=thing.body.ignored_by)
         for part in self._parts.values():
-            if not part.part.holder and not part.hidden:
+            if not part.part.carrier and not part.hidden:
                 yield _Side("", part.id, {}, part.part.name)
 
     def _between(self, kind: ClearanceKind, a: _Side, b: _Side, limit: float) -> list[Clearance]:
         key = (kind, a.key, b.key)
+        if kind == "scene" and a.rides:
+            limit = min(
+                limit, _FIRST_GUESS
+            )  # it may touch: only that it does not too deeply counts
         reach = min(limit, self._guess.get(key, _FIRST_GUESS))
         skip_base = a.base != "" and a.base in b.ignored_by
         while True:
@@ -533,16 +590,20 @@ class BulletBackend:
                 allowed = self._permitted(a, b, name_a, name_b, stands=stands)
                 if stands and allowed is None:
                     continue
+                if kind == "scene" and a.rides:
+                    allowed, stands = max(allowed or 0.0, PART_CONTACT), True
                 if allowed is not None:
                     old = touching.get((name_a, name_b))
                 elif best is None or c[8] < best.distance:
-                    best = Clearance(kind, a.robot, name_a, name_b, c[8], None, c[5], c[6])
+                    best = Clearance(
+                        kind, a.robot, name_a, name_b, c[8], None, c[5], c[6], second=b.robot
+                    )
                     continue
                 else:
                     continue
                 if old is None or c[8] < old.distance:
                     item = Clearance(
-                        kind, a.robot, name_a, name_b, c[8], allowed, c[5], c[6], stands
+                        kind, a.robot, name_a, name_b, c[8], allowed, c[5], c[6], stands, b.robot
                     )
                     touching[name_a, name_b] = item
             if best is not None or reach >= limit:
@@ -554,22 +615,33 @@ class BulletBackend:
         return [*touching.values(), best] if best is not None else list(touching.values())
 
     def _carried(self, a: _Loaded, limit: float) -> list[Clearance]:
-        """Between the part that a robot carries and the robot itself, but for its tool and the last axis."""
+        """Between the part that a robot carries and the robot itself, but for its tool and the last axis.
+
+        On a turntable it may be put.
+        """
         name = a.robot.name
+        if a.robot.is_device:
+            return []
         last = a.joints[a.robot.kinematics.joints.stop - 1]
-        near = {i for i, link in a.links.items() if link.startswith("tool_") or i >= last}
+        tables = {a.index[t] for t in a.robot.arm.tables}
+        near = {i for i, link in a.links.items() if link.startswith("tool_") or i >= last} - tables
         best: Clearance | None = None
+        plates = []
         for side in self._sides(a):
-            for i in a.links if not side.links else ():
+            for i in a.links if not side.links and not side.rides else ():
                 if i in near:
                     continue
+                other = f"{name}/{a.links[i]}"
+                allowed = self.allowed(side.whole, other) if i in tables else None
                 for c in self._p.getClosestPoints(
                     side.id, a.body, limit, -1, i, physicsClientId=self._client
                 ):
-                    if best is None or c[8] < best.distance:
-                        other = f"{name}/{a.links[i]}"
-                        best = Clearance("self", name, side.whole, other, c[8], None, c[5], c[6])
-        return [] if best is None else [best]
+                    gap = Clearance("self", name, side.whole, other, c[8], allowed, c[5], c[6])
+                    if i in tables:
+                        plates.append(gap)
+                    elif best is None or c[8] < best.distance:
+                        best = gap
+        return plates if best is None else [best, *plates]
 
     def _self(self, a: _Loaded, limit: float) -> list[Clearance]:
         key = ("self", a.robot.name)

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.robot import codes, urdf
 from pn2code.robot.commands import Pose
-from pn2code.robot.external import Externals
+from pn2code.robot.external import ExternalAxis, Externals
 from pn2code.robot.kinematics import Branch, Conditioning, Kinematics, Solution
 from pn2code.robot.model import Arm
 from pn2code.robot.scene_objects import SceneObject
@@ -70,33 +70,38 @@ def _tree(arm: Arm, axes: Externals) -> etree._Element:
     last = STAND
     for axis in axes.tracks:
         etree.SubElement(out, "link", name=axis.name)
-        joint = _joint(out, axis.name, "prismatic", last, axis.name, Pose(0, 0, 0, 0, 0, 0))
-        etree.SubElement(joint, "axis", xyz=_words(axis.direction))
-        _limit(joint, axis.lower, axis.upper, axis.velocity)
+        joint = add_joint(out, axis.name, "prismatic", last, axis.name, Pose(0, 0, 0, 0, 0, 0))
+        etree.SubElement(joint, "axis", xyz=axis_words(axis.direction))
+        add_limit(joint, axis.lower, axis.upper, axis.velocity)
         last = axis.name
-    _joint(out, f"{STAND}_mount", "fixed", last, arm.urdf.root, Pose(0, 0, 0, 0, 0, 0))
+    add_joint(out, f"{STAND}_mount", "fixed", last, arm.urdf.root, Pose(0, 0, 0, 0, 0, 0))
     for axis in axes.tables:
         link = etree.SubElement(out, "link", name=axis.name)
-        plate = SceneObject(
-            axis.name,
-            "cylinder",
-            Pose(0, 0, -axis.height / 2.0, 0, 0, 0),
-            radius=axis.radius,
-            length=axis.height,
-            colour=_PLATE,
-        )
-        for number, thing in enumerate((plate, *axis.objects)):
-            _shape(link, thing, f"{axis.name}_{number}")
+        for number, thing in enumerate((plate_of(axis), *axis.objects)):
+            add_shape(link, thing, f"{axis.name}_{number}")
         place = pose_of(axis.T_base_axis)
-        joint = _joint(out, axis.name, "revolute", STAND, axis.name, place)
-        etree.SubElement(joint, "axis", xyz=_words(axis.direction))
-        _limit(joint, axis.lower, axis.upper, axis.velocity)
+        joint = add_joint(out, axis.name, "revolute", STAND, axis.name, place)
+        etree.SubElement(joint, "axis", xyz=axis_words(axis.direction))
+        add_limit(joint, axis.lower, axis.upper, axis.velocity)
     return out
 
 
-def _joint(
+def plate_of(axis: ExternalAxis) -> SceneObject:
+    """The plate of a turntable, in its frame: its top is at z = 0."""
+    return SceneObject(
+        axis.name,
+        "cylinder",
+        Pose(0, 0, -axis.height / 2.0, 0, 0, 0),
+        radius=axis.radius,
+        length=axis.height,
+        colour=_PLATE,
+    )
+
+
+def add_joint(
     out: etree._Element, name: str, kind: str, parent: str, child: str, place: Pose
 ) -> etree._Element:
+    """A joint between two links, without its axis and limits."""
     joint = etree.SubElement(out, "joint", name=name, type=kind)
     _origin(joint, place)
     etree.SubElement(joint, "parent", link=parent)
@@ -104,7 +109,8 @@ def _joint(
     return joint
 
 
-def _limit(joint: etree._Element, lower: float, upper: float, velocity: float) -> None:
+def add_limit(joint: etree._Element, lower: float, upper: float, velocity: float) -> None:
+    """The limits of a joint."""
     etree.SubElement(
         joint,
         "limit",
@@ -116,22 +122,23 @@ def _limit(joint: etree._Element, lower: float, upper: float, velocity: float) -
 
 
 def _origin(element: etree._Element, place: Pose) -> None:
-    xyz = _words((place.x, place.y, place.z))
-    etree.SubElement(element, "origin", xyz=xyz, rpy=_words((place.rx, place.ry, place.rz)))
+    xyz = axis_words((place.x, place.y, place.z))
+    etree.SubElement(element, "origin", xyz=xyz, rpy=axis_words((place.rx, place.ry, place.rz)))
 
 
-def _words(values: Sequence[float] | Array) -> str:
+def axis_words(values: Sequence[float] | Array) -> str:
+    """Numbers in URDF."""
     return " ".join(repr(float(v)) for v in values)
 
 
-def _shape(link: etree._Element, thing: SceneObject, name: str) -> None:
+def add_shape(link: etree._Element, thing: SceneObject, name: str) -> None:
     """What is seen of a thing, and what distances are measured to."""
     for tag in ("visual", "collision"):
         element = etree.SubElement(link, tag)
         _origin(element, thing.pose)
         geometry = etree.SubElement(element, "geometry")
         if thing.kind == "box":
-            etree.SubElement(geometry, "box", size=_words(thing.size))
+            etree.SubElement(geometry, "box", size=axis_words(thing.size))
         elif thing.kind == "cylinder":
             etree.SubElement(
                 geometry, "cylinder", radius=repr(thing.radius), length=repr(thing.length)
@@ -141,11 +148,11 @@ def _shape(link: etree._Element, thing: SceneObject, name: str) -> None:
                 geometry,
                 "mesh",
                 filename=str(thing.mesh.resolve() if thing.mesh else ""),
-                scale=_words([thing.scale] * 3),
+                scale=axis_words([thing.scale] * 3),
             )
         if tag == "visual":
             material = etree.SubElement(element, "material", name=name)
-            etree.SubElement(material, "color", rgba=_words(thing.colour))
+            etree.SubElement(material, "color", rgba=axis_words(thing.colour))
 
 
 class WithAxes(Kinematics):

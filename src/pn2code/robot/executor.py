@@ -37,6 +37,7 @@ from pn2code.robot.commands import (
     Wait,
     tcp_of,
 )
+from pn2code.robot.external import ExternalAxis
 from pn2code.robot.kinematics import Kinematics
 from pn2code.robot.motion import (
     LinearTrajectory,
@@ -57,8 +58,9 @@ from pn2code.robot.transforms import Array, describe, difference, inverse, matri
 
 CHECK_LENGTH = 0.005  # m: on a line, samples are no further apart than this on average,
 CHECK_ANGLE = math.radians(2.0)  # nor than this
-MotionKind = Literal["ptp", "lin", "circ", "tool", "measure", "wait"]
+MotionKind = Literal["ptp", "lin", "circ", "axis", "tool", "measure", "wait"]
 _OWN = np.eye(4)
+_STILL = 1e-9  # rad: a turntable that turns by less stands
 _NO_FRAMES: Mapping[str, Pose] = MappingProxyType({})
 
 
@@ -103,6 +105,23 @@ class Motion:
     def sample(self, times: Array) -> Array:
         """Joint positions (n, 6) at many times: much faster than one by one."""
         return self.trajectory.sample(np.clip(times - self.began, 0.0, self.duration))
+
+
+def turned(robot: CellRobot, motion: Motion) -> frozenset[str]:
+    """The turntables, belts and other axes of devices that a motion moves, as `left/plate`."""
+    return turned_by(robot, motion.trajectory)
+
+
+def turned_by(
+    robot: CellRobot, path: Trajectory, axes: tuple[ExternalAxis, ...] | None = None
+) -> frozenset[str]:
+    """The same of a trajectory; `axes`: of these alone."""
+    axes = robot.carrying if axes is None else axes
+    tables = {robot.index(axis.name): axis.name for axis in axes}
+    if not tables:
+        return frozenset()
+    off = np.abs(path.q(path.duration) - path.q(0.0))
+    return frozenset(f"{robot.name}/{name}" for i, name in tables.items() if off[i] > _STILL)
 
 
 class RobotExecutor:
@@ -176,6 +195,8 @@ class RobotExecutor:
             self.motion = self._next = None
 
     def _plan(self, command: Command, now: float) -> Motion:
+        if self.robot.is_device and not isinstance(command, MoveExternal | ToolAction | Wait):
+            raise MotionFault("bad-command", "it has no arm")
         match command:
             case MoveJoint():
                 return self._to_pose(command, now)
@@ -358,17 +379,21 @@ class RobotExecutor:
             axis = self.robot.axes.axis(a.axis)
             if axis is None or axis.is_track is not a.is_track:
                 kind = "track" if a.is_track else "turntable"
+                if self.robot.is_device:
+                    kind = "axis that slides" if a.is_track else "axis that turns"
                 raise MotionFault("bad-command", f"it has no {kind} `{a.axis}`")
             if not math.isfinite(a.position):
                 raise MotionFault("bad-command", f"`{a.axis}` cannot go to {a.position}")
-            i = self.robot.index(a.axis)
-            arm = self.robot.arm
+            moved = [(self.robot.index(k), v) for k, v in self.robot.axes.moved(a.axis, a.position)]
+            arm, i = self.robot.arm, moved[0][0]
             if not axis.lower - 1e-9 <= a.position <= axis.upper + 1e-9:
+                called = f"`{a.axis}`" if self.robot.is_device else arm.called(i)
                 raise MotionFault(
                     "joint-limit",
-                    f"{arm.called(i)} would be at {arm.beyond(i, a.position, axis.lower, axis.upper)}",
+                    f"{called} would be at {arm.beyond(i, a.position, axis.lower, axis.upper)}",
                 )
-            q[i] = a.position
+            for index, position in moved:
+                q[index] = position if axis.belt is None else q[index] + position
         return q
 
     def _limited(self, command: Move) -> MotionLimits:
@@ -395,7 +420,8 @@ class RobotExecutor:
     def _to_axes(self, command: MoveHome | MoveAxes | MoveExternal, now: float, q: Array) -> Motion:
         k = self.robot.kinematics
         path = plan_ptp(k, self.q, q, self._limited(command), command.speed)
-        return self._moving(command, "ptp", now, path, q, k.forward(q))
+        kind: MotionKind = "axis" if self.robot.is_device else "ptp"
+        return self._moving(command, kind, now, path, q, k.forward(q))
 
     def _linear(self, command: MoveLinear, now: float) -> Motion:
         if self.robot.axes or command.along:
@@ -493,7 +519,9 @@ class RobotExecutor:
             pose = pose_of(self._frames[command.frame] @ matrix_of(command.target))
         else:
             pose = self.pose
-        message = f"robot `{self.robot.name}`: {fault.message}, at TCP pose {describe(pose)}"
+        message = f"{self.robot.words}: {fault.message}"
+        if not self.robot.is_device:
+            message += f", at TCP pose {describe(pose)}"
         return MotionFault(
             fault.kind, message, robot=self.robot.name, pose=pose, q=fault.q, time=fault.time
         )
@@ -528,6 +556,6 @@ class RobotExecutor:
             way, turn = difference(matrix_of(self.pose), matrix_of(target))
             parts = math.ceil(max(way / CHECK_LENGTH, turn / CHECK_ANGLE, 1.0) - 1e-6)
             step = max(step, path.duration / parts)
-        elif kind != "ptp":
+        elif kind not in ("ptp", "axis"):
             step = max(step, path.duration)
         return Motion(self.robot.name, command, kind, now, path, self.pose, target, result, step)

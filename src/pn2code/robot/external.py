@@ -1,4 +1,5 @@
-"""External axes of a robot: tracks and lifts that carry the arm, turntables that carry the work piece.
+"""External axes: of a robot tracks and lifts that carry the arm, turntables that carry the work piece; of a device all
+that moves (`devices`).
 
 axes = read_axes(t, "left", base, folder)       # of [robots.left.axes]
 axes.tracks, axes.tables
@@ -26,15 +27,25 @@ if TYPE_CHECKING:
     from pn2code.robot.table import Table
 
 
+@frozen
+class Belt:
+    """What a belt has beside its length."""
+
+    width: float
+    stop: str = ""
+
+
 @frozen(eq=False)
 class ExternalAxis:
     """A track or a turntable; m or rad.
 
     Args:
-        is_track: else it is a turntable.
+        is_track: it slides, its positions are m (mm in scripts); else it turns.
         T_base_axis: of a turntable its frame at zero, in the frame of the robot's `base`; of a track nothing.
         direction: unit vector, in `base` where the arm goes, or the z of a turntable in its frame.
         radius, height: of the plate of a turntable; objects: what is on it, in its frame.
+        belt: of a belt, which runs on and on: its width and the place where a part stops it ("": nowhere); its commands
+            say how far it runs, at most `upper`, its length. `objects` is its body, which stands.
     """
 
     name: str
@@ -50,6 +61,7 @@ class ExternalAxis:
     radius: float = 0.0
     height: float = 0.0
     objects: tuple[SceneObject, ...] = ()
+    belt: Belt | None = None
 
     @property
     def unit(self) -> str:
@@ -68,15 +80,36 @@ class ExternalAxis:
             self.radius,
             self.height,
             self.objects,
+            self.belt,
         )
 
 
 @frozen(eq=False)
+class Clamp:
+    """Two axes that are commanded as one: the jaws of a clamp, each half of its gap from the middle.
+
+    Args:
+        axis: what is commanded, the gap.
+        jaws: the names of both axes.
+        place: where a part is that it holds, a name of `[places]`; "": nothing is said.
+    """
+
+    axis: ExternalAxis
+    jaws: tuple[str, str]
+    place: str = ""
+
+
+@frozen(eq=False)
 class Externals:
-    """The external axes of a robot, in the order of the file."""
+    """The external axes of a robot, in the order of the file; of a device `tables` are all of them.
+
+    Args:
+        clamps: those of `tables` that are commanded together.
+    """
 
     tracks: tuple[ExternalAxis, ...] = ()
     tables: tuple[ExternalAxis, ...] = ()
+    clamps: tuple[Clamp, ...] = ()
 
     def __iter__(self) -> Iterator[ExternalAxis]:
         yield from self.tracks
@@ -96,8 +129,18 @@ class Externals:
         raise KeyError(name)
 
     def axis(self, name: str) -> ExternalAxis | None:
-        """The one of that name."""
-        return next((a for a in self if a.name == name), None)
+        """The one that is commanded by that name."""
+        own = {jaw for c in self.clamps for jaw in c.jaws}
+        named = (*(a for a in self if a.name not in own), *(c.axis for c in self.clamps))
+        return next((a for a in named if a.name == name), None)
+
+    def moved(self, name: str, position: float) -> Iterator[tuple[str, float]]:
+        """The axes that one of that name moves, each with where it is then."""
+        clamp = next((c for c in self.clamps if c.axis.name == name), None)
+        if clamp is None:
+            yield name, position
+        else:
+            yield from ((jaw, position / 2.0) for jaw in clamp.jaws)
 
     @property
     def directions(self) -> Array:

@@ -19,7 +19,7 @@ class FakeBackend:
 
     def __init__(self, cell: RobotCell) -> None:
         self._cell = cell
-        self._q = {r.name: np.array(r.home) for r in cell.robots}
+        self._q = {r.name: np.array(r.home) for r in cell.moving}
 
     def set_joints(self, robot: str, q: Sequence[float] | Array) -> None:
         """Puts a robot at a joint position, rad."""

@@ -11,6 +11,7 @@ from __future__ import annotations
 import itertools
 import math
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 from functools import lru_cache, partial
 
 import numpy as np
@@ -71,6 +72,10 @@ def bodies(cell: RobotCell) -> tuple[Body, ...]:
             out += _rail(robot)
         elif robot.base.z > 0.05:
             out.append(_pedestal(robot))
+    for device in cell.devices:
+        for axis in device.belts:
+            name = f"{device.name}/{axis.name}"
+            out += [body_of(replace(o, name=name)) for o in axis.objects]
     if scene.panel is not None:
         out += panel_bodies(scene.panel)
     out += [body_of(o) for o in scene.objects]

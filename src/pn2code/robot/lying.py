@@ -1,7 +1,6 @@
-"""Whether a part that has been put down lies on something, and overlaps nothing.
+"""Whether a part that has been put down overlaps nothing.
 
     overlap(backend, "box.1")        # Trouble("is 3.0 mm deep in `table` (at most 1 mm)", margin=-0.002) or None
-    unsupported(backend, "box.1")    # Trouble("`floor`, the nearest thing below it, is 50.0 mm away ...", ...) or None
 
 Only a backend that measures distances can say so; of another one the answer is None.
 """
@@ -12,10 +11,6 @@ from pn2code.base.frozen import frozen
 from pn2code.robot.backend import Backend
 from pn2code.robot.digits import told_apart
 from pn2code.robot.robot_cell import PART_CONTACT
-
-REST_GAP = 0.005
-"""m: a part that is released may fall so far."""
-_SEARCHED = 0.5
 
 
 @frozen
@@ -42,20 +37,3 @@ def overlap(backend: Backend, name: str, within: float = 0.0) -> Trouble | None:
     depth, most = -1000.0 * around[0].distance, 1000.0 * PART_CONTACT
     shown, _ = told_apart(depth, most)
     return Trouble(f"is {shown} mm deep in `{around[0].name}` (at most {most:g} mm)", margin)
-
-
-def unsupported(backend: Backend, name: str, within: float = 0.0) -> Trouble | None:
-    """That a part hangs in the air; with `within` (m) also that it nearly does."""
-    around = backend.around(name, _SEARCHED)
-    if around is None:
-        return None
-    below = [b for b in around if b.is_below]
-    margin = REST_GAP - below[0].distance if below else -_SEARCHED
-    if margin >= within:
-        return None
-    under = (
-        f"`{below[0].name}`, the nearest thing below it, is {1000.0 * below[0].distance:.1f} mm away"
-        if below
-        else f"there is nothing below it within {1000.0 * _SEARCHED:g} mm"
-    )
-    return Trouble(f"{under} (at most {1000.0 * REST_GAP:g} mm)", margin)

@@ -42,7 +42,8 @@ class Arm:
         chain: all joints from the base to the flange; tracks and the axes of the arm move.
         lower: limits, rad, of what slides m; upper likewise.
         velocity: greatest axis speeds, rad/s or m/s.
-        tables: turntables, which are external axes beside the chain; of tracks, which are in it, `tracks` is how many.
+        tables: turntables (of a device all of its axes), which are external axes beside the chain; of tracks, which are
+            in it, `tracks` is how many.
     """
 
     name: str
@@ -106,9 +107,12 @@ class Arm:
         return f"{at} {unit or self.unit(axis)}, outside {low} .. {high}"
 
     def slides(self, axis: int) -> bool:
-        """Whether an axis slides: a track, or an axis of the arm itself."""
+        """Whether an axis slides: a track, an axis of the arm itself, or of a device."""
         moving = [j for j in self.chain if j.type != "fixed"]
-        return axis < len(moving) and moving[axis].type == "prismatic"
+        if axis < len(moving):
+            return moving[axis].type == "prismatic"
+        name = self.tables[axis - len(moving)]
+        return any(j.name == name and j.type == "prismatic" for j in self.urdf.joints)
 
     def shown(self, axis: int, value: float, digits: int = 2) -> str:
         """A position of an axis for people, without its unit: degrees, or mm of what slides."""

@@ -75,7 +75,7 @@ class Fault:
 
 @frozen(eq=False)
 class Sample:
-    """One robot at one instant."""
+    """One robot at one instant, or a device that moves, which has no arm."""
 
     robot: str
     q: Array
@@ -83,6 +83,7 @@ class Sample:
     conditioning: Conditioning
     limit_margin: float
     limit_axis: int
+    is_device: bool = False
 
 
 @frozen(eq=False)
@@ -109,10 +110,12 @@ class Monitor:
 
     def __init__(self, cell: RobotCell, backend: Backend, *, searched: float = SEARCHED) -> None:
         self._cell, self._backend, self._searched = cell, backend, searched
+        self._near = cell.scene.warning_clearance
         self._worst: dict[tuple[str, MeasureName, str], Extreme] = {}
         self._last: dict[str, Sample] = {}
         self._expected: dict[str, dict[bytes, Sample]] = {}
-        self._bases = {r.name: r.T_world_base for r in cell.robots}
+        self._bases = {r.name: r.T_world_base for r in cell.moving}
+        self._devices = frozenset(r.name for r in cell.devices)
 
     def check(
         self,
@@ -132,7 +135,7 @@ class Monitor:
         kinds = kinds or {}
         t = float(t)
         samples = tuple(
-            self._sample(r, joints[r.name]) for r in self._cell.robots if r.name in joints
+            self._sample(r, joints[r.name]) for r in self._cell.moving if r.name in joints
         )
         for s in samples:
             self._backend.set_joints(s.robot, s.q)
@@ -141,6 +144,8 @@ class Monitor:
         fault: Fault | None = None
         for s in samples:
             fault = fault or self._own_fault(s, t, kinds.get(s.robot) in ("lin", "circ"))
+            if s.robot in self._devices:
+                continue
             c = s.conditioning
             axis = (self._cell.robot(s.robot).arm.axes[s.limit_axis],)
             self._note("limit", s, s.limit_margin, t, phase, axis)
@@ -150,7 +155,7 @@ class Monitor:
             self._note("wrist", s, c.wrist, t, phase)
         warnings = []
         for found in clearances or ():
-            others = (found.robot, found.b.split("/")[0])
+            others = (found.robot, found.second or found.b.split("/")[0])
             free = any(kinds.get(name) == "ptp" for name in others)
             gap = replace(found, allowed=found.permitted(is_free=free))
             fault = fault or self._collision(gap, t, poses[gap.robot])
@@ -160,7 +165,9 @@ class Monitor:
             who = "+".join(others) if gap.kind == "robots" else gap.robot
             parts = (gap.a, gap.b)
             self._keep(Extreme(measure, who, gap.distance, t, phase, poses[gap.robot], parts))
-            if gap.allowed is None and gap.distance < self._cell.scene.warning_clearance:
+            # A door is always near its frame, and a clamp near what it stands on.
+            is_own = gap.robot in self._devices and gap.kind != "robots"
+            if gap.allowed is None and not is_own and gap.distance < self._near:
                 warnings.append(gap)
         return Verdict(t, samples, clearances, fault, tuple(warnings))
 
@@ -197,7 +204,7 @@ class Monitor:
         for q, frame, conditioning in zip(path, *robot.kinematics.states(path), strict=True):
             margin, axis = robot.kinematics.limit_margin(q)
             pose = pose_of(self._bases[name] @ frame)
-            yield Sample(name, q, pose, conditioning, margin, axis)
+            yield Sample(name, q, pose, conditioning, margin, axis, name in self._devices)
 
     def _note(
         self, measure: MeasureName, s: Sample, value: float, t: float, phase: str,
@@ -220,7 +227,7 @@ class Monitor:
         if s.limit_margin < -1e-9:
             arm, i = self._cell.robot(s.robot).arm, s.limit_axis
             message = (
-                f"robot `{s.robot}`: {arm.called(i)} is at {arm.shown(i, s.q[i])} {arm.unit(i)}, "
+                f"{self._cell.robot(s.robot).words}: {arm.called(i)} is at {arm.shown(i, s.q[i])} {arm.unit(i)}, "
                 f"{arm.shown(i, -s.limit_margin)} {arm.unit(i)} outside its limits, {at}"
             )
             return Fault("joint-limit", s.robot, message, t, s.pose)
@@ -243,5 +250,7 @@ class Monitor:
             what = f"`{gap.a}` is {deep} mm deep in `{gap.b}` at {where} mm, but only {most} mm are allowed"
         else:
             return None
-        message = f"robot `{gap.robot}`: {what}, at TCP pose {describe(pose)}"
+        message = f"{self._cell.robot(gap.robot).words}: {what}"
+        if gap.robot not in self._devices:
+            message += f", at TCP pose {describe(pose)}"
         return Fault("collision", gap.robot, message, t, pose)

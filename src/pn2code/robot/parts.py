@@ -1,25 +1,28 @@
 """Parts in a run: where each is, who carries it, and what an action of a tool or device does to it.
 
     parts = Parts(cell)
+    parts.stand("left", q)                                                      # where its turntables are now
     done = parts.handle("robot1", Handling("takes", "blank"), T_world_tcp)      # PartChange; PartFault if it cannot be
-    parts.poses({"robot1": T_world_tcp})                                        # {"blank.1": T_world_part}
+    parts.turn("left/plate")                                                    # PartFault if something would fall off
 
 Parts have the name of their kind and a number, in the order in which they come into the cell. A part that is carried
-keeps its place in the tool. Nothing here measures distances: what a part rests on, and what it touches, is the
-backend's to say.
+keeps its place in the tool, one that stands on a turntable its place on the plate. What a part stands on is worked out
+from the scene as it is then (`ground`); what it overlaps is the backend's to say.
 """
 
 from __future__ import annotations
 
+import copy
 import itertools
 import math
-from collections.abc import Iterator
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from pn2code.base.frozen import frozen
 from pn2code.robot.commands import Handling, Pose
+from pn2code.robot.ground import REST_GAP, Ground, Rest
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array, describe, difference, inverse, matrix_of, pose_of
@@ -34,14 +37,21 @@ class Part:
     """One part.
 
     Args:
-        frame: `T_world_part`, or `T_tcp_part` while it is carried.
+        frame: `T_world_part`; `T_tcp_part` while it is carried, `T_plate_part` while it stands on a turntable.
         holder: the robot that carries it, "" if it stands.
+        plate: the turntable with which it turns, "left/plate"; "": with none.
     """
 
     name: str
     kind: PartKind
     frame: Array
     holder: str = ""
+    plate: str = ""
+
+    @property
+    def carrier(self) -> str:
+        """The robot that moves it, with its tool or a turntable; "": it stands still."""
+        return self.holder or self.plate.partition("/")[0]
 
 
 @frozen
@@ -49,47 +59,162 @@ class PartChange:
     """What has become of a part.
 
     Args:
-        effect: as in `Handling`; part: its name.
+        effect: as in `Handling`, or "settles": what it stood on was taken away; part: its name.
         pose: where it is, or was when it left, in the world.
+        on: what it stands on now.
+        plate: the turntable with which it turns now, and its pose there.
     """
 
     effect: str
     part: str
     pose: Pose
+    on: tuple[str, ...] = ()
+    plate: str = ""
+    on_plate: Pose | None = None
 
 
 @dataclass(slots=True)
 class Parts:
-    """All parts of a cell; begins with those that are there at the start."""
+    """All parts of a cell; begins with those that are there at the start.
+
+    Args:
+        turning: turntables that turn just now, on which nothing can be handled.
+        slack: m, by how much what a part stands on may be off from what is asked for.
+        settled: parts that now turn with another turntable, or with none, because of what was taken away last.
+    """
 
     cell: RobotCell
     present: dict[str, Part] = field(default_factory=dict)
+    turning: frozenset[str] = frozenset()
+    slack: float = 0.0
+    settled: tuple[PartChange, ...] = ()
+    _plates: dict[str, Array] = field(init=False)
     _numbers: dict[str, Iterator[int]] = field(init=False)
 
     def __post_init__(self) -> None:
         """Puts the parts of the start into the cell."""
+        self._plates = {}
+        for robot in self.cell.moving:
+            self.stand(robot.name, robot.home)
         self._numbers = {kind: itertools.count(1) for kind in self.cell.parts}
         for kind in self.cell.parts.values():
             for pose in kind.at:
                 self._add(kind, matrix_of(pose))
+        self._settle()
 
-    def copy(self) -> Parts:
+    @property
+    def _ground(self) -> Ground:
+        return Ground.of(self.cell)
+
+    def _settle(self) -> None:
+        """Parts of the start that stand on a turntable, or on others that do, turn with it."""
+        found = True
+        while found:
+            found = False
+            for part in list(self.present.values()):
+                if not part.carrier and (plate := self._plate_under(part)):
+                    self._keep(part, self.world(part), plate)
+                    found = True
+
+    def _settle_again(self) -> None:
+        """The same when something was taken away, on which parts stood."""
+        before = dict(self.present)
+        for part in before.values():
+            if part.plate:
+                self._keep(part, self.world(part), "")
+        self._settle()
+        for name, old in before.items():
+            part = self.present[name]
+            if part.plate == old.plate:
+                self.present[name] = old
+                continue
+            rest = self.rest(part)
+            on_plate = pose_of(part.frame) if part.plate else None
+            on = rest.on if rest is not None else ()
+            pose = pose_of(self.world(part))
+            self.settled += (PartChange("settles", name, pose, on, part.plate, on_plate),)
+
+    def copy(self, slack: float = 0.0) -> Parts:
         """The same parts, to be handled otherwise; a new one gets the first number that none has."""
-        out = Parts(self.cell)
+        out = copy.copy(self)
         out.present = dict(self.present)
+        out.slack = slack
+        out._plates = dict(self._plates)
+        out._numbers = {}
         used = [name.rsplit(".", 1) for name in self.present]
         for kind in self.cell.parts:
             last = max((int(number) for own, number in used if own == kind), default=0)
             out._numbers[kind] = itertools.count(last + 1)
         return out
 
+    def stand(self, robot: str, q: Sequence[float] | Array) -> None:
+        """A robot is at this joint position now: where its turntables are counts for what is handled."""
+        own = self.cell.robot(robot)
+        for axis in own.carrying:
+            self._plates[f"{robot}/{axis.name}"] = own.T_world_plate(axis, q)
+
     def held_by(self, robot: str) -> Part | None:
         """The part that a robot carries."""
         return next((p for p in self.present.values() if p.holder == robot), None)
 
-    def pose(self, part: Part, T_world_tcp: Array) -> Array:
-        """`T_world_part`; the TCP is that of its holder, if it has one."""
-        return T_world_tcp @ part.frame if part.holder else part.frame
+    def world(self, part: Part) -> Array:
+        """`T_world_part` of a part that stands."""
+        assert not part.holder, "where a part in a tool is, is the robot's to say"
+        return self._plates[part.plate] @ part.frame if part.plate else part.frame
+
+    def riders(self, plate: str) -> list[Part]:
+        """What turns with a turntable."""
+        return [p for p in self.present.values() if p.plate == plate]
+
+    def rest(self, part: Part, without: str = "") -> Rest | None:
+        """How a part stands, also if another one were not there; None: its shape is not known."""
+        others = [
+            (p.name, p.kind, self.world(p))
+            for p in self.present.values()
+            if not p.holder and p.name not in (part.name, without)
+        ]
+        return self._ground.rest(part.kind, self.world(part), others, self._plates, self.slack)
+
+    def turn(self, plate: str) -> None:
+        """A turntable or belt begins to move. Raises PartFault if something on it would not go with it."""
+        riders = self.riders(plate)
+        if not riders:
+            return
+        if not self._ground.plates[plate].upright:
+            raise PartFault(
+                f"`{plate}` turns about a line that is not upright, and `{riders[0].name}` only lies on it"
+            )
+        own = {plate, *(p.name for p in riders)}
+        for part in riders:
+            rest = self.rest(part)
+            off = [x for x in rest.on if x not in own] if rest is not None else []
+            if off:
+                raise PartFault(
+                    f"`{plate}` {self._ground.plates[plate].does}, but `{part.name}` on it also stands on `{off[0]}`, "
+                    "which does not"
+                )
+
+    def run_out(self, plate: str) -> None:
+        """A belt has come to rest. Raises PartFault if something on it has come off its end.
+
+        What stands on something else now is in `settled`.
+        """
+        self.settled = ()
+        for part in self.riders(plate):
+            rest = self.rest(part)
+            trouble = rest.trouble(self.slack) if rest is not None else ""
+            if trouble:
+                where = describe(pose_of(self.world(part)))
+                raise PartFault(
+                    f"`{plate}` takes `{part.name}` along until it is {trouble}, part at {where}"
+                )
+        self._settle_again()
+
+    def rewind(self, plate: str, frame: Array) -> None:
+        """The same belt with its beginning counted from where it is now: `T_world_plate` of that."""
+        for part in self.riders(plate):
+            self.present[part.name] = replace(part, frame=inverse(frame) @ self.world(part))
+        self._plates[plate] = frame
 
     def handle(self, who: str, handling: Handling, T_world_tcp: Array | None) -> PartChange:
         """Does to a part what an action does at its end.
@@ -101,6 +226,7 @@ class Parts:
         Raises PartFault when it is not possible; nothing has changed then.
         """
         kind = self.cell.parts[handling.part]
+        self.settled = ()
         match handling.effect:
             case "takes":
                 assert T_world_tcp is not None, "only a tool takes parts"
@@ -123,8 +249,9 @@ class Parts:
         at = f"at TCP pose {describe(pose_of(tcp))}"
         if not standing:
             raise PartFault(f"`{robot}` grips air: there is no part `{kind.name}` to take, {at}")
-        near = min(standing, key=lambda p: _off(p, tcp))
-        way, turn = _off(near, tcp)
+        offs = {p.name: _off(kind, self.world(p), tcp) for p in standing}
+        near = min(standing, key=lambda p: offs[p.name])
+        way, turn = offs[near.name]
         if way > kind.tolerance or turn > kind.angle:
             off = f"{1000.0 * way:.1f} mm"
             off += f" and {math.degrees(turn):.1f} deg" if turn > kind.angle else ""
@@ -132,8 +259,12 @@ class Parts:
                 f"`{robot}` grips air: the nearest part `{kind.name}`, `{near.name}`, is {off} from where it can be "
                 f"gripped (at most {1000.0 * kind.tolerance:g} mm, {math.degrees(kind.angle):g} deg), {at}"
             )
-        self.present[near.name] = Part(near.name, kind, inverse(tcp) @ near.frame, robot)
-        return PartChange("takes", near.name, pose_of(near.frame))
+        frame = self.world(near)
+        carries = self._expect_free(f"`{robot}` takes `{near.name}`", near, at)
+        self.present[near.name] = Part(near.name, kind, inverse(tcp) @ frame, robot)
+        if carries:
+            self._settle_again()
+        return PartChange("takes", near.name, pose_of(frame))
 
     def _release(self, robot: str, kind: PartKind, tcp: Array) -> PartChange:
         held = self.held_by(robot)
@@ -144,8 +275,14 @@ class Parts:
                 f"at TCP pose {describe(pose_of(tcp))}"
             )
         frame = tcp @ held.frame
-        self.present[held.name] = Part(held.name, kind, frame)
-        return PartChange("releases", held.name, pose_of(frame))
+        part = Part(held.name, kind, frame)
+        rest = self.rest(part)
+        trouble = rest.trouble(self.slack) if rest is not None else ""
+        if trouble:
+            raise PartFault(
+                f"`{robot}` releases `{part.name}` {trouble}, part at {describe(pose_of(frame))}"
+            )
+        return self._put_down(f"`{robot}` releases `{part.name}`", "releases", part, rest)
 
     def _create(self, who: str, kind: PartKind, place: str) -> PartChange:
         pose = self.cell.places[place]
@@ -154,7 +291,19 @@ class Parts:
             raise PartFault(
                 f"`{who}` puts a part `{kind.name}` at place `{place}`, but `{there.name}` is there"
             )
-        return PartChange("creates", self._add(kind, matrix_of(pose)).name, pose)
+        part = Part(f"{kind.name}.{next(self._numbers[kind.name])}", kind, matrix_of(pose))
+        does = f"`{who}` puts `{part.name}` at place `{place}`"
+        return self._put_down(does, "creates", part, self.rest(part))
+
+    def _put_down(self, does: str, effect: str, part: Part, rest: Rest | None) -> PartChange:
+        """A part stands from now on; `part` has its frame in the world."""
+        on = rest.on if rest is not None else ()
+        plate = self._plate_of(on)
+        if plate in self.turning:
+            raise PartFault(f"{does} on `{plate}` while that {self._ground.plates[plate].does}")
+        kept = self._keep(part, part.frame, plate)
+        on_plate = pose_of(kept.frame) if plate else None
+        return PartChange(effect, part.name, pose_of(part.frame), on, plate, on_plate)
 
     def _remove(self, who: str, kind: PartKind, place: str) -> PartChange:
         there = self._at(place, kind)
@@ -163,8 +312,58 @@ class Parts:
             raise PartFault(
                 f"`{who}` removes a part `{kind.name}` from place `{place}`, but {what}"
             )
+        frame = self.world(there)
+        at = f"part at {describe(pose_of(frame))}"
+        does = f"`{who}` removes `{there.name}` from place `{place}`"
+        carries = self._expect_free(does, there, at)
         del self.present[there.name]
-        return PartChange("removes", there.name, pose_of(there.frame))
+        if carries:
+            self._settle_again()
+        return PartChange("removes", there.name, pose_of(frame))
+
+    def _expect_free(self, does: str, part: Part, at: str) -> bool:
+        """A part can be taken away: it is not on the move, and nothing would fall without it.
+
+        Gives whether others stand on it, and on something else as well.
+        """
+        if part.plate in self.turning:
+            verb = self._ground.plates[part.plate].does
+            raise PartFault(f"{does} from `{part.plate}` while that {verb}, {at}")
+        carries = False
+        place = self.world(part)[:3, 3]
+        near = self._ground.radius(part.kind.name) + 2.0 * REST_GAP
+        for other in self.present.values():
+            if other.holder or other.name == part.name:
+                continue
+            off = float(np.linalg.norm(self.world(other)[:3, 3] - place))
+            if off > near + self._ground.radius(other.kind.name):
+                continue
+            rest = self.rest(other)
+            if rest is None or part.name not in rest.on:
+                continue
+            carries = True
+            without = self.rest(other, without=part.name)
+            if not rest.trouble(self.slack) and without and without.trouble(self.slack):
+                raise PartFault(f"{does}, but `{other.name}` stands on it, {at}")
+        return carries
+
+    def _plate_under(self, part: Part) -> str:
+        """The turntable with which a part turns that stands where it is; "": with none."""
+        rest = self.rest(part)
+        return self._plate_of(rest.on) if rest is not None else ""
+
+    def _plate_of(self, on: tuple[str, ...]) -> str:
+        for name in on:
+            if name in self._plates:
+                return name
+            if name in self.present and self.present[name].plate:
+                return self.present[name].plate
+        return ""
+
+    def _keep(self, part: Part, frame: Array, plate: str) -> Part:
+        own = inverse(self._plates[plate]) @ frame if plate else np.asarray(frame)
+        self.present[part.name] = replace(part, frame=own, holder="", plate=plate)
+        return self.present[part.name]
 
     def is_seen(self, place: str, kind: str = "") -> bool:
         """Whether a part (of a kind; "": of any) stands at a place, as it would be found there to be removed."""
@@ -172,7 +371,7 @@ class Parts:
         return any(
             not p.holder
             and kind in ("", p.kind.name)
-            and difference(p.frame, spot)[0] <= p.kind.tolerance
+            and difference(self.world(p), spot)[0] <= p.kind.tolerance
             for p in self.present.values()
         )
 
@@ -182,7 +381,7 @@ class Parts:
         near = [
             p
             for p in self.present.values()
-            if not p.holder and difference(p.frame, spot)[0] <= p.kind.tolerance
+            if not p.holder and difference(self.world(p), spot)[0] <= p.kind.tolerance
         ]
         return min(near, key=lambda p: p.kind is not kind, default=None)
 
@@ -192,10 +391,10 @@ class Parts:
         return part
 
 
-def _off(part: Part, tcp: Array) -> tuple[float, float]:
-    """How far (m) and how much turned (rad) the TCP is from where the part can be gripped."""
-    if not part.kind.grips:
-        return difference(part.frame, tcp)[0], 0.0
-    offs = [difference(part.frame @ matrix_of(g), tcp) for g in part.kind.grips]
-    fits = [o for o in offs if o[1] <= part.kind.angle]
+def _off(kind: PartKind, frame: Array, tcp: Array) -> tuple[float, float]:
+    """How far (m) and how much turned (rad) the TCP is from where a part can be gripped."""
+    if not kind.grips:
+        return difference(frame, tcp)[0], 0.0
+    offs = [difference(frame @ matrix_of(g), tcp) for g in kind.grips]
+    fits = [o for o in offs if o[1] <= kind.angle]
     return min(fits or offs)

@@ -1,9 +1,9 @@
-"""The cell as the robots see it, in SI units: arms, tools, bases, motion limits, scene objects."""
+"""The cell as the robots see it, in SI units: arms, tools, bases, motion limits, scene objects, devices that move."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import field
 
 import numpy as np
@@ -12,14 +12,15 @@ from pn2code.base.frozen import frozen
 from pn2code.robot import payload
 from pn2code.robot.carried import STAND
 from pn2code.robot.commands import Pose
-from pn2code.robot.external import Externals
+from pn2code.robot.external import ExternalAxis, Externals
 from pn2code.robot.kinematics import Branch, Kinematics
 from pn2code.robot.model import Arm, Tool
 from pn2code.robot.motion import MotionLimits
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.payload import Load
 from pn2code.robot.scene_objects import SceneObject
-from pn2code.robot.transforms import Array, matrix_of
+from pn2code.robot.transforms import Array, matrix_of, rotation_about
+from pn2code.robot.zones_table import Zone
 
 PART_CONTACT = 1e-3
 """m: parts are taken from what they rest on, and tools touch them: so deep they may overlap."""
@@ -140,6 +141,47 @@ class CellRobot:
         return ""
 
     @property
+    def carrying(self) -> tuple[ExternalAxis, ...]:
+        """The axes with which parts go that stand on them: turntables of a robot, those of a device but for jaws."""
+        jaws = {name for clamp in self.axes.clamps for name in clamp.jaws}
+        return tuple(a for a in self.axes.tables if a.name not in jaws)
+
+    @property
+    def belts(self) -> tuple[ExternalAxis, ...]:
+        """Those that are belts."""
+        return tuple(a for a in self.axes.tables if a.belt is not None)
+
+    def T_world_plate(self, axis: ExternalAxis, q: Sequence[float] | Array) -> Array:  # noqa: N802
+        """Where one of these is, with what goes with it."""
+        position = float(q[self.index(axis.name)])
+        step = np.eye(4)
+        if axis.is_track:
+            step[:3, 3] = position * axis.direction
+        else:
+            step[:3, :3] = rotation_about(axis.direction, position)
+        return np.asarray(self.T_world_base @ (axis.T_base_axis @ step))
+
+    def is_at(self, axis: str, q: Sequence[float] | Array, position: float) -> bool:
+        """Whether an axis is at a position (m, degrees), to 1 mm or 0.1 degrees; of a clamp that is its gap."""
+        own = self.axes.axis(axis)
+        assert own is not None, "the cell has been checked"
+        moved = [name for name, _ in self.axes.moved(axis, position)]
+        now = sum(float(q[self.index(name)]) for name in moved)
+        off = abs(now - position) if own.is_track else abs(math.degrees(now) - position)
+        return off <= (0.001 if own.is_track else 0.1)
+
+    @property
+    def is_device(self) -> bool:
+        """Whether it is a device, which has external axes and no arm."""
+        joints = self.kinematics.joints
+        return joints.start == joints.stop
+
+    @property
+    def words(self) -> str:
+        """What it is, for messages."""
+        return f"{'device' if self.is_device else 'robot'} `{self.name}`"
+
+    @property
     def root(self) -> str:
         """The base link of its arm: what stands on the floor, or on a track."""
         tree = self.arm.urdf
@@ -203,9 +245,11 @@ class RobotCell:
     """Robots, motion limits, scene and parts: what backends, monitor and executors are built from.
 
     Args:
+        devices: those of which something moves, in the form of robots without joints.
         parts: the kinds of parts that are carried, by name.
         places: poses in the world that have a name.
         frames: in which moves can be given, by name; each in the world.
+        zones: boxes in the room, by name.
     """
 
     robots: tuple[CellRobot, ...]
@@ -214,10 +258,17 @@ class RobotCell:
     parts: Mapping[str, PartKind] = field(default_factory=dict)
     places: Mapping[str, Pose] = field(default_factory=dict)
     frames: Mapping[str, Pose] = field(default_factory=dict)
+    devices: tuple[CellRobot, ...] = ()
+    zones: Mapping[str, Zone] = field(default_factory=dict)
+
+    @property
+    def moving(self) -> tuple[CellRobot, ...]:
+        """All that moves: the robots, then the devices."""
+        return (*self.robots, *self.devices)
 
     def robot(self, name: str) -> CellRobot:
-        """The robot of that name; KeyError if there is none."""
-        for robot in self.robots:
+        """The robot of that name, or the device that moves; KeyError if there is none."""
+        for robot in self.moving:
             if robot.name == name:
                 return robot
         raise KeyError(name)

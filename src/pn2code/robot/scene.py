@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import fnmatch
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -24,6 +24,7 @@ from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes
 from pn2code.robot.carried import WithAxes, with_axes
+from pn2code.robot.devices import read_devices, touched
 from pn2code.robot.external import read_axes
 from pn2code.robot.frames import Frames, read_frames
 from pn2code.robot.kinematics import Kinematics
@@ -42,6 +43,7 @@ from pn2code.robot.scene_objects import SceneObject, read_object
 from pn2code.robot.table import Locate, Table, is_number
 from pn2code.robot.table_poses import read_own_pose, read_pose
 from pn2code.robot.transforms import Array, matrix_of
+from pn2code.robot.zones_table import read_zones
 
 RADIANS = "angles in cell.toml are in degrees; if these are radians, multiply them by 57.2958"
 FEW_RADIANS = 3.2
@@ -61,7 +63,7 @@ def load(
     *,
     partial: bool = False,
 ) -> RobotCell | None:
-    """The robot cell of the raw sections `robots`, `motion`, `scene`; None if there are mistakes.
+    """The robot cell of the raw sections `robots`, `devices`, `motion`, `scene`; None if there are mistakes.
 
     Args:
         folder: where relative paths of models and meshes start.
@@ -88,10 +90,12 @@ def load(
     named = dict(table("robots", None).named(ROBOT))
     taken = _taken(geometry.get("primitives", {}))
     robots = tuple(_loaded(_with_frames(r, frames), kinds, taken, named[r.name]) for r in robots)
-    scene = _scene(table("scene", SCENE), robots, names, kinds, folder)
+    devices = read_devices(table("devices", None), folder, places)
+    scene = _scene(table("scene", SCENE), robots, devices, names, kinds, folder)
+    zones = read_zones(table("zones", None))
     if len(d.errors) != before:
         return None
-    return RobotCell(robots, motion, scene, kinds, places, frames.standing)
+    return RobotCell(robots, motion, scene, kinds, places, frames.standing, devices, zones)
 
 
 def _with_frames(robot: CellRobot, frames: Frames) -> CellRobot:
@@ -257,6 +261,7 @@ def _outside(arm: Arm, axis: int, home: Array, said: float) -> str:
 def _scene(
     t: Table,
     robots: tuple[CellRobot, ...],
+    devices: tuple[CellRobot, ...],
     names: tuple[str, ...],
     kinds: Mapping[str, PartKind],
     folder: Path,
@@ -265,9 +270,17 @@ def _scene(
     depth = t.number("tool_contact_depth")
     contacts = _default_contacts(robots, depth) if depth > 0.0 else []
     objects = tuple(o for e in t.tables("objects") if (o := read_object(e, folder)) is not None)
-    contacts += _gripping(robots, kinds, objects)
+    plates = [f"{r.name}/{a.name}" for r in devices for a in r.carrying]
+    contacts += [*_gripping(robots, kinds, objects, plates), *_clamping(devices, kinds)]
     _named_once(t, objects, kinds)
-    things = [*names, "panel", "floor", *(o.name for o in objects), *(f"{k}.1" for k in kinds)]
+    things = [
+        *names,
+        *(r.name for r in devices),
+        "panel",
+        "floor",
+        *(o.name for o in objects),
+        *(f"{k}.1" for k in kinds),
+    ]
     for c in t.tables("contacts"):
         contacts.append(_contact(c, things))
     out = SceneConfig(
@@ -315,10 +328,18 @@ def _gripping(
     robots: tuple[CellRobot, ...],
     kinds: Mapping[str, PartKind],
     objects: tuple[SceneObject, ...],
+    belts: list[str],
 ) -> list[ContactRule]:
     """The tools' contact links may touch parts, and parts that are carried what they are taken from and put on."""
     tips = [f"{r.name}/tool_{x}" for r in robots if r.tool for x in r.tool.contact_links]
-    things = ["floor", "panel/*", *(o.name for o in objects), *(f"{kind}.*" for kind in kinds)]
+    things = [
+        "floor",
+        "panel/*",
+        *belts,
+        *(o.name for o in objects),
+        *(f"{kind}.*" for kind in kinds),
+        *(f"{r.name}/{table}" for r in robots for table in r.arm.tables),
+    ]
     return [
         rule
         for kind in kinds
@@ -327,6 +348,18 @@ def _gripping(
             *(ContactRule(f"*/{kind}.*", thing, PART_CONTACT) for thing in things),
         )
     ]
+
+
+def _clamping(
+    devices: tuple[CellRobot, ...], kinds: Mapping[str, PartKind]
+) -> Iterator[ContactRule]:
+    """The jaws of clamps may touch parts, and each other."""
+    for jaws in touched(devices):
+        yield ContactRule(*jaws, PART_CONTACT)
+        for jaw in jaws:
+            for kind in kinds:
+                yield ContactRule(jaw, f"{kind}.*", PART_CONTACT)
+                yield ContactRule(jaw, f"*/{kind}.*", PART_CONTACT)
 
 
 def _panel(t: Table) -> PanelConfig:

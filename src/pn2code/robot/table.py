@@ -164,6 +164,13 @@ class Table:
         """The tables within this one, each with its name."""
         return [(name, self._inner(self.data[name], (name,), inner)) for name in self.data]
 
+    def inside(self, *path: str) -> Table:
+        """The table at a path within this one, with names that are chosen; KeyError if it is not there."""
+        data: Any = self.data
+        for name in path:
+            data = data[name]
+        return self._inner(data, path, None)
+
     def inner(self, name: str) -> Section:
         """What is in each of the tables with chosen names that a key has."""
         inner = self._key(name).inner

@@ -20,6 +20,8 @@ from pn2code.tdl import types as tdl
 
 def parts_of(primitive: Primitive, argument: Value) -> tuple[Value, list[Value], Value | None]:
     """What a function takes: poses or a joint position, positions of external axes, and the speed, if it has one."""
+    if primitive.to is not None:
+        return Rec(()), [], None
     if not isinstance(argument, Rec) or not argument.fields or argument.fields[0][0] != "1":
         return (argument, [], None) if primitive.places else (Rec(()), [argument], None)
     fields = argument.fields
@@ -85,6 +87,10 @@ def of(
 
 
 def _external(primitive: Primitive, positions: Sequence[Value], span: Span) -> Iterator[t.Along]:
+    if primitive.to is not None:
+        ((axis, slides),) = primitive.along
+        yield t.Along(axis, t.Quantity(primitive.to, "mm" if slides else "deg"), slides)
+        return
     for (axis, is_track), value in zip(primitive.along, positions, strict=True):
         if not isinstance(value, Scalar):
             raise UnsupportedError(

@@ -310,7 +310,8 @@ class StepTranslator:
         primitive = self.primitives[name]
         self._acts = True
         command = primitive.command
-        if self.machine.owner.kind is OwnerKind.DEVICE and command not in ("tool", "wait"):
+        is_device = self.machine.owner.kind is OwnerKind.DEVICE
+        if is_device and command not in ("tool", "wait", "move_external"):
             raise UnsupportedError(
                 f"`{name}` is a `{command}`, but device `{self.machine.owner.name}` has no arm",
                 span,

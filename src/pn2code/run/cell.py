@@ -342,7 +342,7 @@ def _start(
     engine = _engine(prepared, options, supervisor, trace, backend, observers)
     if isinstance(engine, RealtimeEngine):
         engine.hand = hand
-    arms = {robot.name for robot in prepared.config.robots}
+    moving = {robot.name for robot in cell.moving}
     for name in late:
         text = "has found no supervisor: it had come to its end before"
         engine.record.warnings.append(RunWarning(0.0, name, text))
@@ -352,7 +352,7 @@ def _start(
         script, program = prepared.scripts[name]
         executor = (
             RobotExecutor(cell.robot(name), cell.motion, cell.frames)
-            if name in arms
+            if name in moving
             else DeviceExecutor(name)
         )
         files = _files(engine, side)

@@ -32,12 +32,22 @@ class Choice:
         party: who asks.
         sensor: its name; variable: of the net, which it decides.
         scalar: its values.
+        says: what it tells, in the words of cell.toml; "": it has none.
     """
 
     party: str
     sensor: str
     variable: str
     scalar: Scalar
+    says: str = ""
+
+    @property
+    def allowed(self) -> str:
+        """Which values it has, in words, where they are not listed."""
+        low, high = self.scalar.low, self.scalar.high
+        is_bounded = low is not None and high is not None
+        between = f" from {self.text(low)} to {self.text(high)}" if is_bounded else ""
+        return f"a value of {self.scalar.colset}{between}"
 
     def values(self) -> tuple[Value, ...] | None:
         """All values, in the order of the colour set; None: too many, or not bounded."""
@@ -73,7 +83,7 @@ def choices_of(
         for name in program.sensors:
             if name in sensors:
                 sensor, scalar = sensors[name]
-                found[party, name] = Choice(party, name, sensor.variable, scalar)
+                found[party, name] = Choice(party, name, sensor.variable, scalar, sensor.says)
     return found
 
 

@@ -28,11 +28,14 @@ from pn2code.cell.partition import Partition
 from pn2code.emission.output import Block, OutputFile
 from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.backend import Backend
+from pn2code.robot.belts import until_stop
+from pn2code.robot.clamps import holding, taken_along
 from pn2code.robot.commands import (
     Along,
     Command,
     Handling,
     Measure,
+    Move,
     MoveAxes,
     MoveCircular,
     MoveExternal,
@@ -44,12 +47,13 @@ from pn2code.robot.commands import (
     Wait,
     tcp_of,
 )
-from pn2code.robot.executor import Motion, RobotExecutor
+from pn2code.robot.executor import Motion, RobotExecutor, turned, turned_by
 from pn2code.robot.monitor import Monitor, Sample
 from pn2code.robot.motion import LinearTrajectory, MotionFault
 from pn2code.robot.parts import PartFault
 from pn2code.robot.robot_cell import RobotCell
-from pn2code.robot.transforms import Array, matrix_of, pose_of
+from pn2code.robot.transforms import Array, describe, matrix_of, pose_of
+from pn2code.robot.zones import ZoneWatch
 from pn2code.run.accuracy import distance, distance_to_line
 from pn2code.run.device import DeviceExecutor
 from pn2code.run.files import RobotFiles
@@ -196,6 +200,7 @@ class Engine:
     now: float = 0.0
     activity: str = ""
     parts: PartKeeper = field(init=False)
+    zones: ZoneWatch = field(init=False)
     _next_model_time: float | None = None
     _answer_due: float = math.inf
     _steps: Iterator[int] = field(default_factory=lambda: itertools.count(1))
@@ -211,6 +216,7 @@ class Engine:
         divided = self.partition
         readers = {c.place: divided.owners[c.reader].name for c in divided.channels}
         self.parts = PartKeeper(self.cell, self.backend)
+        self.zones = ZoneWatch(self.cell)
         self._ids = {t.name: t.id for t in divided.net.transitions}
         self._owner_of = {
             t.name: divided.owners[o].name
@@ -415,8 +421,19 @@ class Engine:
     def _sensor_says(self, robot: RobotRunner, request: Sense) -> Scalar | None:
         looks = self.sensors.seen.get(request.sensor)
         if looks is not None:
-            return self.parts.parts.is_seen(*looks)
+            return self._sees(*looks, self.sensors.at.get(request.sensor, 0.0))
         return self.sensors.ask(robot.name, request.sensor)
+
+    def _sees(self, name: str, kind: str, at: float) -> bool:
+        """Whether a part is at a place, an arm in a zone, an axis of a device where it is seen."""
+        self._look_at_turntables()
+        joints = {r.name: r.joints(self.now) for r in self._arms()}
+        device, dot, axis = name.partition(".")
+        if dot:
+            return self.cell.robot(device).is_at(axis, joints[device], at)
+        if name in self.cell.zones:
+            return self.zones.occupied(name, joints, self.parts.parts.present.values())
+        return self.parts.parts.is_seen(name, kind)
 
     def _told(self, robot: RobotRunner, request: Sense, said: Said) -> Request:
         """A sensor has said something: what the script wants next."""
@@ -432,11 +449,13 @@ class Engine:
 
     def _begin_command(self, robot: RobotRunner, command: Command, line: int) -> None:
         try:
-            motion = robot.executor.begin(command, self.now)
+            motion = robot.executor.begin(self._stopped(robot, command), self.now)
         except MotionFault as fault:
             where = robot.element_at(line)
             at = f" (net transition {where})" if where else ""
             raise CellStoppedError(f"{robot.script}:{line}{at}: {fault}") from None
+        self._expect_let_go(robot, motion, line)
+        self._expect_riders_stay(robot, motion, line)
         if self.stops is not None:
             motion = self._held_up(robot, motion, self.stops)
         robot.motion, robot.line = motion, line
@@ -451,6 +470,71 @@ class Engine:
                     "duration": command.duration,
                 }
             )
+
+    def _stopped(self, robot: RobotRunner, command: Command) -> Command:
+        """Belts run until a part comes to their stop."""
+        if robot.arm is None or not robot.arm.robot.is_device or not robot.arm.robot.carrying:
+            return command
+        self._look_at_turntables()
+        return until_stop(robot.arm.robot, self.parts.parts, command)
+
+    def _run_out(self, robot: RobotRunner, motion: Motion) -> None:
+        """What belts that have come to rest have taken along stands there, or on something else."""
+        if robot.arm is None or not robot.arm.robot.is_device:
+            return
+        for plate in turned_by(robot.arm.robot, motion.trajectory, robot.arm.robot.belts):
+            self._look_at_turntables()
+            try:
+                settled = self.parts.run_out(plate)
+            except PartFault as fault:
+                where = robot.element_at(robot.line)
+                at = f" (net transition {where})" if where else ""
+                raise CellStoppedError(f"{robot.script}:{robot.line}{at}: {fault}") from None
+            for change in settled:
+                self.record.parts.append(PartRecord(self.now, robot.name, change))
+
+    def _expect_let_go(self, robot: RobotRunner, motion: Motion, line: int) -> None:
+        """What an arm, a turntable or a belt takes along is in no clamp that still holds it."""
+        if robot.arm is None or not isinstance(motion.command, Move):
+            return
+        arm, q = robot.arm.robot, robot.arm.q
+        present = self.parts.parts.present.values()
+        stands = {r.name: r for r in self._arms()}
+        for part, frame in taken_along(arm, q, present, turned(arm, motion)):
+            for held in holding(self.cell, part.kind, frame):
+                own = stands[held.device.name].joints(self.now)
+                if held.holds(own):
+                    where = robot.element_at(line)
+                    at = f" (net transition {where})" if where else ""
+                    words = held.words(robot.name, part.name, own)
+                    raise CellStoppedError(
+                        f"{robot.script}:{line}{at}: {words}, part at {describe(pose_of(frame))}"
+                    )
+
+    def _expect_riders_stay(self, robot: RobotRunner, motion: Motion, line: int) -> None:
+        """What stands on a turntable that begins to turn stays there, or the cell stops."""
+        if robot.arm is None:
+            return
+        for plate in turned(robot.arm.robot, motion):
+            self._look_at_turntables()
+            try:
+                self.parts.parts.turn(plate)
+            except PartFault as fault:
+                where = robot.element_at(line)
+                at = f" (net transition {where})" if where else ""
+                raise CellStoppedError(f"{robot.script}:{line}{at}: {fault}") from None
+
+    def _look_at_turntables(self) -> None:
+        """Where they are now, and which of them turn, counts for what is handled."""
+        parts = self.parts.parts
+        turning: set[str] = set()
+        for other in self._arms():
+            assert other.arm is not None
+            if other.arm.robot.axes.tables:
+                parts.stand(other.name, other.joints(self.now))
+                if other.motion is not None and other.motion.ends > self.now + 1e-12:
+                    turning |= turned(other.arm.robot, other.motion)
+        parts.turning = frozenset(turning)
 
     def _held_up(self, robot: RobotRunner, motion: Motion, stops: Stops) -> Motion:
         """The motion with the stops that are drawn for it."""
@@ -522,6 +606,7 @@ class Engine:
             arm = robot.arm.robot
             reached = pose_of(arm.T_world_base @ arm.kinematics.forward(robot.arm.q))
             self.record.note_error("TCP off the commanded pose", distance(reached, motion.target))
+        self._run_out(robot, motion)
         if isinstance(motion.command, ToolAction) and motion.command.handling is not None:
             self._handle(robot, motion.command.handling)
         self._follow(robot, motion.result)
@@ -529,13 +614,15 @@ class Engine:
     def _handle(self, robot: RobotRunner, handling: Handling) -> None:
         """What an action that has ended has done to a part."""
         tcp = matrix_of(robot.arm.pose) if robot.arm is not None else None
+        self._look_at_turntables()
         try:
             change = self.parts.handle(robot.name, handling, tcp)
         except PartFault as fault:
             where = robot.element_at(robot.line)
             at = f" (net transition {where})" if where else ""
             raise CellStoppedError(f"{robot.script}:{robot.line}{at}: {fault}") from None
-        self.record.parts.append(PartRecord(self.now, robot.name, change))
+        for one in (change, *self.parts.parts.settled):
+            self.record.parts.append(PartRecord(self.now, robot.name, one))
         self.record.events.append(
             {
                 "t": self.now,
@@ -600,6 +687,20 @@ class Engine:
         if verdict.fault is not None:
             self.now = t
             raise CellStoppedError(f"{verdict.fault.message}; {self._doing()}")
+        self._expect_slow(t, joints)
+
+    def _expect_slow(self, t: float, joints: Mapping[str, Array]) -> None:
+        """Nothing is faster in a zone than may be there."""
+        if not self.zones.limited:
+            return
+        speeds = {
+            r.name: r.motion.trajectory.qd(t - r.motion.began) for r in self._arms() if r.motion
+        }
+        found = self.zones.too_fast(joints, speeds, self.parts.parts.present.values())
+        if found is not None:
+            self.now = t
+            who = self.cell.robot(found.robot).words
+            raise CellStoppedError(f"{who}: {found.words()}; {self._doing()}")
 
     def _doing(self) -> str:
         """What everybody was doing, for messages: script line, net transition, command."""

@@ -325,7 +325,8 @@ class Hand:
                     "party": c.party,
                     "sensor": c.sensor,
                     "variable": c.variable,
-                    "colset": c.scalar.colset,
+                    "says": c.says,
+                    "allowed": c.allowed,
                     "values": c.texts(),
                 }
                 for c in self._choices.values()
@@ -346,6 +347,8 @@ class Hand:
                     "party": party,
                     "sensor": q.choice.sensor,
                     "variable": q.choice.variable,
+                    "says": q.choice.says,
+                    "allowed": q.choice.allowed,
                     "line": q.line,
                     "values": [q.choice.text(v) for v in q.values],
                     "own": q.choice.text(q.own),

@@ -1,10 +1,10 @@
-"""Parts while a cell runs: what actions do to them, and whether what is put down lies on something.
+"""Parts while a cell runs: what actions do to them, and whether what is put down overlaps something.
 
     keeper = PartKeeper(cell, backend)
     keeper.begin()                                             # the parts of the start
     keeper.handle("robot1", handling, T_world_tcp)             # PartChange; PartFault if it cannot be
 
-Only a backend that measures distances can say what a part rests on and whether it overlaps something.
+Only a backend that measures distances can say whether a part overlaps something.
 """
 
 from __future__ import annotations
@@ -13,10 +13,10 @@ from dataclasses import dataclass, field
 
 from pn2code.robot.backend import Backend
 from pn2code.robot.commands import Handling
-from pn2code.robot.lying import overlap, unsupported
-from pn2code.robot.parts import PartChange, PartFault, Parts
+from pn2code.robot.lying import overlap
+from pn2code.robot.parts import Part, PartChange, PartFault, Parts
 from pn2code.robot.robot_cell import RobotCell
-from pn2code.robot.transforms import Array, describe
+from pn2code.robot.transforms import Array
 
 
 @dataclass(slots=True)
@@ -26,6 +26,7 @@ class PartKeeper:
     cell: RobotCell
     backend: Backend
     parts: Parts = field(init=False)
+    _shown: dict[str, Part] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """The parts of the start; nothing is shown yet."""
@@ -34,7 +35,7 @@ class PartKeeper:
     def begin(self) -> None:
         """Shows the parts of the start. PartFault if one overlaps something."""
         for part in self.parts.present.values():
-            self.backend.set_part(part)
+            self._show(part)
         for name in self.parts.present:
             self._expect_apart(name, f"part `{name}`, as `[parts.{name.split('.')[0]}]` places it,")
 
@@ -47,26 +48,32 @@ class PartKeeper:
         part = self.parts.present.get(change.part)
         if part is None:
             self.backend.remove_part(change.part)
+        for kept in self.parts.present.values():
+            if self._shown.get(kept.name) is not kept:
+                self._show(kept)
+        if part is None:
             return change
-        self.backend.set_part(part)
         if change.effect == "releases":
             self._expect_apart(part.name, f"`{who}` releases `{part.name}`, which")
-            self._expect_rest(who, part.name, change)
         elif change.effect == "creates":
             self._expect_apart(
                 part.name, f"`{who}` puts `{part.name}` at `{handling.place}`, which"
             )
         return change
 
+    def run_out(self, plate: str) -> tuple[PartChange, ...]:
+        """A belt has come to rest: what stands on something else now. PartFault if something has come off its end."""
+        self.parts.run_out(plate)
+        for kept in self.parts.present.values():
+            if self._shown.get(kept.name) is not kept:
+                self._show(kept)
+        return self.parts.settled
+
+    def _show(self, part: Part) -> None:
+        self._shown[part.name] = part
+        self.backend.set_part(part)
+
     def _expect_apart(self, name: str, who: str) -> None:
         trouble = overlap(self.backend, name)
         if trouble is not None:
             raise PartFault(f"{who} {trouble.text}")
-
-    def _expect_rest(self, who: str, name: str, change: PartChange) -> None:
-        trouble = unsupported(self.backend, name)
-        if trouble is not None:
-            where = describe(change.pose)
-            raise PartFault(
-                f"`{who}` releases `{name}` in the air: {trouble.text}, part at {where}"
-            )

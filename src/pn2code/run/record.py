@@ -141,6 +141,7 @@ class RunRecord:
     def sample(self, verdict: Verdict) -> None:
         """Adds one instant to the series."""
         self.sample_t.append(verdict.t)
+        arms = [s for s in verdict.samples if not s.is_device]
         nearest: dict[str, float] = {}
         for gap in verdict.clearances or ():
             if gap.allowed is None:
@@ -148,21 +149,22 @@ class RunRecord:
                 nearest[name] = min(nearest.get(name, np.inf), gap.distance)
         if verdict.clearances is not None:
             names = ["clearance.robots"]
-            names += [
-                f"clearance.{k}.{s.robot}" for s in verdict.samples for k in ("scene", "self")
-            ]
+            names += [f"clearance.{k}.{s.robot}" for s in arms for k in ("scene", "self")]
             for name in names:
                 # Not measured beyond the monitor's search distance: a gap in the curve.
                 self.series.setdefault(name, []).append(nearest.get(name, np.nan))
-        for seen in verdict.samples:
+        for seen in arms:
             self.series.setdefault(f"condition.{seen.robot}", []).append(
                 seen.conditioning.condition
             )
             self.series.setdefault(f"elbow.{seen.robot}", []).append(seen.conditioning.elbow)
             self.series.setdefault(f"wrist.{seen.robot}", []).append(seen.conditioning.wrist)
             self.series.setdefault(f"margin.{seen.robot}", []).append(seen.limit_margin)
+        devices = {s.robot for s in verdict.samples if s.is_device}
         for gap in verdict.clearances or ():
-            self._note_gap(verdict.t, gap)
+            # What a device is fixed to is always near.
+            if gap.kind == "robots" or gap.robot not in devices or gap.distance < 0.0:
+                self._note_gap(verdict.t, gap)
         for gap in verdict.warnings:
             key = (gap.a, gap.b)
             if gap.distance < self.near.get(key, (np.inf, 0.0))[0]:

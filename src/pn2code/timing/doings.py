@@ -15,7 +15,7 @@ from pn2code.base.frozen import frozen
 from pn2code.cell.partition import OwnerKind
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import DIGITS_OF_TIME, Planner, Stand
-from pn2code.robot.commands import Command, ToolAction, Wait
+from pn2code.robot.commands import Command, MoveExternal, ToolAction, Wait
 from pn2code.robot.robot_cell import RobotCell
 
 NS = 1_000_000_000
@@ -62,8 +62,8 @@ class Doings:
         self.graph, self.cell = graph, cell
         self.planner = Planner(cell, DIGITS_OF_TIME)
         owners = {o.name: o.index for o in graph.partition.owners}
-        self.arms = tuple(owners[r.name] for r in cell.robots)
-        self.homes = tuple(self.planner.home(r.name) for r in cell.robots)
+        self.arms = tuple(owners[r.name] for r in cell.moving)
+        self.homes = tuple(self.planner.home(r.name) for r in cell.moving)
         self.arm_of = {owner: i for i, owner in enumerate(self.arms)}
         self.why = ""
         self._known: dict[tuple[int, int], Doing | None] = {}
@@ -92,6 +92,8 @@ class Doings:
         parts: list[Part] = []
         for command in commands:
             if stand is not None:
+                if self._stops(stand.robot, command):
+                    self.why = self.why or "belt"
                 leg = self.planner.leg(stand, command)
                 if leg.fault is not None or leg.path is None:
                     message = leg.fault.message if leg.fault is not None else ""
@@ -106,6 +108,14 @@ class Doings:
             kind = "tool" if isinstance(command, ToolAction) else "wait"
             parts.append(Part(command, kind, None, _ns(command.duration)))
         return Doing(sum(p.ns for p in parts), stand, tuple(parts))
+
+    def _stops(self, name: str, command: Command) -> bool:
+        """Whether it depends on parts how far a belt runs."""
+        if not isinstance(command, MoveExternal) or not self.cell.parts:
+            return False
+        told = {a.axis for a in command.along}
+        own = self.cell.robot(name).carrying
+        return any(a.belt is not None and a.belt.stop and a.name in told for a in own)
 
     def _without_arm(self, owner: int, command: Command) -> str:
         """Why a device, or a robot without an arm in cell.toml, cannot do it; "": it can."""

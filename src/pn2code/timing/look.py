@@ -37,6 +37,7 @@ AT_ONCE = "sensors and people answer at once"
 _OPEN = {
     "timed": "the net is timed, and when its time stamps are reached is not followed",
     "armless": "a robot has no arm in cell.toml, so that nobody knows how long its moves take",
+    "belt": "how far a belt runs depends on the parts on it, which are not followed",
     "situations": "the cell can come to more situations than were looked at",
 }
 

@@ -59,6 +59,7 @@ MOST_PROGRAMS = 64
 STALE_S = 6 * 3600.0
 """After that a folder in which something is built belongs to a process that was killed."""
 _BUILDS = "build-"
+_RUNTIME = "runtime/src"
 _LOOK_S = 0.1
 
 
@@ -253,12 +254,13 @@ class _Builder:
         self.runtime = host.runtime()
         tools = [*compiler.command, compiler.version, *self.flags, *host.libraries]
         tools += ["own", *host.own] if host.own else []
-        self.library = folder / f"{host.name}-runtime-{_digest(tools, self.runtime)}.a"
+        tools += ["runtime", _digest_of(self.runtime)]
+        self.library = folder / f"{host.name}-runtime-{_digest(tools)}.a"
         size = sum(len(f.text) for f in self.files)
         self.is_large = size > c_flags.LARGE
         self.net_flags = (*c_flags.for_size(size), *host.net)
         tools += ["net", *self.net_flags] if self.net_flags else []
-        self.program = folder / f"{host.name}-{_digest(tools, [*self.runtime, *self.files])}"
+        self.program = folder / f"{host.name}-{_digest(tools, self.files)}"
 
     def is_there(self) -> bool:
         """Whether the program has been built."""
@@ -287,10 +289,9 @@ class _Builder:
         """
         with tempfile.TemporaryDirectory(prefix=_BUILDS, dir=self.folder) as name:
             room = Path(name)
-            for f in (*self.runtime, *self.files):
-                path = room / f.path
-                path.parent.mkdir(parents=True, exist_ok=True)
-                path.write_text(f.text, encoding="utf-8")
+            # Sources of the runtime are a library already, mostly: they are written where they are compiled.
+            _put(room, [f for f in self.runtime if not f.path.endswith(".c") or self._is_whole(f)])
+            _put(room, self.files)
             with ThreadPoolExecutor(2) as pool:
                 library = pool.submit(self._library, room, d)
                 try:
@@ -329,7 +330,9 @@ class _Builder:
 
     def _made(self, room: Path, done_before: Path, d: Diagnostics) -> bool:
         """The library, of objects that were there before and of others."""
-        sources = [f.path for f in self.runtime if f.path.endswith(".c")]
+        compiled_here = [f for f in self.runtime if f.path.endswith(".c")]
+        _put(room, [f for f in compiled_here if not self._is_whole(f)])
+        sources = [f.path for f in compiled_here]
         objects = [f"{Path(s).stem}.o" for s in sources]
         # Large ones first, so that all processors are busy to the end.
         sources.sort(key=lambda name: -(room / name).stat().st_size)
@@ -368,6 +371,9 @@ class _Builder:
         """Whether compilers that run are to be ended."""
         return self._is_given_up or self._is_enough()
 
+    def _is_whole(self, source: OutputFile) -> bool:
+        return source.path == f"{_RUNTIME}/{self.host.whole}"
+
     def _is_own(self, source: str) -> bool:
         return Path(source).name.startswith(self.host.name)
 
@@ -385,7 +391,7 @@ class _Builder:
         if len(others) == len(self._sources()):
             return True  # a host that needs no net
         if self.host.whole and not self.is_large:
-            source = f"runtime/src/{self.host.whole}"
+            source = f"{_RUNTIME}/{self.host.whole}"
             whole = ('-DPN_NET_SOURCE="net.c"', "-c", source, "-o", "net.o")
             if self._compiler(room, *includes, *whole, d=Diagnostics()):
                 return True
@@ -424,7 +430,20 @@ class _Builder:
                     shutil.rmtree(path, ignore_errors=True)
 
 
-def _digest(tools: Sequence[str], files: Sequence[OutputFile]) -> str:
+def _put(room: Path, files: Sequence[OutputFile]) -> None:
+    for folder in sorted({os.path.dirname(f.path) for f in files}):  # noqa: PTH120 - of a hundred names
+        (room / folder).mkdir(parents=True, exist_ok=True)
+    for f in files:
+        (room / f.path).write_text(f.text, encoding="utf-8")
+
+
+@lru_cache(maxsize=16)
+def _digest_of(runtime: tuple[OutputFile, ...]) -> str:
+    """Most of a megabyte, the same for each program of a host."""
+    return _digest((), runtime)
+
+
+def _digest(tools: Sequence[str], files: Sequence[OutputFile] = ()) -> str:
     found = hashlib.sha256()
     for part in (*tools, *(text for f in files for text in (f.path, f.text))):
         data = part.encode("utf-8", "surrogateescape")

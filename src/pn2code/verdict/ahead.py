@@ -34,7 +34,7 @@ from pn2code.robot.executor import RobotExecutor
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion import Arc, MotionFault
 from pn2code.robot.parts import PartFault
-from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import matrix_of
 from pn2code.robot_scripts.ir import Chain, Line, Node, Region, Repeat, RobotIR
 from pn2code.run.handling import PartKeeper
@@ -86,7 +86,7 @@ def look_ahead(
 
 def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> None:
     """Arms that are in something, or in each other, where the run begins."""
-    if not cell.robots:
+    if not cell.moving:
         return
     for robot in cell.robots:
         own = robot.home[robot.kinematics.joints]
@@ -99,7 +99,7 @@ def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> No
                 config.locator.origin("robots", robot.name, "home"),
                 hint=scene.RADIANS,
             )
-    at = config.locator.origin("robots", cell.robots[0].name, "home")
+    at = _at_home(cell.moving[0], config)
     try:
         backend = open_backend("bullet", cell, looks=False)
     except BackendUnavailableError as problem:
@@ -112,7 +112,7 @@ def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> No
     try:
         PartKeeper(cell, backend).begin()
         verdict = Monitor(cell, backend).check(
-            0.0, {r.name: RobotExecutor(r, cell.motion).q for r in cell.robots}
+            0.0, {r.name: RobotExecutor(r, cell.motion).q for r in cell.moving}
         )
     except PartFault as fault:
         d.error(
@@ -128,9 +128,16 @@ def _home(cell: RobotCell, config: CellConfig, where: str, d: Diagnostics) -> No
         d.error(
             codes.ROBOT_HOME,
             f"at HOME{where}: {verdict.fault.message}",
-            config.locator.origin("robots", verdict.fault.robot, "home"),
+            _at_home(cell.robot(verdict.fault.robot), config),
             hint="change `home` (degrees) or `base` (m and degrees) of the robot, or move what it touches",
         )
+
+
+def _at_home(robot: CellRobot, config: CellConfig) -> Origin:
+    """Where cell.toml says where something begins."""
+    if robot.is_device:
+        return config.locator.origin("devices", robot.name, "axes")
+    return config.locator.origin("robots", robot.name, "home")
 
 
 def _kind_of_arm(cell: RobotCell, ir: RobotIR, where: str, d: Diagnostics) -> None:

@@ -147,3 +147,24 @@ def test_a_geometry_that_is_not_known(tmp_path: Path) -> None:
     stopped = {**LAYOUT, "pairs_answer": "unknown", "pairs_open": "as far as runs get"}
     said = geometry(tmp_path, 1, {**stopped, "moves_answer": "no", "nearest": None})
     assert said.findings[1].answer == OPEN and "; as far as runs get" in said.findings[1].says
+
+
+def test_seconds_are_told_where_they_were_measured(tmp_path: Path) -> None:
+    row = {**PROPERTY, "holds": "every fires(A) is followed by fires(B) within 60 seconds"}
+    timed = {**row, "answer": "yes", "value": 41.5}
+    ending = {"final": ["Top.Sup.Finished"], "least_s": 10.0, "most_s": 12.5}
+    cycle = {"why": None, "repeats": [], "late": [], "endings": [ending]}
+    layouts = [{"layout": "close", "cycle": cycle}]
+    said = {**NET, "properties": [timed], "durations": {"why": None, "layouts": layouts}}
+    c = chapter(tmp_path, "verify", said)
+    assert [f.says for f in c.findings] == [
+        "every fires(A) is followed by fires(B) within 60 seconds: 41.5 s at most",
+        "best 10 s, worst 12.5 s",
+    ]
+    assert (c.findings[1].about, c.answer) == ("layout close: cycle to Finished", YES)
+    ending["most_s"] = None  # type: ignore[assignment]
+    cycle["repeats"] = ["Top.Sup.Again"]
+    c = chapter(tmp_path, "verify", said)
+    assert c.findings[1].says == "best 10 s, worst no upper bound"
+    none = {**NET, "properties": [], "durations": {"why": "the net is timed", "layouts": []}}
+    assert chapter(tmp_path, "verify", none).answer == OPEN

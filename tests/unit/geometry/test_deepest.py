@@ -65,7 +65,7 @@ def test_two_arms(x: float) -> None:
     planner = Planner(cell())
     one, other = line(planner, "left", x, 500.0), line(planner, "right", 1700.0, 400.0)
     compared = Comparison(cell(), planner, Shown(backend))
-    found = compared.two((one, None), (other, None))
+    found = compared.two((one, ()), (other, ()))
     distances = []
     for q in grid(one, 11):
         backend.set_joints("left", q)
@@ -89,7 +89,7 @@ def test_an_arm_and_what_stands() -> None:
     backend = BulletBackend(cell(), looks=False)
     planner = Planner(cell())
     leg = line(planner, "left", 1550.0, 700.0)
-    found, _ = Comparison(cell(), planner, Shown(backend)).around(leg, None)
+    found, _ = Comparison(cell(), planner, Shown(backend)).around(leg, ())
     distances = []
     for q in grid(leg, 100):
         backend.set_joints("left", q)
@@ -108,7 +108,7 @@ def test_where_nothing_is_known_between_samples_no_depth_is_certain(
     one, other = line(planner, "left", 1550.0, 700.0), line(planner, "right", 1700.0, 400.0)
     compared = Comparison(cell(), planner, Shown(backend))
     monkeypatch.setattr(Track, "trouble", "it passes near to a singularity")
-    for found in (compared.around(one, None)[0], compared.two((one, None), (other, None))):
+    for found in (compared.around(one, ())[0], compared.two((one, ()), (other, ()))):
         assert found.outcome == "touch" and found.nearest < 0.0 and found.least == -math.inf
         assert touch_in_words(found).endswith("how deep on the rest of the way is not known")
     backend.close()

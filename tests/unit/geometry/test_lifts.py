@@ -34,7 +34,7 @@ def moved(command: Command, **changes: Any) -> tuple[Apart, str]:
     planner = Planner(cell)
     leg = planner.leg(planner.home("left"), command)
     assert leg.fault is None
-    found, _ = Comparison(cell, planner, Shown(backend)).around(leg, None)
+    found, _ = Comparison(cell, planner, Shown(backend)).around(leg, ())
     fault = Monitor(cell, backend).check(1.0, {"left": leg.end.q}, kinds={"left": "ptp"}).fault
     backend.close()
     return found, "" if fault is None else fault.message

@@ -50,7 +50,7 @@ def cell() -> RobotCell:
 def test_a_part_is_fed_taken_carried_and_put_down(cell: RobotCell) -> None:
     parts = Parts(cell)
     assert parts.handle("feeder", FEED, None) == PartChange(
-        "creates", "box.1", cell.places["infeed"]
+        "creates", "box.1", cell.places["infeed"], ("table",)
     )
     assert parts.handle("robot", TAKE, matrix_of(ABOVE)).part == "box.1"
     held = parts.held_by("robot")

@@ -106,6 +106,7 @@ def test_a_person_is_asked_with_the_permitted_values_and_chooses(held: Held) -> 
     (question,) = held.hand.told()["questions"]
     assert question == {
         "number": 1, "party": "robot1", "sensor": "drill", "variable": "drilled", "line": 57,
+        "says": "", "allowed": "a value of RESULT from 1 to 3",
         "values": ["1", "2"], "own": "1", "left": 15.0,
     }  # fmt: skip
     for value, why in (("3", "could not go on"), ("4", "outside"), ("x", "not an integer")):
@@ -299,6 +300,25 @@ def test_messages_come_late_or_never(tmp_path: Path) -> None:
         files.write("flag", (1,))
         assert supervisor.read("flag").scalars == (1,)  # type: ignore[union-attr]
     assert heard == [("flag", Fate(5.0)), ("flag", Fate(None))]
+
+
+def test_a_question_has_the_words_of_the_sensor_and_what_it_may_be_told() -> None:
+    person = Person()
+    says = Choice(
+        "robot1",
+        "gauge",
+        "d",
+        Scalar(ScalarKind.INT, "DEPTH", "DEPTH", (), -2, 900),
+        "how deep the hole is",
+    )
+    hand = Hand({("robot1", "gauge"): says}, {}, person, 5.0, lambda: person.now)
+    assert hand.asked("robot1", "gauge", 3, all_of) is None
+    (asked,) = hand.told()["questions"]
+    described = hand.described()["sensors"][0]
+    for told in (asked, described):
+        assert told["says"] == "how deep the hole is"
+        assert told["allowed"] == "a value of DEPTH from -2 to 900"
+    assert asked["values"] == []
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""A build that is given up leaves what it has compiled of the runtime to the next one."""
+"""What a build leaves to the next one: a build that is given up, what it has compiled; any other, the runtime."""
 
 from __future__ import annotations
 
@@ -53,3 +53,31 @@ def test_the_next_build_gets_further(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert sorted(compiled) == sorted(sources), "none of them twice"
     left = [p.name for p in path.parent.iterdir() if p.is_dir()]
     assert left == []
+
+
+def test_the_runtime_is_written_where_it_is_compiled(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of the program after it only what is compiled with the net."""
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    there: list[set[str]] = []
+
+    def compile_(_self: Any, room: Path, *arguments: str, d: Diagnostics) -> bool:
+        if "-c" in arguments:
+            (room / f"{Path(arguments[arguments.index('-c') + 1]).stem}.o").write_text("object")
+            return True
+        there.append({p.relative_to(room).as_posix() for p in room.rglob("*.[ch]")})
+        (room / "program").write_text("#!/bin/sh\n")
+        (room / "program").chmod(0o755)
+        return True
+
+    monkeypatch.setattr(programs._Builder, "_compiler", compile_)
+    host = Host("simulate", whole="simulate/simulate_play.c")
+    runtime = {f.path for f in host.runtime()}
+    for number in range(2):
+        files = (OutputFile("net.c", f"int net{number};\n"),)
+        with program(host, files, Diagnostics()) as path:
+            assert path is not None
+    headers = {name for name in runtime if name.endswith(".h")}
+    whole = f"runtime/src/{host.whole}"
+    assert there == [{*runtime, "net.c"}, {*headers, whole, "net.c"}]

@@ -6,6 +6,7 @@ import pytest
 
 from helpers.netbuilder import flat
 from pn2code.structure.relations import relations
+from pn2code.verify.exploring.counted import counted
 from pn2code.verify.exploring.counts import Counts, Limit, counts
 from pn2code.verify.exploring.turns import turns
 
@@ -108,3 +109,11 @@ def test_turns_do_not_compare_what_is_left() -> None:
     left = found.within(table).members[0].taken
     assert (FEEDER, 1) not in left
     assert (FREE, 1) in left
+
+
+def test_counters_have_room_for_the_limit_and_what_a_firing_puts() -> None:
+    net = flat(NET.replace("in Tray : k", "in Tray : 3`k").replace("Feeder = 5", "Feeder = 9"))
+    found = counted(net, {}, turns(net, range(len(net.transitions))), range(len(net.places)))
+    assert found is not None
+    assert Limit(TRAY, 3, is_value=False) in found.counts.limits
+    assert found.sizes.packing.of(net.places[TRAY].name) >= 3  # 3 tokens, and those that are put

@@ -40,14 +40,31 @@ typedef struct relation {
     uint32_t value_count;
 } relation_t;
 
+/* What an occurrence of a transition concerns: the relations with a place that it changes, and all of their places. */
+typedef struct concern {
+    uint32_t *relation;
+    uint32_t relations;
+    uint32_t *place;
+    uint32_t places;
+} concern_t;
+
 typedef struct table {
     limit_t *limit;
     uint32_t limits;
     uint32_t *limit_of; /* by place, + 1; 0: all tokens count */
     relation_t *relation;
     uint32_t relations;
-    uint32_t spots; /* numbers that have limits */
+    concern_t *concern; /* by transition */
+    uint32_t spots;     /* numbers that have limits */
 } table_t;
+
+/* What a place holds: so many tokens, or any greater number. */
+typedef struct held {
+    int64_t tokens;
+    int64_t value; /* the number that its token is; 0 without one */
+    bool may_be_more;
+    bool may_be_greater;
+} held_t;
 
 /* A number of a successor that has a limit and has changed. */
 typedef struct spot {
@@ -62,6 +79,7 @@ typedef struct spot {
 struct ex_counts {
     table_t table;
     spot_t *spot[EX_MOST_THREADS]; /* by worker */
+    held_t *held[EX_MOST_THREADS]; /* the same, by place */
 };
 
 /* --- the table ---------------------------------------------------------------------------------------------------- */
@@ -141,6 +159,55 @@ static bool read_table(ex_run_t *run, FILE *file, table_t *table)
     return is_fine && (fscanf(file, " %7s", last) == 1) && (strcmp(last, "end") == 0);
 }
 
+static bool mentions(const relation_t *relation, uint32_t place)
+{
+    bool is_found = false;
+    for (uint32_t i = 0U; !is_found && (i < relation->token_count); i++) {
+        is_found = relation->tokens[i].place == place;
+    }
+    for (uint32_t i = 0U; !is_found && (i < relation->value_count); i++) {
+        is_found = relation->values[i].place == place;
+    }
+    return is_found;
+}
+
+static bool find_concern(ex_run_t *run, const table_t *table, const pn_transition_t *t, concern_t *concern)
+{
+    concern->relation = ex_table(&run->memory, table->relations, sizeof *concern->relation);
+    concern->place = ex_table(&run->memory, pn_net.place_count, sizeof *concern->place);
+    if ((concern->relation == NULL) || (concern->place == NULL)) {
+        return false;
+    }
+    for (uint32_t i = 0U; i < table->relations; i++) {
+        bool is_concerned = false;
+        for (uint32_t k = 0U; !is_concerned && (k < t->touched_count); k++) {
+            is_concerned = mentions(&table->relation[i], t->touched[k]);
+        }
+        concern->relation[concern->relations] = i;
+        concern->relations += is_concerned ? 1U : 0U;
+    }
+    for (uint32_t p = 0U; p < pn_net.place_count; p++) {
+        bool is_in = false;
+        for (uint32_t i = 0U; !is_in && (i < concern->relations); i++) {
+            is_in = mentions(&table->relation[concern->relation[i]], p);
+        }
+        concern->place[concern->places] = p;
+        concern->places += is_in ? 1U : 0U;
+    }
+    return true;
+}
+
+/* Which relations have to be looked at after an occurrence: of the others nothing has changed. */
+static bool find_concerns(ex_run_t *run, table_t *table)
+{
+    table->concern = ex_table(&run->memory, pn_net.transition_count, sizeof *table->concern);
+    bool is_fine = table->concern != NULL;
+    for (uint32_t t = 0U; is_fine && (t < pn_net.transition_count); t++) {
+        is_fine = find_concern(run, table, &pn_net.transition[t], &table->concern[t]);
+    }
+    return is_fine;
+}
+
 bool ex_counts_make(ex_run_t *run)
 {
     const char *problem = NULL;
@@ -149,7 +216,8 @@ bool ex_counts_make(ex_run_t *run)
     if (!run->has_turns || (run->codec->derived_count > 0U) || (pn_net.root_count > 0U)) {
         problem = "numbers up to a limit need programs that take turns, no places that follow from others, and no "
                   "references";
-    } else if ((counts == NULL) || (file == NULL) || !read_table(run, file, &counts->table)) {
+    } else if ((counts == NULL) || (file == NULL) || !read_table(run, file, &counts->table)
+               || !find_concerns(run, &counts->table)) {
         problem = "the table of limits cannot be read, is malformed, or there is not enough memory";
     } else {
         run->counts = counts;
@@ -159,7 +227,8 @@ bool ex_counts_make(ex_run_t *run)
     }
     for (uint32_t i = 0U; (problem == NULL) && (i < run->options.threads); i++) {
         counts->spot[i] = ex_alloc(&run->memory, ((uint64_t)counts->table.spots + 1U) * sizeof *counts->spot[i]);
-        problem = (counts->spot[i] == NULL) ? "there is not enough memory for limits" : NULL;
+        counts->held[i] = ex_table(&run->memory, pn_net.place_count, sizeof *counts->held[i]);
+        problem = ((counts->spot[i] == NULL) || (counts->held[i] == NULL)) ? "there is not enough memory for limits" : NULL;
     }
     if (problem != NULL) {
         ex_note(run, "reduction", problem, -1);
@@ -256,30 +325,39 @@ static bool is_limited(const table_t *table, uint32_t place, bool is_value, cons
     return is_found;
 }
 
+static void look_at(const table_t *table, uint32_t place, const void *marking, held_t *held)
+{
+    const pn_multiset_t *const multiset = pn_net.place[place].multiset;
+    const uint64_t total = pn_multiset_total(multiset, marking);
+    *held = (held_t){ .tokens = (int64_t)total };
+    held->may_be_more = is_limited(table, place, false, marking);
+    if (is_number(multiset) && (total > 0U)) {
+        held->value = number_in(multiset, marking);
+        held->may_be_greater = is_limited(table, place, true, marking);
+    }
+}
+
 /* Whether some marking for which this one stands may fulfil a relation. */
-static bool may_hold(const table_t *table, const relation_t *relation, const void *marking)
+static bool may_hold(const relation_t *relation, const held_t *held)
 {
     range_t range = { .low = -relation->total, .high = -relation->total };
     for (uint32_t i = 0U; i < relation->token_count; i++) {
-        const summand_t *const own = &relation->tokens[i];
-        const uint64_t total = pn_multiset_total(pn_net.place[own->place].multiset, marking);
-        add(&range, own->weight, (int64_t)total, is_limited(table, own->place, false, marking));
+        const held_t *const own = &held[relation->tokens[i].place];
+        add(&range, relation->tokens[i].weight, own->tokens, own->may_be_more);
     }
     for (uint32_t i = 0U; i < relation->value_count; i++) {
-        const summand_t *const own = &relation->values[i];
-        const pn_multiset_t *const multiset = pn_net.place[own->place].multiset;
-        if (has_token(multiset, marking)) {
-            add(&range, own->weight, number_in(multiset, marking), is_limited(table, own->place, true, marking));
-        }
+        const held_t *const own = &held[relation->values[i].place];
+        add(&range, relation->values[i].weight, own->value, own->may_be_greater);
     }
     return (range.is_low_open || (range.low <= 0)) && (range.is_high_open || (range.high >= 0));
 }
 
-static bool is_possible(const table_t *table, const void *marking)
+/* The marking before fulfils all relations; `held` is of the places that the transition concerns. */
+static bool is_possible(const table_t *table, const concern_t *concern, const held_t *held)
 {
     bool is_fine = true;
-    for (uint32_t i = 0U; is_fine && (i < table->relations); i++) {
-        is_fine = may_hold(table, &table->relation[i], marking);
+    for (uint32_t i = 0U; is_fine && (i < concern->relations); i++) {
+        is_fine = may_hold(&table->relation[concern->relation[i]], held);
     }
     return is_fine;
 }
@@ -336,15 +414,23 @@ static bool turn(spot_t *spot, uint32_t count)
 bool ex_counts_each(const ex_worker_t *worker, uint32_t transition, void *next, ex_counts_sink_t sink, void *user)
 {
     const table_t *const table = &worker->run->counts->table;
+    const concern_t *const concern = &table->concern[transition];
     spot_t *const spot = worker->run->counts->spot[worker->index];
+    held_t *const held = worker->run->counts->held[worker->index];
     const uint32_t count = find_spots(worker, transition, next, spot);
     bool goes_on = true;
     bool is_more = true;
+    for (uint32_t i = 0U; (count > 0U) && (i < concern->places); i++) {
+        look_at(table, concern->place[i], next, &held[concern->place[i]]);
+    }
     while (goes_on && is_more) {
         for (uint32_t i = 0U; i < count; i++) {
             set(spot[i].limit, spot[i].colour, next, spot[i].now);
         }
-        if ((count == 0U) || is_possible(table, next)) {
+        for (uint32_t i = 0U; i < count; i++) {
+            look_at(table, spot[i].limit->place, next, &held[spot[i].limit->place]);
+        }
+        if ((count == 0U) || is_possible(table, concern, held)) {
             goes_on = sink(user, next);
         }
         is_more = turn(spot, count);

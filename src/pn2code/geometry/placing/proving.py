@@ -61,7 +61,7 @@ def _trouble(looking: Look, robots: Collection[str]) -> str:
         if leg.fault is not None:
             return f"{leg.robot}, {words(leg.command)}: {leg.fault.message}"
     for leg in legs:
-        for apart in looking.comparison.around(leg, None):
+        for apart in looking.comparison.around(leg, ()):
             if apart.outcome == "touch":
                 return f"{leg.robot}, {words(leg.command)}: {touch_in_words(apart)}"
     return ""

@@ -14,6 +14,7 @@ from dataclasses import replace
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Rep
 from pn2code.ir.printed import printed_parts
+from pn2code.lowering.passes.alike import has_places_by_table
 from pn2code.lowering.passes.moves import is_count, is_pair
 
 
@@ -58,6 +59,7 @@ class _Program:
         self._tables: set[int] = set()
         self._sums: set[int] = set()
         self._binding = False
+        self._has_tables = has_places_by_table(net)
 
     def found(self) -> ir.Access:
         """All of it."""
@@ -129,9 +131,11 @@ class _Program:
     def _hold(self, place: int) -> None:
         if not self._places[place].packed:
             self._holders.add(place)
+        elif self._has_tables:
+            self._tables.add(place)
 
     def _hand_over(self, place: int) -> None:
-        if not self._places[place].packed:
+        if self._has_tables or not self._places[place].packed:
             self._tables.add(place)
 
     def _call_sum(self, s: ir.TakeAll | ir.PutAll) -> None:

@@ -1,4 +1,5 @@
 """One C function for all instances of a page: which instances of a transition do the same, and with which places.
+In explorers of large nets, for all transitions that are alike (`passes.alike`).
 
 The instances of a transition share its code where their programs are the same but for places, and where those places
 are kept in the same way: the same C type (both slots, or both timed arrays of one length) and the same colour set.
@@ -16,6 +17,7 @@ from dataclasses import replace
 from pn2code.base.frozen import frozen
 from pn2code.ir import nodes as ir
 from pn2code.ir.nodes import Transition
+from pn2code.lowering.passes.alike import alike, has_places_by_table
 
 Agree = Callable[[int, int], bool]
 """Whether two places are kept in the same way."""
@@ -23,6 +25,8 @@ Agree = Callable[[int, int], bool]
 
 def with_shared(net: ir.NetIR) -> ir.NetIR:
     """The net, with what this pass finds; `is_slot` and the capacities are known."""
+    if has_places_by_table(net):
+        return _with_alike(net)
 
     def agree(a: int, b: int) -> bool:
         # Explorers have a function for each instance, so that the compiler can put it where it is called.
@@ -56,6 +60,34 @@ def with_shared(net: ir.NetIR) -> ir.NetIR:
         )
         for (page, paths), found in columns.items()
     )
+    return replace(net, shared=tuple(shared), place_tables=tuple(tables))
+
+
+def _with_alike(net: ir.NetIR) -> ir.NetIR:
+    """The same for transitions of any page: each group has a table for itself."""
+    shared: list[ir.Shared] = []
+    tables: list[ir.PlaceTable] = []
+    for group in alike(net):
+        if len(group.transitions) == 1:
+            shared.append(ir.Shared(group.transitions))
+            continue
+        columns = range(len(group.places[0]))
+        varying = [i for i in columns if len({row[i] for row in group.places}) > 1]
+        number = len(tables) if varying else None
+        own = tuple(group.places[0][i] for i in varying)
+        shared.append(ir.Shared(group.transitions, number, own, tuple(range(len(own)))))
+        if varying:
+            model = net.transitions[group.transitions[0]]
+            names = dict(model.places)
+            tables.append(
+                ir.PlaceTable(
+                    model.origin.page,
+                    tuple(net.transitions[i].name for i in group.transitions),
+                    names=tuple(names.get(p, net.places[p].name) for p in own),
+                    rows=tuple(tuple(row[i] for i in varying) for row in group.places),
+                    is_of_transitions=True,
+                )
+            )
     return replace(net, shared=tuple(shared), place_tables=tuple(tables))
 
 

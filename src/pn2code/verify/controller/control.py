@@ -65,6 +65,7 @@ from pn2code.verify.controller.kept_silence import kept_silence
 from pn2code.verify.controller.poses import Bad, Poses
 from pn2code.verify.controller.reach_check import reach, suspects, told_poses
 from pn2code.verify.controller.running import NotModelledError, Running
+from pn2code.verify.controller.stated import all_stated
 from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits, Reduction
@@ -77,6 +78,10 @@ DOUBT = (
 )
 
 NO_BOUNDS: Mapping[int, int] = MappingProxyType({})
+FEW = 60_000
+"""States before tokens are counted up to a limit where they are in the closed net."""
+ORDERS_FROM = 20_000
+"""States among which it is looked first whether the order of firings matters, where not all states are looked at."""
 CELL_PART = 0.8
 """Of the time, what the exploration may take that most answers come from."""
 
@@ -195,13 +200,18 @@ def examine(
         may_turn = _may_turn(partition, plan, part)
         first_part = replace(part, max_states=part.turns_from) if may_turn else part
         may_count = _may_count(partition, plan, part)
-        counts_part = replace(part, max_states=part.counts_from) if may_count else first_part
+        counts_part = first_part
+        if may_count:
+            # A cell whose closed net is so large is hardly small enough for all of its states.
+            is_large = closed is not None and closed.known is not None
+            few = min(part.counts_from or FEW, FEW) if is_large else part.counts_from
+            counts_part = replace(part, max_states=few)
         # To compile better what sees so little takes longer than it saves.
         soon = replace(options, first_states=counts_part.max_states) if may_count else options
         found = explore(running.net, plan.storage, counts_part, d, soon)
         if may_count and found is not None and found.why == "states":
             own = replace(soon, questions=of_orders(running, plan.firings), stem="orders")
-            orders_part = explore(running.net, plan.storage, counts_part, d, own)
+            orders_part = _part_of_orders(running, plan, counts_part, own, d)
             if orders_part is None:
                 return None
             in_counts = by_counts.look(
@@ -312,7 +322,7 @@ def examine(
             checks,
             found,
             running,
-            answers=found.answers[:count],
+            answers=found.answers[:count] if in_counts is None else in_counts.answers,
             closed=closed,
             reduced=in_turns is not None or in_counts is not None,
             quiet=in_counts is not None and in_counts.is_quiet,
@@ -334,7 +344,19 @@ def _may_count(partition: Partition, plan: Plan, limits: Limits) -> bool:
     if first is None or limits.turns_from is None or first > limits.turns_from:
         return False
     is_enough = most is None or most >= first
-    return is_enough and not plan.properties.properties and not partition.net.timed
+    is_of_states = all_stated(plan.properties, partition)
+    return is_enough and is_of_states and not partition.net.timed
+
+
+def _part_of_orders(
+    running: Running, plan: Plan, limits: Limits, options: ExploreOptions, d: Diagnostics
+) -> Exploration | None:
+    """A part of the space of all orders: a small one, where that shows that the order of firings matters."""
+    few = min(limits.max_states or ORDERS_FROM, ORDERS_FROM)
+    found = explore(running.net, plan.storage, replace(limits, max_states=few), d, options)
+    if found is None or found.why != "states" or by_counts.is_decided(found.answers):
+        return found
+    return explore(running.net, plan.storage, limits, d, options)
 
 
 def _has_suspects(poses: Poses | None, found: Exploration, limits: Limits) -> bool:

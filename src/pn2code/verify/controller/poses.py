@@ -135,7 +135,7 @@ class Poses:
 
     def _is_moving(self, t: FlatTransition, moves: Collection[int]) -> bool:
         owner = self._partition.owners[self._partition.transition_owner[t.index]]
-        if t.code is None or owner.kind is not OwnerKind.ROBOT:
+        if t.code is None or owner.kind is OwnerKind.SUPERVISOR:
             return False
         if owner.name not in self._arms.robots:
             return False

@@ -58,7 +58,18 @@ def counted(
     found = counts(net, relations(net, storage), bounds, free=free, least=least)
     if found is None or not found.limited:
         return None
-    sizes = Sizes.start(net, storage, known)
-    # A place that follows from others does so in markings only.
-    sizes = replace(sizes, packing=replace(sizes.packing, sums=()))
+    sizes = _sizes(net, Sizes.start(net, storage, known), found)
     return Counted(found, found.within(table), Ranking.of(net, storage, bounds, never), sizes)
+
+
+def _sizes(net: FlatNet, start: Sizes, found: Counts) -> Sizes:
+    """With counters for the limits at once: what proves too small only later is compiled twice."""
+    width = dict(start.packing.width)
+    for x in found.limits:
+        name = net.places[x.place].name
+        own = start.packing.of(name)
+        if own > 0:
+            # A firing puts tokens there before what is more than the limit is forgotten.
+            width[name] = max(own, (2 * x.most + 1).bit_length())
+    # A place that follows from others does so in markings only.
+    return replace(start, packing=replace(start.packing, width=width, sums=()))

@@ -30,7 +30,7 @@ from pn2code.verify.exploring.elements import NotPossibleError
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits
 from pn2code.verify.exploring.programs import Generated
-from pn2code.verify.exploring.result import Known
+from pn2code.verify.exploring.result import Exploration, Known
 from pn2code.verify.exploring.turns import turns
 
 MOST_OWNERS = 250
@@ -52,7 +52,9 @@ def _counted(net: FlatNet, storage: Mapping[str, str], final: Collection[int]) -
     return counted(net, storage, table, set(range(len(net.places))) - set(final))
 
 
-def _questions(net: FlatNet, final: Collection[int], rising: frozenset[int]) -> str:
+def _questions(
+    net: FlatNet, final: Collection[int], rising: frozenset[int], *, to_the_end: bool
+) -> str:
     """Whether each dead state is an end, and whether those that may go on for ever have a cycle."""
     asked = Questions()
     lines = [*(f"owner {t.index} {t.index}" for t in net.transitions), "priorities own"]
@@ -63,9 +65,9 @@ def _questions(net: FlatNet, final: Collection[int], rising: frozenset[int]) -> 
     asked.asked.append(f"? invariant {found}")
     if rising:
         asked.asked.append(f"? restless 0 {ENDLESS}")
-    asked.asked.append(
-        f"? restless 1 {ENDLESS}"
-    )  # needs the graph: a "no" to the first ends nothing
+    if to_the_end:
+        # It needs the graph: a "no" to the first ends nothing.
+        asked.asked.append(f"? restless 1 {ENDLESS}")
     return "".join(f"{line}\n" for line in lines) + asked.text()
 
 
@@ -88,12 +90,37 @@ def look(
     if made is None:
         return None
     rising = made.ranking.rising()
+    # Where weights show that each run ends, the states are enough; to find their arcs takes as long again.
+    found = None if rising else _explored(net, storage, limits, options, made, final, rising)
+    if found is None or found.why == "decided":
+        found = _explored(net, storage, limits, options, made, final, rising, to_the_end=True)
+    if found is None or not found.complete or found.error is not None:
+        return None
+    ends, *others = found.answers
+    if any(row["answer"] != "yes" for row in others[: bool(rising)]):
+        return None
+    never = tuple(t.index for t in net.transitions if not found.fired[t.index])
+    return Known(found.nodes, found.arcs, found.seconds, ends["answer"] == "yes", never)
+
+
+def _explored(
+    net: FlatNet,
+    storage: Mapping[str, str],
+    limits: Limits,
+    options: ExploreOptions,
+    made: Counted,
+    final: Collection[int],
+    rising: frozenset[int],
+    *,
+    to_the_end: bool = False,
+) -> Exploration | None:
+    """The states, with their arcs if it is to see them to the end whatever the answers are."""
     own = ExploreOptions(
         turns=made.turns,
         counts=made.counts,
         sizes=made.sizes,
         generated=Generated(),
-        questions=_questions(net, final, rising),
+        questions=_questions(net, final, rising, to_the_end=to_the_end),
         stem="counts",
         progress=options.progress,
         interrupted=options.interrupted,
@@ -102,13 +129,9 @@ def look(
         first_states=SOON,
     )
     most = min(limits.max_states or MOST_STATES, MOST_STATES)
-    own_limits = replace(limits, max_states=most, traces=0, graph=True, reductions=())
+    own_limits = replace(limits, max_states=most, traces=0, graph=to_the_end, reductions=())
     d = Diagnostics()  # what is wrong with the net all of its markings tell
     found = explore(net, storage, own_limits, d, own)
-    if found is None or not found.complete or not found.seen.arcs or found.error is not None:
+    if found is None or len(found.answers) != own.questions.count("? "):
         return None
-    ends, *others, _ = found.answers
-    if len(others) != bool(rising) or any(row["answer"] != "yes" for row in others):
-        return None
-    never = tuple(t.index for t in net.transitions if not found.fired[t.index])
-    return Known(found.nodes, found.arcs, found.seconds, ends["answer"] == "yes", never)
+    return found if found.seen.arcs or not to_the_end else None

@@ -17,7 +17,8 @@
  *                             is known of a colour
  *     place_has_sum(m, s)     whether there are all tokens of a sum; place_take_sum takes, place_add_sum puts them
  *
- * Unlike there, place_add changes nothing when a counter would overflow.
+ * Unlike there, place_add changes nothing when a counter would overflow. PN_PACKED_KIND makes them for all places with
+ * the same colours in counters of the same width: they have the table of the place before the marking.
  */
 #ifndef PN_PACKED_H
 #define PN_PACKED_H
@@ -178,72 +179,86 @@ PN_INLINE void pn_sum_subtract(uint64_t *word, uint32_t bit, uint32_t colours, u
     }
 }
 
+/* What the functions of places that are alike have before the marking, and give to one another: the place's table. */
+#define PN_PACKED_PARAMETER const pn_multiset_t *at,
+#define PN_PACKED_ARGUMENT  at,
+
+/* The functions of a place; `first`, `multiset`: the first bit and the table. */
 #define PN_PACKED_PLACE(place, marking_t, value_t, number_of, first, colours, width, is_whole, multiset) \
-    PN_INLINE uint32_t place##_count_of(const marking_t *m, uint32_t i)                                  \
-    {                                                                                                    \
-        return pn_counter(m->packed, (first), (width), i);                                               \
-    }                                                                                                    \
-    PN_INLINE uint32_t place##_next(const marking_t *m, uint32_t i)                                      \
-    {                                                                                                    \
-        return pn_counter_next(m->packed, (first), (colours), (width), i);                               \
-    }                                                                                                    \
-    PN_INLINE bool place##_is_empty(const marking_t *m)                                                  \
-    {                                                                                                    \
-        return place##_next(m, 0U) == (colours);                                                         \
-    }                                                                                                    \
-    PN_INLINE uint32_t place##_held(const marking_t *m, const value_t *v)                                \
-    {                                                                                                    \
-        const uint32_t i = number_of(v);                                                                 \
-        return (i != PN_NO_COLOUR) ? place##_count_of(m, i) : 0U;                                        \
-    }                                                                                                    \
-    PN_INLINE bool place##_holds(const marking_t *m, const value_t *v, const value_t *w)                 \
-    {                                                                                                    \
-        const uint32_t i = number_of(v);                                                                 \
-        const uint32_t k = number_of(w);                                                                 \
-        if ((i == PN_NO_COLOUR) || (k == PN_NO_COLOUR)) {                                                \
-            return false;                                                                                \
-        }                                                                                                \
-        return (i == k) ? (place##_count_of(m, i) >= 2U)                                                 \
-                        : ((place##_count_of(m, i) >= 1U) && (place##_count_of(m, k) >= 1U));            \
-    }                                                                                                    \
-    PN_INLINE bool place##_take(marking_t *m, const value_t *v, uint32_t n)                              \
-    {                                                                                                    \
-        return pn_counter_take(m->packed, (first), (width), number_of(v), n);                            \
-    }                                                                                                    \
-    PN_INLINE bool place##_add(pn_ctx_t *cx, marking_t *m, const value_t *v, uint32_t n)                 \
-    {                                                                                                    \
-        return pn_counter_put(cx, m->packed, (first), (width), number_of(v), n, &(multiset));            \
-    }                                                                                                    \
-    PN_INLINE void place##_check(pn_ctx_t *cx, value_t *v)                                               \
-    {                                                                                                    \
-        static PN_OF_THREAD bool is_colour[(is_whole) ? 1U : (colours)];                                 \
-        const uint32_t i = number_of(v);                                                                 \
-        if ((i == PN_NO_COLOUR) || !((is_whole) || is_colour[(is_whole) ? 0U : i])) {                    \
-            pn_multiset_check(cx, &(multiset), v);                                                       \
-            if ((i != PN_NO_COLOUR) && !(is_whole) && pn_ok(cx)) {                                       \
-                is_colour[i] = true;                                                                     \
-            }                                                                                            \
-        }                                                                                                \
-    }                                                                                                    \
-    PN_INLINE bool place##_has_sum(const marking_t *m, const uint64_t *sum)                              \
-    {                                                                                                    \
-        return pn_sum_is_in(m->packed, (first), (colours), (width), sum);                                \
-    }                                                                                                    \
-    PN_INLINE bool place##_take_sum(marking_t *m, const uint64_t *sum)                                   \
-    {                                                                                                    \
-        const bool is_in = pn_sum_is_in(m->packed, (first), (colours), (width), sum);                    \
-        if (is_in) {                                                                                     \
-            pn_sum_subtract(m->packed, (first), (colours), (width), sum);                                \
-        }                                                                                                \
-        return is_in;                                                                                    \
-    }                                                                                                    \
-    PN_INLINE bool place##_add_sum(pn_ctx_t *cx, marking_t *m, const uint64_t *sum)                      \
-    {                                                                                                    \
-        if (!pn_sum_has_room(m->packed, (first), (colours), (width), sum)) {                             \
-            return pn_multiset_fail_full(cx, &(multiset));                                               \
-        }                                                                                                \
-        pn_sum_add(m->packed, (first), (colours), (width), sum);                                         \
-        return true;                                                                                     \
+    PN_PACKED_FUNCTIONS(place, , , marking_t, value_t, number_of, (first), colours, width, is_whole, multiset)
+
+/* The functions of all places that have the same colours in counters of the same width, each given by its table. */
+#define PN_PACKED_KIND(kind, marking_t, value_t, number_of, colours, width, is_whole)                            \
+    PN_PACKED_FUNCTIONS(kind, PN_PACKED_PARAMETER, PN_PACKED_ARGUMENT, marking_t, value_t, number_of, (at->bit), \
+                        colours, width, is_whole, *at)
+
+#define PN_PACKED_FUNCTIONS(place, parameter, argument, marking_t, value_t, number_of, first, colours, width,   \
+                            is_whole, multiset)                                                                 \
+    PN_INLINE uint32_t place##_count_of(parameter const marking_t *m, uint32_t i)                               \
+    {                                                                                                           \
+        return pn_counter(m->packed, (first), (width), i);                                                      \
+    }                                                                                                           \
+    PN_INLINE uint32_t place##_next(parameter const marking_t *m, uint32_t i)                                   \
+    {                                                                                                           \
+        return pn_counter_next(m->packed, (first), (colours), (width), i);                                      \
+    }                                                                                                           \
+    PN_INLINE bool place##_is_empty(parameter const marking_t *m)                                               \
+    {                                                                                                           \
+        return place##_next(argument m, 0U) == (colours);                                                       \
+    }                                                                                                           \
+    PN_INLINE uint32_t place##_held(parameter const marking_t *m, const value_t *v)                             \
+    {                                                                                                           \
+        const uint32_t i = number_of(v);                                                                        \
+        return (i != PN_NO_COLOUR) ? place##_count_of(argument m, i) : 0U;                                      \
+    }                                                                                                           \
+    PN_INLINE bool place##_holds(parameter const marking_t *m, const value_t *v, const value_t *w)              \
+    {                                                                                                           \
+        const uint32_t i = number_of(v);                                                                        \
+        const uint32_t k = number_of(w);                                                                        \
+        if ((i == PN_NO_COLOUR) || (k == PN_NO_COLOUR)) {                                                       \
+            return false;                                                                                       \
+        }                                                                                                       \
+        return (i == k) ? (place##_count_of(argument m, i) >= 2U)                                               \
+                        : ((place##_count_of(argument m, i) >= 1U) && (place##_count_of(argument m, k) >= 1U)); \
+    }                                                                                                           \
+    PN_INLINE bool place##_take(parameter marking_t *m, const value_t *v, uint32_t n)                           \
+    {                                                                                                           \
+        return pn_counter_take(m->packed, (first), (width), number_of(v), n);                                   \
+    }                                                                                                           \
+    PN_INLINE bool place##_add(pn_ctx_t *cx, parameter marking_t *m, const value_t *v, uint32_t n)              \
+    {                                                                                                           \
+        return pn_counter_put(cx, m->packed, (first), (width), number_of(v), n, &(multiset));                   \
+    }                                                                                                           \
+    PN_INLINE void place##_check(pn_ctx_t *cx, parameter value_t *v)                                            \
+    {                                                                                                           \
+        static PN_OF_THREAD bool is_colour[(is_whole) ? 1U : (colours)];                                        \
+        const uint32_t i = number_of(v);                                                                        \
+        if ((i == PN_NO_COLOUR) || !((is_whole) || is_colour[(is_whole) ? 0U : i])) {                           \
+            pn_multiset_check(cx, &(multiset), v);                                                              \
+            if ((i != PN_NO_COLOUR) && !(is_whole) && pn_ok(cx)) {                                              \
+                is_colour[i] = true;                                                                            \
+            }                                                                                                   \
+        }                                                                                                       \
+    }                                                                                                           \
+    PN_INLINE bool place##_has_sum(parameter const marking_t *m, const uint64_t *sum)                           \
+    {                                                                                                           \
+        return pn_sum_is_in(m->packed, (first), (colours), (width), sum);                                       \
+    }                                                                                                           \
+    PN_INLINE bool place##_take_sum(parameter marking_t *m, const uint64_t *sum)                                \
+    {                                                                                                           \
+        const bool is_in = pn_sum_is_in(m->packed, (first), (colours), (width), sum);                           \
+        if (is_in) {                                                                                            \
+            pn_sum_subtract(m->packed, (first), (colours), (width), sum);                                       \
+        }                                                                                                       \
+        return is_in;                                                                                           \
+    }                                                                                                           \
+    PN_INLINE bool place##_add_sum(pn_ctx_t *cx, parameter marking_t *m, const uint64_t *sum)                   \
+    {                                                                                                           \
+        if (!pn_sum_has_room(m->packed, (first), (colours), (width), sum)) {                                    \
+            return pn_multiset_fail_full(cx, &(multiset));                                                      \
+        }                                                                                                       \
+        pn_sum_add(m->packed, (first), (colours), (width), sum);                                                \
+        return true;                                                                                            \
     }
 
 #endif /* PN_PACKED_H */

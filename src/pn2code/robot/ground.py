@@ -1,0 +1,263 @@
+"""What a part stands on: floor, things of the scene, plates of turntables, other parts.
+
+    ground = Ground.of(cell)
+    rest = ground.rest(kind, T_world_part, others, plates)
+    rest.on                 # ("table", "box.1"): what is beneath it, with no more than a gap between
+    rest.inside             # m: so far its middle is inside of the area on which it stands
+
+Nothing here asks a collision library, so every backend knows the same. A part stands where something is at most
+`REST_GAP` beneath its lowest face, and its middle is above the area where that is so: else it would tip over. What is
+steeper than 45 degrees carries nothing.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from functools import lru_cache
+
+import numpy as np
+
+from pn2code.base.frozen import frozen
+from pn2code.robot.carried import plate_of
+from pn2code.robot.external import ExternalAxis
+from pn2code.robot.geometry import Body, bodies
+from pn2code.robot.hulls import Face, Hull, around, face, inside, overlap, part_below, shrunk
+from pn2code.robot.parts_table import PartKind
+from pn2code.robot.robot_cell import CellRobot, RobotCell
+from pn2code.robot.scene_objects import SceneObject
+from pn2code.robot.transforms import Array, matrix_of
+
+REST_GAP = 0.005
+"""m: a part that is released may fall so far."""
+SEARCHED = 0.5
+"""m: what is further below is not told."""
+_STEEP = 0.7
+"""Of the z of a normal: at most 45 degrees."""
+_ANY = 0.1
+_EDGE = 1e-4
+"""m: what lies over one another by no more does not carry anything."""
+_UPRIGHT = 1e-4
+
+
+@frozen(eq=False)
+class Plate:
+    """What takes parts along that stand on it: a turntable, a belt, another axis of a device.
+
+    Args:
+        robot: whose it is; index: of its axis, in joint positions.
+        hulls: of it and what is on it, in its own frame.
+        reach: m: nothing of it is further from its axis.
+        upright: whether it turns about a line that is upright, so that what lies on it stays where it is.
+        does: what it does when it moves, for messages.
+    """
+
+    robot: str
+    index: int
+    hulls: tuple[Hull, ...]
+    reach: float
+    upright: bool
+    does: str = "turns"
+
+
+@frozen
+class Rest:
+    """How a part stands.
+
+    Args:
+        on: what is beneath it.
+        below: the nearest thing below it, "": there is none within `SEARCHED`; gap: m to that.
+        inside: m: how far its middle is inside of the area on which it stands; negative: outside.
+    """
+
+    on: tuple[str, ...]
+    below: str
+    gap: float
+    inside: float
+
+    def trouble(self, slack: float = 0.0) -> str:
+        """Why it does not stand, as a clause; "": it does. `slack` (m): by how much it may be worse."""
+        if not self.on:
+            under = (
+                f"`{self.below}`, the nearest thing below it, is {1000.0 * self.gap:.1f} mm away"
+                if self.below
+                else f"there is nothing below it within {1000.0 * SEARCHED:g} mm"
+            )
+            return f"in the air: {under} (at most {1000.0 * REST_GAP:g} mm)"
+        if self.inside < -slack:
+            off = f", by {-1000.0 * self.inside:.1f} mm" if math.isfinite(self.inside) else ""
+            names = " and ".join(f"`{x}`" for x in self.on)
+            return f"where it tips over: its middle is not above what it stands on, {names}{off}"
+        return ""
+
+
+@frozen(eq=False)
+class _Thing:
+    name: str
+    hull: Hull
+
+
+class Ground:
+    """All that stands in a cell, but for parts."""
+
+    def __init__(self, cell: RobotCell) -> None:
+        self._things = [_Thing(b.name, hull) for b in bodies(cell) for hull in _hulls(b)]
+        extents = [t.hull.extent for t in self._things]
+        self._low = np.array([low for low, _ in extents]).reshape(-1, 3)
+        self._high = np.array([high for _, high in extents]).reshape(-1, 3)
+        self.plates = dict(_plates(cell))
+        self._kinds = {k.name: Hull.of(k.shape) for k in cell.parts.values()}
+        self._tops: dict[int, Face | None] = {}
+
+    @staticmethod
+    @lru_cache(maxsize=8)
+    def of(cell: RobotCell) -> Ground:
+        """That of a cell, which is kept."""
+        return Ground(cell)
+
+    def radius(self, kind: str) -> float:
+        """m: of a ball around the frame of a part of a kind."""
+        hull = self._kinds[kind]
+        return 0.0 if hull is None else hull.radius
+
+    def rest(
+        self,
+        kind: PartKind,
+        frame: Array,
+        others: Iterable[tuple[str, PartKind, Array]],
+        plates: Mapping[str, Array],
+        slack: float = 0.0,
+    ) -> Rest | None:
+        """How a part stands.
+
+        Args:
+            frame: `T_world_part`; others: the other parts that stand: name, kind, where.
+            plates: where the turntables are, in the world.
+            slack: m: what is so much further away, or overlaps by so much less, still counts.
+
+        None: its shape cannot be read.
+        """
+        own = self._kinds[kind.name]
+        if own is None:
+            return None
+        hull = own.at(frame)
+        lowest = face(hull, up=False, steep=_ANY, within=REST_GAP)
+        assert lowest is not None, "some face of a convex piece looks down"
+        low, high = hull.extent
+        half = float(hull.middle[2] - low[2])
+        own_faces = [_smaller(x, _EDGE - slack) for x in (lowest.core, lowest.polygon)]
+        on: set[str] = set()
+        areas: list[Array] = []
+        below, gap = "", math.inf
+        for name, top in self._near(low, high, half, others, plates):
+            found = []
+            # What is round has a narrow face, and much that is nearly as low: its surface is between these two.
+            for mine, other in zip(own_faces, (top.core, top.polygon), strict=True):
+                common = overlap(mine, other)
+                if len(common):
+                    found.append((common, lowest.heights(common) - top.heights(common)))
+            least = min((float(gaps.min()) for _, gaps in found), default=math.inf)
+            if least <= -half:
+                continue
+            if least < gap:
+                below, gap = name, least
+            if least <= REST_GAP + slack:
+                on.add(name)
+                areas += [part_below(common, gaps, REST_GAP + slack) for common, gaps in found]
+        if gap > SEARCHED:
+            below = ""
+        area = around(np.vstack(areas)) if areas else np.zeros((0, 2))
+        middle = inside(area, hull.middle[:2])
+        return Rest(tuple(sorted(on)), below, gap, middle)
+
+    def _near(
+        self,
+        low: Array,
+        high: Array,
+        half: float,
+        others: Iterable[tuple[str, PartKind, Array]],
+        plates: Mapping[str, Array],
+    ) -> Iterator[tuple[str, Face]]:
+        """What could be beneath a box: its name, and its face that looks up."""
+
+        def may(least: Array, most: Array) -> bool:
+            across = (least[:2] <= high[:2]).all() and (most[:2] >= low[:2]).all()
+            return bool(across and most[2] >= low[2] - SEARCHED and least[2] <= low[2] + half)
+
+        if self._things:
+            across = (self._low[:, :2] <= high[:2]).all(axis=1)
+            across &= (self._high[:, :2] >= low[:2]).all(axis=1)
+            across &= self._high[:, 2] >= low[2] - SEARCHED
+            across &= self._low[:, 2] <= low[2] + half
+            for i in np.flatnonzero(across).tolist():
+                if i not in self._tops:
+                    self._tops[i] = _top(self._things[i].hull)
+                top = self._tops[i]
+                if top is not None:
+                    yield self._things[i].name, top
+        for name, frame in plates.items():
+            for own in self.plates[name].hulls:
+                hull = own.at(frame)
+                if may(*hull.extent) and (top := _top(hull)) is not None:
+                    yield name, top
+        for name, kind, frame in others:
+            shape = self._kinds[kind.name]
+            if shape is None:
+                continue
+            hull = shape.at(frame)
+            if may(*hull.extent) and (top := _top(hull)) is not None:
+                yield name, top
+
+
+def _smaller(polygon: Array, by: float) -> Array:
+    out = shrunk(polygon, by)
+    return out if len(out) >= 3 else polygon
+
+
+def _top(hull: Hull) -> Face | None:
+    return face(hull, up=True, steep=_STEEP, within=REST_GAP)
+
+
+def _hulls(body: Body) -> Iterator[Hull]:
+    for solid in body.solids:
+        x, y, z = solid.size
+        own = Hull.box((x, y, z)) if solid.kind == "box" else Hull.cylinder(x, z)
+        yield own.at(matrix_of(solid.pose))
+    look = body.hull
+    if look is not None and look.file is not None:
+        found = Hull.around(look.file, look.scale)
+        if found is not None:
+            yield found.at(matrix_of(look.pose))
+
+
+def _plates(cell: RobotCell) -> Iterator[tuple[str, Plate]]:
+    for device in cell.devices:
+        for axis in device.carrying:
+            if axis.belt is None:
+                yield f"{device.name}/{axis.name}", _plate(device, axis, "moves")
+        for belt in device.belts:
+            # Its body is a thing of the scene, which stands.
+            width = belt.belt.width if belt.belt is not None else 0.0
+            own_reach = float(np.hypot(belt.upper, width / 2.0))
+            index = device.index(belt.name)
+            yield (
+                f"{device.name}/{belt.name}",
+                Plate(device.name, index, (), own_reach, True, "runs"),
+            )
+    for robot in cell.robots:
+        for axis in robot.axes.tables:
+            yield f"{robot.name}/{axis.name}", _plate(robot, axis, "turns", plate_of(axis))
+
+
+def _plate(robot: CellRobot, axis: ExternalAxis, does: str, *more: SceneObject) -> Plate:
+    hulls = []
+    for thing in (*more, *axis.objects):
+        own = Hull.of(thing)
+        if own is not None:
+            hulls.append(own.at(matrix_of(thing.pose)))
+    corners = np.vstack([np.zeros((1, 3)), *(h.corners for h in hulls)])
+    reach = float(np.linalg.norm(corners if axis.is_track else corners[:, :2], axis=1).max())
+    up = (robot.T_world_base @ axis.T_base_axis)[:3, :3] @ axis.direction
+    # A line leads what stands on it along, however it is inclined.
+    upright = axis.is_track or bool(abs(abs(float(up[2])) - 1.0) <= _UPRIGHT**2)
+    return Plate(robot.name, robot.index(axis.name), tuple(hulls), reach, upright, does)

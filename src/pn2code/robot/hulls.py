@@ -1,0 +1,231 @@
+"""Convex pieces of things: which face is below, which above, and where two of them lie over one another.
+
+    box = Hull.box((0.2, 0.2, 0.1)).at(T_world_box)
+    face(box, up=False, steep=0.7, within=0.005)    # Face: what looks down, as seen from above, and its plane
+
+Polygons are corners against the clock, (n, 2), in m.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from pn2code.base.frozen import frozen
+from pn2code.robot.mesh_files import NoMesh, read
+from pn2code.robot.scene_objects import SceneObject
+from pn2code.robot.transforms import Array
+
+_SIDES = 96
+"""Of what stands for a cylinder."""
+_FLAT = 1e-12
+_IN_PLANE = 1e-6
+_LOOKING = 1e-3
+
+
+@frozen(eq=False)
+class Hull:
+    """A convex piece.
+
+    Args:
+        corners: (n, 3); normals: of its faces, outwards, (m, 3); middle: its centre of mass.
+    """
+
+    corners: Array
+    normals: Array
+    middle: Array
+
+    @staticmethod
+    def box(size: tuple[float, float, float]) -> Hull:
+        """Around the origin; full lengths."""
+        half = [(-v / 2.0, v / 2.0) for v in size]
+        return Hull(
+            np.array(list(itertools.product(*half))),
+            np.vstack([np.eye(3), -np.eye(3)]),
+            np.zeros(3),
+        )
+
+    @staticmethod
+    def cylinder(radius: float, length: float) -> Hull:
+        """Along z around the origin."""
+        angles = np.arange(_SIDES) * (2.0 * math.pi / _SIDES)
+        round_ = np.stack([np.cos(angles), np.sin(angles), np.zeros(_SIDES)], axis=1)
+        up = np.array([0.0, 0.0, length / 2.0])
+        half = math.pi / _SIDES
+        turned = np.stack([np.cos(angles + half), np.sin(angles + half), np.zeros(_SIDES)], axis=1)
+        return Hull(
+            np.vstack([radius * round_ + up, radius * round_ - up]),
+            np.vstack([turned, [[0.0, 0.0, 1.0]], [[0.0, 0.0, -1.0]]]),
+            np.zeros(3),
+        )
+
+    @staticmethod
+    def of(o: SceneObject) -> Hull | None:
+        """A thing in its own frame, wherever it is; None: its file cannot be read, which is told elsewhere."""
+        if o.kind == "box":
+            return Hull.box(o.size)
+        if o.kind == "cylinder":
+            return Hull.cylinder(o.radius, o.length)
+        return None if o.mesh is None else Hull.around(o.mesh, o.scale)
+
+    @staticmethod
+    def around(path: Path, scale: float) -> Hull | None:
+        """Around the points of a mesh file; None: it cannot be read, or is flat."""
+        found = _around(path)
+        return (
+            None
+            if found is None
+            else Hull(scale * found.corners, found.normals, scale * found.middle)
+        )
+
+    def at(self, frame: Array) -> Hull:
+        """The same, placed."""
+        turn, shift = frame[:3, :3].T, frame[:3, 3]
+        return Hull(self.corners @ turn + shift, self.normals @ turn, self.middle @ turn + shift)
+
+    @property
+    def extent(self) -> tuple[Array, Array]:
+        """The corners of the box around it."""
+        return self.corners.min(axis=0), self.corners.max(axis=0)
+
+    @property
+    def radius(self) -> float:
+        """Of a ball around its origin."""
+        return float(np.linalg.norm(self.corners, axis=1).max())
+
+
+@lru_cache(maxsize=32)
+def _around(path: Path) -> Hull | None:
+    from scipy.spatial import ConvexHull, QhullError  # takes a while, and few cells have meshes
+
+    try:
+        points, _ = read(path)
+        hull = ConvexHull(points)
+    except (OSError, NoMesh, QhullError, ValueError):
+        return None
+    corners = points[hull.vertices]
+    inside = corners.mean(axis=0)
+    triangles = points[hull.simplices] - inside
+    volumes = np.abs(np.linalg.det(triangles))
+    middle = inside + (volumes[:, None] * triangles.sum(axis=1)).sum(axis=0) / (4.0 * volumes.sum())
+    normals = np.unique(np.round(hull.equations[:, :3], 9), axis=0)
+    return Hull(corners, normals, middle)
+
+
+@frozen(eq=False)
+class Face:
+    """What a piece looks like from above or below.
+
+    Args:
+        core: of the face, as seen from above; polygon: of all that is nearly in its plane.
+        normals, offsets: the planes of all faces that look that way: normal @ x = offset.
+    """
+
+    core: Array
+    polygon: Array
+    normals: Array
+    offsets: Array
+    up: bool
+
+    def heights(self, points: Array) -> Array:
+        """Of the surface over places (n, 2)."""
+        off = self.offsets[:, None] - self.normals[:, :2] @ points.T
+        rows = off / self.normals[:, 2, None]
+        return np.asarray(rows.min(axis=0) if self.up else rows.max(axis=0))
+
+
+def face(hull: Hull, *, up: bool, steep: float, within: float) -> Face | None:
+    """The face that looks up, or down.
+
+    Args:
+        steep: the least z of its normal; None where no face is so flat.
+        within: m: what is so near to its plane counts as being in it.
+    """
+    rising = hull.normals[:, 2] if up else -hull.normals[:, 2]
+    best = int(np.argmax(rising))
+    if rising[best] < steep:
+        return None
+    off = hull.corners @ hull.normals.T
+    offsets = off.max(axis=0)
+    near = offsets[best] - off[:, best]
+    looking = rising > _LOOKING
+    return Face(
+        around(hull.corners[near <= _IN_PLANE][:, :2]),
+        around(hull.corners[near <= within][:, :2]),
+        hull.normals[looking],
+        offsets[looking],
+        up,
+    )
+
+
+def around(points: Array) -> Array:
+    """The convex polygon around places."""
+    rows = sorted(set(map(tuple, np.asarray(points).tolist())))
+    if len(rows) < 3:
+        return np.array(rows).reshape(-1, 2)
+
+    def half(way: list[tuple[float, ...]]) -> list[tuple[float, ...]]:
+        out: list[tuple[float, ...]] = []
+        for p in way:
+            while len(out) > 1 and _turn(out[-2], out[-1], p) <= _FLAT:
+                out.pop()
+            out.append(p)
+        return out[:-1]
+
+    return np.array(half(rows) + half(rows[::-1])).reshape(-1, 2)
+
+
+def _turn(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]) -> float:
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def inwards(polygon: Array, points: Array) -> Array:
+    """How far places (n, 2) are inside of each edge of a polygon, (edges, n); negative: outside of it."""
+    along = np.roll(polygon, -1, axis=0) - polygon
+    along = along / np.maximum(np.linalg.norm(along, axis=1, keepdims=True), 1e-300)
+    off = points[None] - polygon[:, None]
+    return np.asarray(along[:, 0, None] * off[..., 1] - along[:, 1, None] * off[..., 0])
+
+
+def part_below(polygon: Array, values: Array, most: float) -> Array:
+    """Of a polygon with a value at each corner, linear in between, the part where it is at most so much."""
+    out = []
+    for i in range(len(polygon)):
+        j = (i + 1) % len(polygon)
+        a, b = values[i] - most, values[j] - most
+        if a <= 0.0:
+            out.append(polygon[i])
+        if (a < 0.0 < b) or (b < 0.0 < a):
+            out.append(polygon[i] + (polygon[j] - polygon[i]) * (a / (a - b)))
+    return np.array(out).reshape(-1, 2)
+
+
+def shrunk(polygon: Array, by: float) -> Array:
+    """The polygon without all that is so near to its edges (m)."""
+    out = polygon
+    for i in range(len(polygon)):
+        if len(out) < 3:
+            break
+        out = part_below(out, -inwards(polygon, out)[i], -by)
+    return out
+
+
+def overlap(a: Array, b: Array) -> Array:
+    """What two polygons have in common."""
+    out = a
+    for i in range(len(b)):
+        if len(out) < 3:
+            break
+        out = part_below(out, -inwards(b, out)[i], 0.0)
+    return out if len(out) >= 3 else np.zeros((0, 2))
+
+
+def inside(polygon: Array, point: Array) -> float:
+    """How far a place is inside of a polygon, m; negative: outside."""
+    if len(polygon) < 3:
+        return -math.inf
+    return float(inwards(polygon, point[None]).min())

@@ -1,0 +1,79 @@
+"""Points and triangles of mesh files: Wavefront OBJ and STL, binary or text.
+
+points, triangles = read(Path("link_1.obj"))      # NoMesh, or OSError, if it cannot be read
+"""
+
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+Points: TypeAlias = NDArray[np.float64]
+Triangles: TypeAlias = NDArray[np.int64]
+
+_STL_HEAD, _STL_ROW = 84, 50
+
+
+class NoMesh(ValueError):  # noqa: N818
+    """A file is not a mesh that can be read; the message says why."""
+
+
+def read(path: Path) -> tuple[Points, Triangles]:
+    """An OBJ or STL file."""
+    return _stl(path) if path.suffix.lower() == ".stl" else _obj(path)
+
+
+def merged(corners: Points) -> tuple[Points, Triangles]:
+    """Corners of triangles, three after each other, with those at the same place made one; flat triangles go."""
+    rows, which = np.unique(np.round(corners * 1e5).astype(np.int64), axis=0, return_inverse=True)
+    triangles = which.reshape(-1, 3)
+    a, b, c = triangles.T
+    return rows / 1e5, triangles[(a != b) & (b != c) & (c != a)]
+
+
+def _obj(path: Path) -> tuple[Points, Triangles]:
+    """Points and faces of a Wavefront file; all else (normals, textures, materials) is passed over."""
+    points: list[list[float]] = []
+    triangles: list[tuple[int, int, int]] = []
+    with path.open(encoding="utf-8", errors="replace") as lines:
+        for number, line in enumerate(lines, 1):
+            words = line.split()
+            try:
+                if words[:1] == ["v"]:
+                    points.append([float(w) for w in words[1:4]])
+                elif words[:1] == ["f"]:
+                    at = [int(w.split("/")[0]) for w in words[1:]]
+                    at = [i - 1 if i > 0 else len(points) + i for i in at]
+                    triangles += [(at[0], b, c) for b, c in zip(at[1:], at[2:], strict=False)]
+            except (ValueError, IndexError):
+                raise NoMesh(f"line {number} is not of the OBJ format") from None
+    found = np.array(triangles, np.int64).reshape(-1, 3)
+    if any(len(p) != 3 for p in points) or (
+        found.size and not 0 <= int(found.min()) <= int(found.max()) < len(points)
+    ):
+        raise NoMesh("its points or faces are incomplete")
+    return np.array(points, float).reshape(-1, 3), found
+
+
+def _stl(path: Path) -> tuple[Points, Triangles]:
+    """Triangles of an STL file, binary or text."""
+    data = path.read_bytes()
+    if len(data) >= _STL_HEAD:
+        count = struct.unpack_from("<I", data, 80)[0]
+        if len(data) == _STL_HEAD + count * _STL_ROW:
+            row = np.dtype([("normal", "<f4", 3), ("corners", "<f4", 9), ("more", "<u2")])
+            rows = np.frombuffer(data, row, count, _STL_HEAD)
+            return merged(rows["corners"].reshape(-1, 3).astype(float))
+    words = data.decode("utf-8", "replace").split()
+    at = [i for i, w in enumerate(words) if w.lower() == "vertex"]
+    try:
+        corners = np.array([[float(w) for w in words[i + 1 : i + 4]] for i in at], float)
+    except ValueError:
+        raise NoMesh("it is not of the STL format") from None
+    if not at or len(at) % 3 or corners.shape != (len(at), 3):
+        raise NoMesh("it is not of the STL format")
+    return merged(corners)

@@ -1,0 +1,102 @@
+"""A mill with a door and a clamp, from cell.toml to scripts, runs and proofs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from e2e.test_check_geometry import looked
+from helpers.belt_cell import belt_cell
+from helpers.door_cell import NET, TOML, door_cell
+from pn2code.diagnostics import Diagnostics
+from pn2code.pipeline import generate
+from pn2code.run.cell import RunOptions, RunResult, run_cell
+
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
+SHUT = NET.replace("(openVice (); openDoor ())", "openVice ()")
+BARE = SHUT.replace(
+    "(fetch (); goTo front; line above; line bed)", "(goTo front; line above)"
+).replace("(release (); line above; line front; home ())", "line front")
+PULLED = NET.replace("(release (); line above;", "(line above; line bed; release (); line above;")
+
+
+def ran(folder: Path, net: str, backend: str) -> RunResult:
+    d = Diagnostics()
+    options = RunOptions(out=folder / "run", backend=backend, checked=False, looks=False)  # type: ignore[arg-type]
+    found = run_cell(door_cell(folder / "cell", net), options, d)
+    assert found is not None, [e.message for e in d.errors]
+    return found
+
+
+def test_scripts_of_devices_move_their_axes(tmp_path: Path) -> None:
+    d = Diagnostics()
+    found = generate(door_cell(tmp_path), d, checked=False)
+    assert found is not None, [e.message for e in d.errors]
+    text = next(f.text for f in found.files if f.path == "mill.tdl")
+    for line in (
+        "move $external with $track door = 900 mm",
+        "move $external with $track vice = 59.8 mm",
+        "move $external with $track door = 0 mm at 50 %",
+    ):
+        assert line in text, text
+
+
+def test_an_arm_does_not_move_the_axes_of_a_device(tmp_path: Path) -> None:
+    d = Diagnostics()
+    net = NET.replace("(goTo front; line above; line bed)", "(openDoor (); line bed)")
+    net = net.replace("(fetch (); goTo front;", "(fetch (); openDoor (); goTo front;")
+    assert generate(door_cell(tmp_path, net), d, checked=False) is None
+    said = [e.message for e in d.errors]
+    assert any("moves track `door`, which robot `arm` does not have" in x for x in said), said
+
+
+def test_a_run_opens_and_closes_the_door(tmp_path: Path) -> None:
+    found = ran(tmp_path, NET, "fake")
+    assert found.record.verdict == "finished", found.record.reason
+    moves = [a for a in found.record.actions if (a.robot, a.label) == ("mill", "external")]
+    assert [round(a.end - a.start, 3) for a in moves] == [1.741, 2.2, 1.345, 3.4]
+    assert "condition.mill" not in found.record.series
+
+
+def test_a_run_stops_where_an_arm_goes_through_a_closed_door(tmp_path: Path) -> None:
+    record = ran(tmp_path, SHUT, "bullet").record
+    assert record.verdict == "failed" and record.time > 0.0
+    assert "`arm/tool_body` and `mill/door` collide" in record.reason
+
+
+def test_what_a_clamp_holds_is_not_pulled_out(tmp_path: Path) -> None:
+    record = ran(tmp_path, PULLED, "fake").record
+    assert record.verdict == "failed"
+    assert "`arm` pulls `blank.1` out of `mill/vice`, which holds it" in record.reason
+
+
+def test_over_all_interleavings_the_door_is_in_the_way(tmp_path: Path) -> None:
+    layout = looked(door_cell(tmp_path / "cell", BARE), tmp_path / "traces")
+    assert layout.of_moves == "yes" and layout.of_pairs == "no"
+    assert {p.where.b for p in layout.pairs if p.where} == {"mill/door"}
+    assert {m.robot for m in layout.moves} == {"arm", "mill"}
+
+
+def test_a_belt_brings_parts_to_its_stop(tmp_path: Path) -> None:
+    d = Diagnostics()
+    options = RunOptions(out=tmp_path / "run", backend="fake", checked=False, looks=False)
+    found = run_cell(belt_cell(tmp_path / "cell"), options, d)
+    assert found is not None, [e.message for e in d.errors]
+    assert found.record.verdict == "finished", found.record.reason
+    runs = [a.end - a.start for a in found.record.actions if a.label == "external"]
+    # 0.9 m at 0.25 m/s, of which both boxes are brought by the same belt.
+    assert runs == [pytest.approx(0.9 / 0.25 + 0.25 / 1.0 + 1.0 / 10.0)] * 2
+    taken = [p.change.pose for p in found.record.parts if p.change.effect == "takes"]
+    assert [(round(p.x, 6), round(p.y, 6)) for p in taken] == [(1.5, -0.6)] * 2
+
+
+def test_a_run_stops_where_an_arm_is_too_fast_in_a_zone(tmp_path: Path) -> None:
+    zone = "[zones.front]\npose = { x = 0.8, z = 1.0 }\nsize = [0.8, 0.8, 2.0]\nmax_speed = 0.2\n"
+    d = Diagnostics()
+    options = RunOptions(out=tmp_path / "run", backend="fake", checked=False, looks=False)
+    found = run_cell(door_cell(tmp_path / "cell", toml=TOML + zone), options, d)
+    assert found is not None, [e.message for e in d.errors]
+    record = found.record
+    assert record.verdict == "failed" and record.time > 0.0
+    assert "mm/s fast at" in record.reason and "in zone `front`, where 200.0" in record.reason

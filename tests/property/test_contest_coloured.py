@@ -1,0 +1,119 @@
+"""The contest's examinations of coloured nets, read from PNML, against the nets unfolded and explored in Python."""
+
+from __future__ import annotations
+
+import random
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from helpers.coloured_families import FAMILIES
+from helpers.random_linear import holds, random_linear, temporal_parts
+from helpers.random_tables import Graph, random_branching, random_condition
+from pn2code.contest.engine import engine
+from pn2code.contest.examinations import GLOBAL, Asked, Part, asked
+from pn2code.contest.formulas import Fireable, Formula, Op, Tokens
+from pn2code.contest.portfolio import answers, space
+from pn2code.contest.tables import Tables
+from pn2code.diagnostics import Diagnostics
+from pn2code.net import front
+from pn2code.semantics.evaluation.constants import compute
+from pn2code.unfold.plain import plain
+from pn2code.unfold.unfold import unfold
+
+SECONDS = 600.0
+"""Ends what hangs; nothing takes that long, on however busy a machine."""
+FORMULAS = 6
+"""Of each kind."""
+MOST_PARTS = 3
+
+
+@pytest.fixture(scope="module")
+def program() -> Iterator[Path]:
+    """The engine."""
+    with engine(Diagnostics()) as found:
+        assert found is not None
+        yield found
+
+
+def read(path: Path) -> Tables:
+    """The net as the command reads it, by both ways of unfolding, which agree."""
+    d = Diagnostics()
+    net = front.load(path, d, compute=compute)
+    assert net is not None, [str(x) for x in d]
+    found, named = plain(net), unfold(net, d)
+    assert found is not None, "every net of the contest is plain"
+    assert named is not None
+    tables = Tables.of_plain(net, found)
+    assert tables == Tables.of(named)
+    return tables
+
+
+def truths(graph: Graph) -> dict[str, bool]:
+    """What the examinations without formulas say."""
+    tables = graph.tables
+    totals = [
+        [sum(m[p] for p in places) for m in graph.markings] for places in tables.places.values()
+    ]
+    can = [graph.where(Op("E", (Op("F", (fireable(t),)),))) for t in tables.transitions]
+    everywhere = len(graph.markings)
+    return {
+        "ReachabilityDeadlock": any(not s for s in graph.successors),
+        "OneSafe": all(max(total) <= 1 for total in totals),
+        "StableMarking": any(len(set(total)) == 1 for total in totals),
+        "QuasiLiveness": all(0 in where for where in can),
+        "Liveness": all(len(where) == everywhere for where in can),
+    }
+
+
+def fireable(name: str) -> Formula:
+    """That a transition is enabled."""
+    return Fireable((name,))
+
+
+def questions(draw: random.Random, tables: Tables) -> Iterator[tuple[str, Formula]]:
+    """Random formulas of all kinds."""
+    for _ in range(FORMULAS):
+        path, operator = draw.choice(["EF", "AG"])
+        yield "ctl", Op(path, (Op(operator, (random_condition(draw, tables),)),))
+        yield "ctl", random_branching(draw, tables, 3)
+        while True:
+            f = random_linear(draw, tables, 3)
+            if len(temporal_parts(f)) <= MOST_PARTS:
+                break
+        yield "ltl", Op("A", (f,))
+
+
+@pytest.mark.parametrize("family", FAMILIES)
+def test_a_coloured_net(program: Path, family: str, tmp_path: Path) -> None:
+    net = FAMILIES[family]()
+    path = tmp_path / "model.pnml"
+    path.write_text(net.pnml(), encoding="utf-8")
+    tables, own = read(path), net.tables()
+    graph = Graph.of(own, 20_000)
+    assert graph is not None
+    draw = random.Random(family)
+    expected: dict[str, bool | int] = {}
+    lines: list[Asked] = []
+    for name in GLOBAL:
+        lines += asked(tables, name, tmp_path)
+    expected |= truths(graph)
+    for number, (kind, f) in enumerate(questions(draw, own)):
+        lines.append(Asked(str(number), formula=f, kind=kind))
+        expected[str(number)] = holds(graph, f) if kind == "ltl" else 0 in graph.where(f)
+    for p in own.places:
+        lines.append(bound(tables, p))
+        expected[p] = max(sum(m[i] for i in own.places[p]) for m in graph.markings)
+    found = {a.name: a.value for a in answers(program, tables, lines, seconds=SECONDS)}
+    assert found == expected
+    sizes = space(program, tables, seconds=SECONDS, mebibytes=1024)
+    assert sizes is not None
+    assert (sizes.states, sizes.arcs) == (len(graph.markings), graph.arcs)
+    assert sizes.tokens_in_place == max(max(m) for m in graph.markings)
+    assert sizes.tokens_in_marking == max(sum(m) for m in graph.markings)
+
+
+def bound(tables: Tables, place: str) -> Asked:
+    """The question for the most tokens of a place."""
+    return Asked(place, (Part("bound", tables.bound(0, Tokens((place,))).split(" ", 1)[1]),))
