@@ -145,7 +145,10 @@ def admissibility() -> ColouredNet:
 def resources() -> ColouredNet:
     """Processes that take one, then a second resource: they can wait for one another."""
     return ColouredNet(
-        {"P": _enum("p", 2), "R": _enum("r", 3, cyclic=False), "PR": Product(("P", "R")), "PRR": Product(("P", "R", "R"))},
+        {
+            "P": _enum("p", 2), "R": _enum("r", 3, cyclic=False),
+            "PR": Product(("P", "R")), "PRR": Product(("P", "R", "R")),
+        },
         {"p": "P", "r": "R", "s": "R"},
         {
             "Idle": ("P", all_("P")), "Free": ("R", less(times(2, all_("R")), add("r0", times(2, "r2")))),

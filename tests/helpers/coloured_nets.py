@@ -1,6 +1,6 @@
-"""Symmetric nets twice: as PNML for the tool, and unfolded here, by evaluating each term for all values of its variables.
+"""Symmetric nets twice: as PNML for the tool, and unfolded here, by trying all values of the variables of each term.
 
-    net = ColouredNet({"P": Cyclic("abc")}, {"x": "P"}, {"Idle": ("P", all_("P"))},
+    net = ColouredNet({"P": Enum(("a", "b", "c"))}, {"x": "P"}, {"Idle": ("P", all_("P"))},
                       [("go", eq("x", "a"), {"Idle": "x"}, {"Idle": succ("x")})])
     net.pnml()      # the file
     net.tables()    # what the contest's examinations ask about
@@ -110,7 +110,7 @@ class ColouredNet:
         if isinstance(term, int):
             return term
         if isinstance(term, str):
-            return env[term] if term in env else term
+            return env.get(term, term)
         match term:
             case ("succ" | "pred" as step, of):
                 values = self.values(self.sort_of(of) or "")

@@ -12,8 +12,8 @@ from helpers.coloured_families import FAMILIES
 from helpers.random_linear import holds, random_linear, temporal_parts
 from helpers.random_tables import Graph, random_branching, random_condition
 from pn2code.contest.engine import engine
-from pn2code.contest.examinations import GLOBAL, Asked, asked
-from pn2code.contest.formulas import Formula, Op, Tokens
+from pn2code.contest.examinations import GLOBAL, Asked, Part, asked
+from pn2code.contest.formulas import Fireable, Formula, Op, Tokens
 from pn2code.contest.portfolio import answers, space
 from pn2code.contest.tables import Tables
 from pn2code.diagnostics import Diagnostics
@@ -68,8 +68,7 @@ def truths(graph: Graph) -> dict[str, bool]:
 
 
 def fireable(name: str) -> Formula:
-    from pn2code.contest.formulas import Fireable
-
+    """That a transition is enabled."""
     return Fireable((name,))
 
 
@@ -117,6 +116,4 @@ def test_a_coloured_net(program: Path, family: str, tmp_path: Path) -> None:
 
 def bound(tables: Tables, place: str) -> Asked:
     """The question for the most tokens of a place."""
-    from pn2code.contest.examinations import Part
-
     return Asked(place, (Part("bound", tables.bound(0, Tokens((place,))).split(" ", 1)[1]),))

@@ -11,7 +11,7 @@ import pytest
 from helpers.random_tables import Graph, random_branching, random_condition, random_tables
 from pn2code.contest import linear
 from pn2code.contest.engine import Answer, Space, Task, ask, engine
-from pn2code.contest.formulas import Formula, Op, Tokens
+from pn2code.contest.formulas import AtMost, Constant, Formula, Op, Tokens
 from pn2code.contest.tables import Tables
 from pn2code.diagnostics import Diagnostics
 
@@ -42,9 +42,11 @@ def nets() -> Iterator[tuple[random.Random, Tables, Graph]]:
             return
 
 
-def answers(program: Path, tables: Tables, questions: list[str], method: str) -> dict[int, Answer]:
+def answers(
+    program: Path, tables: Tables, questions: list[str], method: str, *, seconds: float = SECONDS
+) -> dict[int, Answer]:
     """Final answers, by the number of the question."""
-    task = Task(method, tables.text(questions), SECONDS, 1024)
+    task = Task(method, tables.text(questions), seconds, 1024)
     found: dict[int, Answer] = {}
     for a in ask(program, [task]):
         if isinstance(a, Answer) and a.is_final:
@@ -80,6 +82,22 @@ def test_walks_find_what_is_there_and_nothing_else(program: Path) -> None:
         questions = [tables.reach(i, f) for i, f in enumerate(conditions) if i in there]
         found = answers(program, tables, questions, "walk") if questions else {}
         assert set(found) <= set(there) and all(a.value is True for a in found.values())
+
+
+def test_a_walk_comes_to_where_one_step_in_a_thousand_does_not_lead_away(program: Path) -> None:
+    """Each of 40 tokens can go from its first place to its second, and from there in 60 ways to its third."""
+    n, ways = 40, 60
+    initial = [1] * n + [0] * (2 * n)
+    steps = [({i: 1}, {n + i: 1}) for i in range(n)]
+    steps += [({n + i: 1}, {2 * n + i: 1}) for i in range(n) for _ in range(ways)]
+    steps += [({2 * n + i: 1}, {i: 1}) for i in range(n)]
+    second = tuple(f"p{p}" for p in range(n, 2 * n))
+    tables = Tables(
+        tuple(initial), tuple(pre for pre, _ in steps), tuple(post for _, post in steps),
+        {f"p{p}": (p,) for p in range(3 * n)}, {f"t{t}": (t,) for t in range(len(steps))},
+    )  # fmt: skip
+    task = tables.reach(0, AtMost(Constant(n), Tokens(second)))
+    assert answers(program, tables, [task], "walk", seconds=20.0)[0].value is True
 
 
 def test_branching_time(program: Path) -> None:

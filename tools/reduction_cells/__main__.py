@@ -19,6 +19,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))  # as pytest does
 
 import pytest
+from tools.reduction_cells.asked import WRONG_PROPERTIES
 from tools.reduction_cells.bed import Verdict, judge
 from tools.reduction_cells.files import ANY, FORGETFUL
 from tools.reduction_cells.limited import WRONG_LIMITS
@@ -82,7 +83,7 @@ def summary(verdicts: list[Verdict], *, mutants: bool) -> int:
         print(f"  {count:9,} {name}")
     names = (*MUTANTS, *WRONG_LIMITS)
     missed = [name for name in names if not shown[name]] if mutants else []
-    for name in (*names, NO_GROUPS, RASH, *FORGETFUL, ANY) if mutants else ():
+    for name in (*names, NO_GROUPS, RASH, *WRONG_PROPERTIES, *FORGETFUL, ANY) if mutants else ():
         print(f"  {shown[name]:9,} notice: {name}")  # some take rare cells
     for name in missed:
         print(f"not noticed: {name}")

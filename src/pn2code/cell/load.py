@@ -691,16 +691,57 @@ def _sensors(r: Tables, data: dict[str, Any]) -> Iterable[SensorConfig]:
             )
             default = None
         seed = r.get(table, at, SENSOR["seed"])
-        sees, part = _seen(r, data, table, at)
+        sees, part, where = _seen(r, data, table, at)
         says = r.get(table, at, SENSOR["says"])
-        yield SensorConfig(name, variable, file, default, seed, r.at(*at), sees, part, says)
+        yield SensorConfig(name, variable, file, default, seed, r.at(*at), sees, part, says, where)
 
 
-def _seen(r: Tables, data: dict[str, Any], table: dict[str, Any], at: KeyPath) -> tuple[str, str]:
-    """The place at which a sensor looks, and for which kind of parts."""
+def _seen(
+    r: Tables, data: dict[str, Any], table: dict[str, Any], at: KeyPath
+) -> tuple[str, str, float]:
+    """The place, zone or axis at which a sensor looks; for which kind of parts; at which position of the axis."""
     sees, part = (r.get(table, at, SENSOR[key], "") for key in ("sees", "part"))
-    for name, key, section in ((sees, "sees", "places"), (part, "part", "parts")):
-        _expect_named(r, data, name, (*at, key), section)
+    where = r.number(table, at, SENSOR["at"], 0.0) if "at" in table else 0.0
+    _expect_named(r, data, part, (*at, "part"), "parts")
+    device, dot, axis = sees.partition(".")
+    # How far a belt has run says nothing of where it is.
+    is_axis = bool(dot) and axes_of_all(data).get(device, {}).get(axis, "belt") != "belt"
+    zones = _table(_layered(data, "zones"))
+    if dot and not is_axis:
+        known = [f"{x}.{a}" for x in _table(data.get("devices")) for a in axes_of_all(data)[x]]
+        r.d.error(
+            codes.CELL_VALUE,
+            f"`sees` names `{sees}`, but no device has such an axis",
+            r.at(*at, "sees"),
+            hint=did_you_mean(sees, known) or "give DEVICE.AXIS, of `[devices.DEVICE.axes.AXIS]`",
+        )
+    elif not dot and sees not in zones:
+        _expect_named(r, data, sees, (*at, "sees"), "places")
+    elif sees in zones and sees in _table(_layered(data, "places")):
+        r.d.error(
+            codes.CELL_VALUE,
+            f"`sees` names `{sees}`, which is a place and a zone",
+            r.at(*at, "sees"),
+            hint="give one of them another name",
+        )
+    if is_axis is not ("at" in table) and not (dot and not is_axis):
+        r.d.error(
+            codes.CELL_KEY,
+            f"`sees` names axis `{sees}`, but not at which position it is seen"
+            if is_axis
+            else "`at` says where an axis is seen, but `sees` names none",
+            r.at(*at),
+            hint="add `at`, in m, or in degrees of what turns"
+            if is_axis
+            else "remove `at`, or let `sees` name an axis, DEVICE.AXIS",
+        )
+    if part and (is_axis or sees in zones):
+        r.d.error(
+            codes.CELL_KEY,
+            f"`part` says which kind of parts the sensor sees, but `{sees}` is no place",
+            r.at(*at, "part"),
+            hint="remove it",
+        )
     if part and not sees:
         r.d.error(
             codes.CELL_KEY,
@@ -708,7 +749,15 @@ def _seen(r: Tables, data: dict[str, Any], table: dict[str, Any], at: KeyPath) -
             r.at(*at, "part"),
             hint="add `sees` with the name of a place",
         )
-    return sees, part
+    return sees, part, where
+
+
+def _layered(data: dict[str, Any], section: str) -> dict[str, Any]:
+    """The tables of a section, in the cell and in its layouts."""
+    out = dict(_table(data.get(section)))
+    for layout in _table(data.get("layouts")).values():
+        out |= _table(_table(layout).get(section))
+    return out
 
 
 def _report(r: Tables, data: dict[str, Any], config: CellConfig) -> ReportConfig:

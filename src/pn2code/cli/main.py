@@ -159,8 +159,10 @@ def _leave(code: str | int | None) -> NoReturn:
 
     Python would first free the net object by object, which takes a fifth of the time of checking a large one.
     """
-    # "threading" first waits for other threads; a text as exit code is printed: Python does both.
-    if threading.active_count() > 1 or isinstance(code, str):
+    # "threading" first waits for other threads; a text as exit code is printed: Python does both. Daemons are left
+    # alone: Python would end them where they ask for its lock, and libraries in C++ that are left so abort the process.
+    others = [t for t in threading.enumerate() if t is not threading.main_thread()]
+    if isinstance(code, str) or not all(t.daemon for t in others):
         sys.exit(code)
     atexit._run_exitfuncs()
     try:

@@ -54,6 +54,8 @@ _COMPARISONS = {
 }  # fmt: skip
 _ARITHMETIC = {"addition": "+", "subtraction": "-", "mult": "*", "div": "div", "mod": "mod"}
 _MOST_CALLS = 40
+_MOST_DEEP = 100
+"""Operators inside one another; a chain of `and`, `or` or `add` counts once."""
 
 
 class Terms:
@@ -70,6 +72,7 @@ class Terms:
         self.d = d
         self._given: Mapping[str, Term] = {}
         self._calls = 0
+        self._depth = 0
 
     # --- whole inscriptions ----------------------------------------------------------------------
 
@@ -174,7 +177,29 @@ class Terms:
                 node,
                 "it belongs to no place/transition or symmetric net",
             )
-        return translate(self, node, sort)
+        if self._depth >= _MOST_DEEP:
+            raise self.fail(
+                UNSUPPORTED_PNML,
+                f"operators are nested more than {_MOST_DEEP} levels deep",
+                node,
+                "no net needs that: the file is damaged or hostile",
+            )
+        self._depth += 1
+        try:
+            return translate(self, node, sort)
+        finally:
+            self._depth -= 1
+
+    def _operands(self, node: Node) -> list[Node]:
+        """Of a chain of one operator, however it is nested."""
+        todo, found = [node], []
+        while todo:
+            at = todo.pop()
+            if at.tag == node.tag:
+                todo += reversed(self._arguments(at, 1))
+            else:
+                found.append(at)
+        return found
 
     def _variable(self, node: Node, sort: Sort | None) -> Term:
         given = self._given.get(node.get("refvariable"))
@@ -331,8 +356,7 @@ class Terms:
         return Term(_joined(f" {sign} ", codes, node), BOOL, atomic=False)
 
     def _logic(self, node: Node, sort: Sort | None) -> Term:
-        arguments = self._arguments(node, 1)
-        parts = [_closed(self._bool(a), a) for a in arguments]
+        parts = [_closed(self._bool(a), a) for a in self._operands(node)]
         word = " andalso " if node.tag == "and" else " orelse "
         return Term(_joined(word, parts, node), BOOL, atomic=False)
 
@@ -407,7 +431,7 @@ class Terms:
         return Term((("empty", node),), of, True)
 
     def _add(self, node: Node, sort: Sort | None) -> Term:
-        arguments = self._arguments(node, 1)
+        arguments = self._operands(node)
         terms = [self._many(self._term(a, sort), a, sort) for a in arguments]
         if len(terms) == 1:
             return terms[0]
@@ -508,7 +532,12 @@ def _text(term: Term) -> str:
 
 def _conjuncts(node: Node) -> list[Node]:
     """The parts of nested `and`s."""
-    if node.tag != "and":
-        return [node]
-    parts = [c.children[0] if c.tag == "subterm" and c.children else c for c in node.children]
-    return [x for part in parts for x in _conjuncts(part)]
+    todo, found = [node], []
+    while todo:
+        at = todo.pop()
+        if at.tag == "and":
+            parts = (c.children[0] if c.tag == "subterm" and c.children else c for c in at.children)
+            todo += reversed([*parts])
+        else:
+            found.append(at)
+    return found

@@ -30,13 +30,18 @@ from pn2code.reading.codes import (
 MAX_BYTES = 100 * 1024 * 1024
 MAX_DEPTH = 200
 """Elements inside one another; those of real nets have fewer than ten levels."""
+MAX_TERM_DEPTH = 40_000
+"""The same inside a term of a PNML file, where a chain of ten thousand `or`s is as many levels."""
 MAX_ELEMENTS = 800_000
 """The largest real net seen has 50,000; one of 10,000 places some 500,000."""
+MAX_PNML_ELEMENTS = 4_000_000
+"""Of a PNML file: place/transition nets that were made from coloured ones have a hundred thousand transitions."""
 MAX_SPACE = 5_000_000
 """Characters of white space at the beginning of one element."""
 MAX_TEXT = 250_000
 """Characters of one text or of the attributes of one element; the longest of real nets have some thousand."""
 
+_TERMS = frozenset({"condition", "hlinscription", "hlinitialMarking"})
 _SIGNATURES = {
     b"\x89PNG": "a picture (PNG)",
     b"\xff\xd8\xff": "a picture (JPEG)",
@@ -307,10 +312,10 @@ class _Builder:
     def _start(self, tag: str, attributes: dict[str, str]) -> None:
         if attributes and sum(map(len, attributes.values())) > MAX_TEXT:
             self._refuse(XML_LIMIT, f"an attribute has more than {MAX_TEXT:,} characters")
-        if len(self.open) >= MAX_DEPTH:
-            self._refuse(XML_LIMIT, f"elements are nested more than {MAX_DEPTH} levels deep")
-        if self.elements >= MAX_ELEMENTS:
-            self._refuse(XML_LIMIT, f"there are more than {MAX_ELEMENTS:,} elements")
+        if len(self.open) >= MAX_DEPTH and len(self.open) >= (most := self._most_deep()):
+            self._refuse(XML_LIMIT, f"elements are nested more than {most:,} levels deep")
+        if self.elements >= MAX_ELEMENTS and self.elements >= (most := self._most_elements()):
+            self._refuse(XML_LIMIT, f"there are more than {most:,} elements")
         self.elements += 1
         if self.namespaces:
             tag = _qualified(tag)
@@ -326,6 +331,17 @@ class _Builder:
         self.open.append(node)
         self.outer.append((self.text, self.space))
         self.text, self.space = None, 0
+
+    def _is_pnml(self) -> bool:
+        return _local(self.open[0].tag) == "pnml"
+
+    def _most_deep(self) -> int:
+        """How deep elements may be here."""
+        is_term = self._is_pnml() and any(_local(n.tag) in _TERMS for n in self.open[:MAX_DEPTH])
+        return MAX_TERM_DEPTH if is_term else MAX_DEPTH
+
+    def _most_elements(self) -> int:
+        return MAX_PNML_ELEMENTS if self._is_pnml() else MAX_ELEMENTS
 
     def _end(self, _tag: str) -> None:
         node, text = self.open.pop(), self.text

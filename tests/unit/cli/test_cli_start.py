@@ -176,3 +176,22 @@ def test_interrupted_while_it_is_loaded() -> None:
         [sys.executable, "-c", program], capture_output=True, text=True, check=False
     )
     assert (done.returncode, done.stdout, done.stderr) == (-signal.SIGINT, "", "")
+
+
+def test_daemon_threads_are_not_ended_by_the_interpreter() -> None:
+    """In a library of C++ they would abort the process when they ask for the interpreter's lock."""
+    program = (
+        "import atexit, threading, time\n"
+        "from pn2code.cli.main import _leave\n"
+        "class Last:\n"
+        "    def __del__(self):\n"
+        "        print('finalised')\n"
+        "last = Last()\n"
+        "threading.Thread(target=time.sleep, args=(60,), daemon=True).start()\n"
+        "atexit.register(print, 'registered')\n"
+        "_leave(3)\n"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, text=True, check=False
+    )
+    assert (done.returncode, done.stdout, done.stderr) == (3, "registered\n", "")

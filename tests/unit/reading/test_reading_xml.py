@@ -234,3 +234,12 @@ def test_white_space_between_elements_may_be_long(monkeypatch: pytest.MonkeyPatc
     data = b"<workspaceElements>" + b"<cpnet>" + b"\n   " * 50 + b"</cpnet></workspaceElements>"
     document = read_data(data, "cell.cpn", Diagnostics())
     assert document is not None
+
+
+def test_a_pnml_file_may_have_more_elements(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(xml, "MAX_ELEMENTS", 1000)
+    monkeypatch.setattr(xml, "MAX_PNML_ELEMENTS", 2000)
+    d = Diagnostics()
+    assert xml.parse(b"<pnml>" + b"<a/>" * 1500 + b"</pnml>", "net.pnml", d) is not None
+    assert xml.parse(b"<pnml>" + b"<a/>" * 2500 + b"</pnml>", "net.pnml", d) is None
+    assert [e.message for e in d.errors] == ["there are more than 2,000 elements"]

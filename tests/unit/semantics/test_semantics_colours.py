@@ -310,3 +310,18 @@ def test_large_colour_sets_are_counted_without_being_listed() -> None:
     assert colours.legal(big, colours.ran(big))
     with pytest.raises(MlLimit, match="more than"):
         colours.all(pair)
+
+
+def test_an_enumeration_is_not_looked_through(
+    world: tuple[Colours, dict[str, Colset]], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    colours, sets = world
+    c = sets["E"]
+    monkeypatch.setattr(Colours, "all", None)
+    assert colours.size(c) == 3
+    assert [colours.ord(c, v) for v in (RED, GREEN, BLUE)] == [0, 1, 2]
+    assert [colours.col(c, i) for i in range(3)] == [RED, GREEN, BLUE]
+    with pytest.raises(MlException):
+        colours.ord(c, con("blue", 0))
+    with pytest.raises(MlException):
+        colours.col(c, 3)

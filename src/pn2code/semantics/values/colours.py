@@ -228,6 +228,8 @@ class Colours:
                 return len(_numbers(c))
             case Kind.SUBSET if c.members is None:
                 return self.size(component(c))
+            case Kind.ENUM:
+                return len(c.names)
             case Kind.LIST | Kind.STRING:
                 low, high = _lengths(c)
                 return _sequences(self._letters(c), low, high + 1)
@@ -276,6 +278,10 @@ class Colours:
                 ]
                 shorter = _sequences(self._letters(c), low, len(value))
                 return shorter + sum(n * x for n, x in enumerate(reversed(places), 1))
+            case Kind.ENUM:  # there may be many thousands
+                if c.names[value.tag : value.tag + 1] != (value.name,):
+                    raise _out_of_range()
+                return int(value.tag)
             case _:
                 everything = self.all(c)
                 if value not in everything:
@@ -305,6 +311,8 @@ class Colours:
                 return _numbers(c)[position]
             case Kind.INDEX:
                 return Data(c.names[0], 0, _numbers(c)[0] + position)
+            case Kind.ENUM:
+                return Data(c.names[position], position)
             case _:
                 everything = self.all(c)
                 if position >= len(everything):
