@@ -2,6 +2,7 @@
 
 ./dev geometry                       a table of all examples (docs/benchmarks.md)
 ./dev geometry --pictures DIR        the pictures of docs/geometry.md
+./dev geometry --pairs 400           pairs of moves a second of processor time: mostly far apart, and dense
 ./dev geometry --cells 40            random cells of two arms, two thirds of them with tracks and a turntable: what
                                      collides in PyBullet is never said to keep apart; in each fourth of them an arm is
                                      placed anew, and what is proved of its new place is run as well
@@ -18,6 +19,7 @@ from random import Random
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))
 
+from tools.geometry.pairs import WORKLOADS, measured
 from tools.geometry.unguarded import unguarded
 from tools.geometry.wander import wander
 
@@ -102,6 +104,18 @@ def pictures(folder: Path, to: Path) -> int:
     unguarded(EXAMPLES / "shared-zone", "Station", "Free", folder / "unguarded")
     for layout, cell in looked(folder / "unguarded", folder / "runs").layouts:
         draw(cell, layout.pairs, to, "touch")
+    return 0
+
+
+def speeds(count: int) -> int:
+    """Pairs of moves a second, on two workloads."""
+    print("| pairs | number | touch | not known | distances | a pair, ms | pairs a second |")
+    print("|---|---|---|---|---|---|---|")
+    for workload in WORKLOADS:
+        x = measured(workload, count)
+        each = f"{1000.0 * x.seconds / x.pairs:.1f} | {x.pairs / x.seconds:.0f}"
+        row = f"{workload} | {x.pairs} | {x.touching} | {x.open} | {x.distances:,} | {each}"
+        print(f"| {row} |", flush=True)
     return 0
 
 
@@ -191,11 +205,14 @@ def main() -> int:
     """As the command line says."""
     parser = argparse.ArgumentParser(prog="./dev geometry", description=__doc__.split("\n")[0])
     parser.add_argument("--cells", type=int, default=0, metavar="N")
+    parser.add_argument("--pairs", type=int, default=0, metavar="N", help="of each workload")
     parser.add_argument("--seed", type=int, default=1, metavar="K")
     parser.add_argument("--no-runs", dest="runs", action="store_false", help="random walks alone")
     parser.add_argument("--walks", type=int, default=5, metavar="N", help="of each random cell")
     parser.add_argument("--pictures", type=Path, metavar="DIR")
     options = parser.parse_args()
+    if options.pairs:
+        return speeds(options.pairs)
     with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
         if options.cells:
             return random_cells(

@@ -15,8 +15,8 @@ import numpy as np
 
 from pn2code.base.frozen import frozen
 from pn2code.geometry.legs import Leg, Planner, Stand
+from pn2code.geometry.pieces import ROUNDING
 from pn2code.geometry.shown import Shown
-from pn2code.geometry.sweeps import ROUNDING
 from pn2code.robot.belts import until_stop
 from pn2code.robot.clamps import holding, taken_along
 from pn2code.robot.commands import Command, Handling, ToolAction

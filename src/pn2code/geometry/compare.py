@@ -2,7 +2,8 @@
 
     compared = Comparison(cell, planner, Shown(backend))
     compared.around(leg, load)                   # Apart, from the scene and from itself
-    compared.two((leg, load), (other, load))     # Apart
+    apart = compared.two((leg, load), (other, load))
+    compared.deepest(apart)                      # where they touch, how deep
 
 Everything is swept once, in whatever situations it occurs.
 """
@@ -10,8 +11,9 @@ Everything is swept once, in whatever situations it occurs.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -63,6 +65,7 @@ class Comparison:
         self._around: dict[tuple[int, str], tuple[Apart, Apart]] = {}
         self._pairs: dict[tuple[tuple[int, str], tuple[int, str]], Apart] = {}
         self._beside: dict[tuple[tuple[int, str], str], Apart] = {}
+        self._deeper: dict[Apart, Callable[[], Apart]] = {}
         self._margins: dict[int, Margins] = {}
         self.compared = 0
         self._watch = ZoneWatch(cell)
@@ -124,8 +127,15 @@ class Comparison:
             if off.any():
                 self._pairs[one, other] = Apart("clear", float(np.linalg.norm(off)), math.inf)
             else:
-                self._pairs[one, other] = self.sweeper.apart(first, second)
+                found = self._pairs[one, other] = self.sweeper.apart(first, second)
+                if found.outcome == "touch":
+                    self._deeper[found] = partial(self.sweeper.deepest, first, second, found)
         return self._pairs[one, other]
+
+    def deepest(self, apart: Apart) -> Apart:
+        """Two that were found to touch, with their deepest overlap; what else was found stays as it is."""
+        search = self._deeper.get(apart)
+        return search() if search is not None else apart
 
     def nearest(self) -> Nearest | None:
         """How near arms come that keep apart; None: no two do."""
@@ -188,7 +198,11 @@ class Comparison:
         if where not in self._beside:
             self.compared += 1
             shown = replace(part, name=f"{part.kind.name}.standing")
-            self._beside[where] = self.sweeper.beside(track, shown, self._boxes[part.kind.name])
+            box = self._boxes[part.kind.name]
+            found = self._beside[where] = self.sweeper.beside(track, shown, box)
+            if found.outcome == "touch":
+                search = partial(self.sweeper.deepest_beside, track, shown, box, found)
+                self._deeper[found] = search
         return self._beside[where]
 
     def around(self, leg: Leg, load: Load) -> tuple[Apart, Apart]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 from pn2code.base.frozen import frozen
@@ -17,10 +17,11 @@ from pn2code.geometry.answers import Layout, Move, Pair, Verdict
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import Leg, Planner
+from pn2code.geometry.pieces import ROUNDING
 from pn2code.geometry.runs import Run, write
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.situations import Met, Side, Situations
-from pn2code.geometry.sweeps import ROUNDING, Apart
+from pn2code.geometry.sweeps import Apart
 from pn2code.geometry.words import numbers, reason, words
 from pn2code.geometry.zones import Explore, Zones
 from pn2code.robot.bullet import BulletBackend
@@ -29,6 +30,8 @@ from pn2code.robot.transforms import pose_of
 
 MOST_RUNS = 40
 """Traces that are written."""
+MOST_DEPTHS = 6_000
+"""Distances after which no more overlaps are searched for where they are deepest; one of each two robots always is."""
 
 
 @frozen
@@ -47,6 +50,17 @@ class Options:
     initial: str | None = None
     explore: Explore | None = None
     stage: Callable[[str], None] = lambda _text: None
+
+
+@frozen(eq=False)
+class _Meeting:
+    """Two that do not surely keep apart, and where that is so first."""
+
+    robots: tuple[str, str]
+    transitions: tuple[str, str]
+    doing: tuple[str, str]
+    apart: Apart
+    met: Met
 
 
 class Look:
@@ -201,44 +215,57 @@ class Look:
 
     def _pairs(self, found: Situations) -> dict[tuple[Side, Side], Pair]:
         """Pairs of arms that are not surely apart; of what two transitions do the first that touches."""
-        bad: dict[tuple[Side, Side], Pair] = {}
+        met_: dict[tuple[Side, Side], _Meeting] = {}
         for numbers_, met in found.pairs.items():
             a, b = (self.doing.activities[n] for n in numbers_)
             sides = found.sides(a, b, met)
-            if sides in bad and bad[sides].answer == "no":
+            if sides in met_ and met_[sides].apart.outcome == "touch":
                 continue
             for leg, other, apart in self.comparison.activities(a, b):
-                if apart.outcome == "touch" or (apart.outcome == "open" and sides not in bad):
-                    bad[sides] = self._pair(found, leg, other, apart, met)
+                if apart.outcome == "touch" or (apart.outcome == "open" and sides not in met_):
+                    first, second = (_who(found, e)[0] for e in met.elements)
+                    does = (words(leg.command), words(other.command))
+                    robots = (leg.robot, other.robot)
+                    met_[sides] = _Meeting(robots, (first, second), does, apart, met)
                 if apart.outcome == "touch":
                     break
-        return bad
+        return dict(zip(met_, self._reported(found, met_.values()), strict=True))
 
-    def _pair(self, found: Situations, leg: Leg, other: Leg, apart: Apart, met: Met) -> Pair:
-        first, second = (_who(found, e)[0] for e in met.elements)
-        does = (words(leg.command), words(other.command))
-        run = self._run(found, met)
-        robots = (leg.robot, other.robot)
-        return _met(robots, (first, second), does, apart, run)
+    def _reported(self, found: Situations, meetings: Iterable[_Meeting]) -> list[Pair]:
+        """With how deep they touch: surely of one of each two robots, of others as far as that takes not too long."""
+        meetings = list(meetings)
+        touching = [m for m in meetings if m.apart.outcome == "touch"]
+        touching.sort(key=lambda m: m.apart.nearest)
+        firsts = list({m.robots: m for m in reversed(touching)}.values())
+        depths: dict[_Meeting, Apart] = {}
+        begun = self.comparison.sweeper.queries
+        for m in [*firsts, *touching]:
+            asked = self.comparison.sweeper.queries - begun
+            if m not in depths and (m in firsts or asked < MOST_DEPTHS):
+                depths[m] = self.comparison.deepest(m.apart)
+        return [
+            _met(m.robots, m.transitions, m.doing, depths.get(m, m.apart), self._run(found, m.met))
+            for m in meetings
+        ]
 
     def _parts(self, found: Situations) -> list[Pair]:
         """Arms, with what they carry, and parts that stand."""
         parts = found.parts() if found.beside else {}
-        bad: dict[tuple[str, str, str], Pair] = {}
+        bad: dict[tuple[str, str, str], _Meeting] = {}
         for (number, i, where), met in found.beside.items():
             leg, contents = self.doing.activities[number].legs[i]
             part = parts[where]
             t, _ = _who(found, met.elements[0])
             key = (leg.robot, t, part.kind.name)
-            if key in bad and bad[key].answer == "no":
+            if key in bad and bad[key].apart.outcome == "touch":
                 continue
             apart = self.comparison.beside((leg, contents.load(leg.robot)), part)
             if apart.outcome == "clear" or (key in bad and apart.outcome == "open"):
                 continue
             stands = f"{part.kind.name} stands at {numbers(pose_of(part.frame))}"
             does = (words(leg.command), stands)
-            bad[key] = _met((leg.robot, ""), (t, ""), does, apart, self._run(found, met))
-        return list(bad.values())
+            bad[key] = _Meeting((leg.robot, ""), (t, ""), does, apart, met)
+        return self._reported(found, bad.values())
 
     # --- words and runs --------------------------------------------------------------------------
 
@@ -316,7 +343,10 @@ def touch_in_words(apart: Apart) -> str:
     if apart.why:
         return apart.why
     at = ", ".join(f"{1000.0 * v:.0f}" for v in gap.point)
-    text = f"`{gap.a}` and `{gap.b}` overlap by {-1000.0 * gap.distance:.1f} mm at ({at}) mm"
+    least = "" if apart.is_whole else "at least "
+    text = f"`{gap.a}` and `{gap.b}` overlap by {least}{-1000.0 * gap.distance:.1f} mm at ({at}) mm"
+    if not apart.is_whole:
+        return f"{text}; where it is deepest was not searched for"
     if certain(apart) is None:
         return f"{text}; how deep on the rest of the way is not known"
     most = -1000.0 * _most_in(apart)

@@ -21,6 +21,7 @@ from typing import Literal
 import numpy as np
 
 from pn2code.base.frozen import frozen
+from pn2code.geometry.pieces import KEPT, ROUNDING, Front, Level, gaps
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.tracks import Knots, Link, Track
 from pn2code.robot.backend import Clearance
@@ -29,8 +30,6 @@ from pn2code.robot.transforms import Array, Flags, Numbers
 
 RESOLUTION = 2e-4
 """m: two pieces in which no points are further apart than this are not divided."""
-ROUNDING = 1e-5
-"""m: of the collision library."""
 COARSE = 0.08
 """m: pieces in which points may be further from their place than this are divided before distances are measured."""
 SEARCHED = 0.5
@@ -39,6 +38,8 @@ FINE, ROUGH = 2e-3, 0.15
 """m, or part of it: how exactly the least clearance, or the deepest overlap, is told."""
 MOST_QUERIES = 20_000
 """Of the collision library, for one question ..."""
+LIKELY = 2
+"""Pieces of a kind of size that are tried before they are small enough to be sure of them."""
 MOST_DEEPER = 600
 """... and to see how deep an overlap is that was found."""
 
@@ -56,6 +57,7 @@ class Apart:
         nearest: the smallest distance that was measured (inf: none); where they touch, the deepest overlap.
         where: the nearest links and points; at: of each leg the fraction of its way; joints: and where its arm is, rad.
         why: of "open".
+        is_whole: whether the deepest overlap was searched for; False: this one was met first.
     """
 
     outcome: Outcome
@@ -65,6 +67,7 @@ class Apart:
     at: tuple[float, float] = (0.0, 0.0)
     why: str = ""
     joints: tuple[Array, ...] = ()
+    is_whole: bool = True
 
 
 class Sweeper:
@@ -78,8 +81,13 @@ class Sweeper:
     # --- two legs --------------------------------------------------------------------------------
 
     def apart(self, a: Track, b: Track) -> Apart:
-        """Two legs of two arms; where they touch, how deep."""
+        """Two legs of two arms; where they touch, the first overlap that is met."""
         return self._search(a, b, self._of_two(a, b), is_free="ptp" in (a.leg.kind, b.leg.kind))
+
+    def deepest(self, a: Track, b: Track, touch: Apart) -> Apart:
+        """How deep two legs overlap that touch, where they do so most."""
+        is_free = "ptp" in (a.leg.kind, b.leg.kind)
+        return deepest(Two(a, b, self._of_two(a, b), is_free, self), touch)
 
     def nearest(self, a: Track, b: Track, known: float) -> Apart:
         """How near two legs come that keep apart, as far as it is less than what is known (m)."""
@@ -104,15 +112,24 @@ class Sweeper:
         return np.array(rows)
 
     def beside(self, a: Track, part: Part, box: tuple[Array, Array]) -> Apart:
-        """A leg and a part that stands."""
+        """A leg and a part that stands; where they touch, the first overlap that is met."""
+        return self._search(
+            a, Standing(part, box), self._of_part(a, part), is_free=a.leg.kind == "ptp"
+        )
+
+    def deepest_beside(self, a: Track, part: Part, box: tuple[Array, Array], touch: Apart) -> Apart:
+        """How deep a leg and a part overlap that touch, where they do so most."""
+        is_free = a.leg.kind == "ptp"
+        return deepest(Two(a, Standing(part, box), self._of_part(a, part), is_free, self), touch)
+
+    def _of_part(self, a: Track, part: Part) -> Measure:
         self._show((part, *a.parts))
-        free = a.leg.kind == "ptp"
 
         def measure(q_a: Array, _q_b: Array, limit: float) -> list[Clearance]:
             self._backend.set_joints(a.robot, q_a)
             return self._backend.pairs("scene", a.robot, limit, only={part.name})
 
-        return self._search(a, Standing(part, box), measure, is_free=free)
+        return measure
 
     def _search(
         self,
@@ -122,69 +139,54 @@ class Sweeper:
         *,
         is_free: bool,
     ) -> Apart:
-        begun = self.queries
-        pieces = np.array([[0.0, 1.0, 0.0, 1.0]])
-        least, nearest = math.inf, math.inf
-        where: Clearance | None = None
-        at = (0.0, 0.0)
-        open_: tuple[Clearance, tuple[float, float], float, tuple[Array, Array]] | None = None
-        while len(pieces):
-            one, one_at = _unique(a, pieces[:, 0], pieces[:, 1])
-            two, two_at = _unique(b, pieces[:, 2], pieces[:, 3])
-            gaps = _gaps(one.pick(one_at), a.radii, two.pick(two_at), b.radii)
-            both = one.spread[one_at][:, :, None] + two.spread[two_at][:, None, :]
-            bound = gaps - both
-            is_near = bound <= ROUNDING
-            far = bound.reshape(len(pieces), -1).min(axis=1)
-            near = np.flatnonzero(is_near.any(axis=(1, 2)))
-            if len(near) < len(pieces):
-                least = min(least, float(np.delete(far, near).min()))
-            wide = np.where(is_near, both, 0.0).reshape(len(pieces), -1).max(axis=1)
-            further: list[Array] = []
-            # The nearest first: what touches is found soon.
-            for i in near[np.argsort(far[near], kind="stable")]:
-                own = pieces[i]
-                if wide[i] > COARSE:
-                    further += _halves(own, a, b, one.spread[one_at[i]], two.spread[two_at[i]])
-                    continue
-                if self.queries - begun >= MOST_QUERIES:
-                    why = f"more than {MOST_QUERIES:,} distances would have to be measured"
-                    return Apart("open", 0.0, nearest, where, at, why)
+        most = self.queries + MOST_QUERIES
+        front = Front.whole(a, b)
+        found = _Found(a, b, is_free=is_free)
+        while len(front.pieces):
+            level = Level(front, a, b)
+            is_kept = level.bound <= KEPT
+            found.certain(level.bound[~is_kept])
+            found.certain(level.far[level.far > ROUNDING])
+            coarse = level.near[level.wide[level.near] > COARSE]
+            # Where capsules overlap most, arms are likely to touch: that is tried while pieces are still large.
+            likely = coarse[np.argsort(level.gap_of[coarse], kind="stable")[:LIKELY]]
+            for piece in likely[level.gap_of[likely] < 0.0]:
                 self.queries += 1
-                q_a, q_b = one.q[one_at[i]], two.q[two_at[i]]
-                limit = float(wide[i]) + FINE
-                found = measure(q_a, q_b, limit)
-                # What was not found is further away, or its capsules are.
-                unseen = np.maximum(bound[i], limit - both[i]).min()
-                least = min(least, float(unseen) - ROUNDING)
-                middle = ((own[0] + own[1]) / 2.0, (own[2] + own[3]) / 2.0)
-                is_clear = True
-                for gap in found:
-                    allowed = gap.permitted(is_free=is_free)
-                    slack = gap.distance if allowed is None else gap.distance + allowed
-                    if allowed is None and gap.distance < nearest:
-                        nearest, where, at = gap.distance, gap, middle
-                    if slack < 0.0 or (slack <= 0.0 and allowed is None):
-                        touch = Apart("touch", slack, slack, gap, middle, "", (q_a, q_b))
-                        return deepest(Two(a, b, measure, is_free, self), touch)
-                    spread = _spread_of(gap.a, a, one.spread[one_at[i]])
-                    spread += _spread_of(gap.b, b, two.spread[two_at[i]])
-                    if slack <= spread + ROUNDING:
-                        is_clear = False
-                        if wide[i] <= RESOLUTION and (open_ is None or slack < open_[2]):
-                            open_ = (gap, middle, slack, (q_a, q_b))
-                    else:
-                        least = min(least, slack - spread)
-                if not is_clear and wide[i] > RESOLUTION:
-                    further += _halves(own, a, b, one.spread[one_at[i]], two.spread[two_at[i]])
-            pieces = np.array(further).reshape(-1, 4)
-        if open_ is not None:
-            gap_, at_, slack, joints = open_
-            why = f"they come within {1000.0 * max(slack, 0.0):.2f} mm, which is less than can be told apart"
-            return Apart("open", 0.0, nearest, gap_, at_, why, joints)
-        if a.trouble or b.trouble:
-            return Apart("open", 0.0, nearest, where, at, a.trouble or b.trouble)
-        return Apart("clear", least, nearest, where, at)
+                q = level.joints(piece)
+                found.look(measure(*q, ROUNDING), front.pieces[piece], q)
+                if found.touch is not None:
+                    return found.touch
+            further: list[int] = []
+            begins = np.searchsorted(front.row, np.arange(len(front.pieces) + 1))
+            for piece in level.near[level.wide[level.near] <= COARSE]:
+                if self.queries >= most:
+                    return found.given_up()
+                self.queries += 1
+                q = level.joints(piece)
+                spreads = level.spreads(piece)
+                wide = float(level.wide[piece])
+                pairs = slice(begins[piece], begins[piece + 1])
+                one, other = front.one[pairs], front.other[pairs]
+                # What is not found is further away, or its capsules are.
+                low = np.maximum(level.bound[pairs], wide + FINE - ROUNDING - level.both[pairs])
+                samples = found.look(measure(*q, wide + FINE), front.pieces[piece], q)
+                if found.touch is not None:
+                    return found.touch
+                for sample in samples:
+                    gap = sample.gap
+                    spread = _spread_of(gap.a, a, spreads[0]) + _spread_of(gap.b, b, spreads[1])
+                    which = found.which(gap, one, other)
+                    least = np.maximum(level.bound[pairs][which], sample.slack - spread)
+                    low[which] = np.minimum(low[which], least)
+                    if wide <= RESOLUTION and (least <= ROUNDING).any():
+                        found.too_near(sample)
+                is_open = low <= ROUNDING
+                found.certain(low[~is_open])
+                if is_open.any() and wide > RESOLUTION:
+                    further.append(int(piece))
+                    is_kept[pairs] &= is_open
+            front = front.halves(level, np.array([*coarse, *further], int), is_kept)
+        return found.answer()
 
     # --- a leg and what stands -------------------------------------------------------------------
 
@@ -289,6 +291,97 @@ class Sweeper:
         return Apart("clear", max(0.0, min(least, best)), best, where, (at, 0.0))
 
 
+@frozen(eq=False)
+class _Sample:
+    """Two links, measured in the middle of a piece.
+
+    Args:
+        slack: m, how much nearer they may come; at: where on both ways; q: joint positions.
+    """
+
+    gap: Clearance
+    allowed: float | None
+    at: tuple[float, float]
+    q: tuple[Array, Array]
+
+    @property
+    def slack(self) -> float:
+        return self.gap.distance + (self.allowed or 0.0)
+
+    @property
+    def is_touch(self) -> bool:
+        return self.slack < 0.0 or (self.slack <= 0.0 and self.allowed is None)
+
+    def apart(self, outcome: Outcome, least: float, nearest: float, why: str = "") -> Apart:
+        whole = outcome != "touch"
+        return Apart(outcome, least, nearest, self.gap, self.at, why, self.q, whole)
+
+
+class _Found:
+    """What is known of two so far."""
+
+    def __init__(self, a: Track, b: Track | Standing, *, is_free: bool) -> None:
+        self._a, self._b, self._is_free = a, b, is_free
+        self._least = math.inf
+        self._nearest: _Sample | None = None
+        self.touch: Apart | None = None
+        self._open: _Sample | None = None
+
+    def certain(self, bounds: Array) -> None:
+        """Some links are apart at least so far."""
+        if len(bounds):
+            self._least = min(self._least, float(bounds.min()))
+
+    def look(self, found: list[Clearance], piece: Array, q: tuple[Array, Array]) -> list[_Sample]:
+        """What was measured in the middle of a piece."""
+        at = (float(piece[0] + piece[1]) / 2.0, float(piece[2] + piece[3]) / 2.0)
+        samples = [_Sample(x, x.permitted(is_free=self._is_free), at, q) for x in found]
+        for sample in samples:
+            if sample.allowed is None and sample.gap.distance < self.distance:
+                self._nearest = sample
+        deep = min((x for x in samples if x.is_touch), key=lambda x: x.slack, default=None)
+        if deep is not None:
+            self.touch = deep.apart("touch", -math.inf, deep.slack)
+        return samples
+
+    @property
+    def distance(self) -> float:
+        """m, the least that was measured."""
+        return math.inf if self._nearest is None else self._nearest.gap.distance
+
+    def which(self, gap: Clearance, one: Numbers, other: Numbers) -> Flags:
+        """Which of pairs of links these are; if one has no capsule of its own, it may be any."""
+        first, second = self._a.names.get(gap.a, -1), self._b.names.get(gap.b, -1)
+        own = np.ones(len(one), bool) if first < 0 else one == first
+        return own if second < 0 else own & (other == second)
+
+    def too_near(self, sample: _Sample) -> None:
+        """In a piece that is not divided any more, these are neither clear nor touch."""
+        if self._open is None or sample.slack < self._open.slack:
+            self._open = sample
+
+    def _told(self, outcome: Outcome, least: float, why: str = "") -> Apart:
+        if self._nearest is None:
+            return Apart(outcome, least, math.inf, why=why)
+        return replace(self._nearest.apart(outcome, least, self.distance, why), joints=())
+
+    def given_up(self) -> Apart:
+        """So much is not measured."""
+        why = f"more than {MOST_QUERIES:,} distances would have to be measured"
+        return self._told("open", 0.0, why)
+
+    def answer(self) -> Apart:
+        """When nothing is left to look at, and nothing touches."""
+        if self._open is not None:
+            near = f"{1000.0 * max(self._open.slack, 0.0):.2f} mm"
+            why = f"they come within {near}, which is less than can be told apart"
+            return self._open.apart("open", 0.0, self.distance, why)
+        trouble = self._a.trouble or self._b.trouble
+        if trouble:
+            return self._told("open", 0.0, trouble)
+        return self._told("clear", self._least)
+
+
 def much_less(distance: float) -> float:
     """What is nearer than this is nearer by so much that it is told."""
     return distance - max(FINE, ROUGH * abs(distance))
@@ -323,7 +416,7 @@ def deepest(two: Two, known: Apart) -> Apart:
             break
         one, other = a.knots(own[None, 0], own[None, 1]), b.knots(own[None, 2], own[None, 3])
         both = one.spread[0][:, None] + other.spread[0][None, :]
-        bound = _gaps(one, a.radii, other, b.radii)[0] - both
+        bound = gaps(one, a.radii, other, b.radii)[0] - both
         if two.skipped is not None:
             bound[two.skipped] = math.inf
         low = max(low, float(bound.min()))
@@ -351,7 +444,8 @@ def deepest(two: Two, known: Apart) -> Apart:
         for half in _halves(own, a, b, one.spread[0], other.spread[0]):
             heapq.heappush(heap, (low, next(count), half))
     is_unknown = a.trouble or b.trouble
-    return replace(best, least=-math.inf if is_unknown else min(least, best.nearest))
+    certain = -math.inf if is_unknown else min(least, best.nearest)
+    return replace(best, least=certain, is_whole=True)
 
 
 class Standing:
@@ -371,12 +465,6 @@ class Standing:
         return self._knots.pick(np.zeros(len(a), int))
 
 
-def _unique(track: Track | Standing, a: Array, b: Array) -> tuple[Knots, Numbers]:
-    """The knots of pieces, each worked out once, and which is which."""
-    pairs, index = np.unique(np.stack([a, b], axis=1), axis=0, return_inverse=True)
-    return track.knots(pairs[:, 0], pairs[:, 1]), np.asarray(index).reshape(-1)
-
-
 def _halves(
     piece: Array, a: Track | Standing, b: Track | Standing, spread_a: Array, spread_b: Array
 ) -> list[Array]:
@@ -392,31 +480,3 @@ def _halves(
 def _spread_of(name: str, track: Track | Standing, spread: Array) -> float:
     """How far a link may be from where it was measured."""
     return float(spread[track.names[name]]) if name in track.names else float(spread.max())
-
-
-def _gaps(one: Knots, radii: Array, two: Knots, others: Array) -> Array:
-    """A lower bound of the distance of each two links: between their capsules, (n, links, links)."""
-    p, q = one.ends[:, :, None], two.ends[:, None, :]
-    return (
-        _between(p[..., 0, :], p[..., 1, :], q[..., 0, :], q[..., 1, :]) - radii[:, None] - others
-    )
-
-
-def _between(p1: Array, q1: Array, p2: Array, q2: Array) -> Array:
-    """Distances of segments (Ericson, Real-Time Collision Detection, 5.1.9)."""
-    d1, d2, r = q1 - p1, q2 - p2, p1 - p2
-    a, e = (d1 * d1).sum(-1), (d2 * d2).sum(-1)
-    f, c, b = (d2 * r).sum(-1), (d1 * r).sum(-1), (d1 * d2).sum(-1)
-    tiny = 1e-12
-    a, e = np.maximum(a, tiny), np.maximum(e, tiny)
-    down = a * e - b * b
-    s = np.where(
-        down > 1e-9 * a * e, np.clip((b * f - c * e) / np.maximum(down, 1e-300), 0.0, 1.0), 0.0
-    )
-    t = (b * s + f) / e
-    s = np.where(
-        t < 0.0, np.clip(-c / a, 0.0, 1.0), np.where(t > 1.0, np.clip((b - c) / a, 0.0, 1.0), s)
-    )
-    t = np.clip(t, 0.0, 1.0)
-    apart = (p1 + d1 * s[..., None]) - (p2 + d2 * t[..., None])
-    return np.asarray(np.sqrt((apart * apart).sum(-1)))

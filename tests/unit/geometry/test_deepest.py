@@ -65,7 +65,8 @@ def test_two_arms(x: float) -> None:
     planner = Planner(cell())
     one, other = line(planner, "left", x, 500.0), line(planner, "right", 1700.0, 400.0)
     compared = Comparison(cell(), planner, Shown(backend))
-    found = compared.two((one, ()), (other, ()))
+    first = compared.two((one, ()), (other, ()))
+    found = compared.deepest(first)
     distances = []
     for q in grid(one, 11):
         backend.set_joints("left", q)
@@ -75,12 +76,16 @@ def test_two_arms(x: float) -> None:
     nearest = compared.nearest()
     backend.close()
     if x > 1400.0:
+        assert first.outcome == "touch" and not first.is_whole and first.where is not None
         assert found.outcome == "touch" and found.where is not None and nearest is None
+        assert found.is_whole and found.where.distance <= first.where.distance < 0.0
+        said = touch_in_words(first)
+        assert "overlap by at least" in said and "was not searched for" in said
         assert found.least <= min(distances) and found.where.distance <= 0.85 * min(distances)
         assert -found.least <= 2.0 * -found.where.distance
         assert "and nowhere on the way by more than" in touch_in_words(found)
     else:
-        assert found.outcome == "clear" and nearest is not None
+        assert first is found and found.outcome == "clear" and nearest is not None
         assert nearest.least <= min(distances) and nearest.where.distance <= min(distances) / 0.85
         assert nearest.least >= 0.2 * nearest.where.distance
 
@@ -108,7 +113,8 @@ def test_where_nothing_is_known_between_samples_no_depth_is_certain(
     one, other = line(planner, "left", 1550.0, 700.0), line(planner, "right", 1700.0, 400.0)
     compared = Comparison(cell(), planner, Shown(backend))
     monkeypatch.setattr(Track, "trouble", "it passes near to a singularity")
-    for found in (compared.around(one, ())[0], compared.two((one, ()), (other, ()))):
+    two = compared.deepest(compared.two((one, ()), (other, ())))
+    for found in (compared.around(one, ())[0], two):
         assert found.outcome == "touch" and found.nearest < 0.0 and found.least == -math.inf
         assert touch_in_words(found).endswith("how deep on the rest of the way is not known")
     backend.close()

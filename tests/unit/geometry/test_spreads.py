@@ -10,7 +10,7 @@ import pytest
 
 from helpers.robot_cells import arm_kinematics, pose_mm, riveting_cell
 from pn2code.geometry.legs import Leg, Planner
-from pn2code.geometry.sweeps import _between, _gaps
+from pn2code.geometry.pieces import between, gaps
 from pn2code.geometry.tracks import ArmShape, Track
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.commands import MoveCircular, MoveHome, MoveJoint, MoveLinear
@@ -111,10 +111,10 @@ def test_capsules_are_around_the_shapes(cell: RobotCell, shapes: dict[str, ArmSh
             track = Track(shapes[robot.name], planner.standing(planner.home(robot.name)))
             knots.append((track, track._placed(q[None], np.zeros((1, 6)), None)))
         (a, one), (b, other) = knots
-        gaps = _gaps(one, a.radii, other, b.radii)[0]
+        off = gaps(one, a.radii, other, b.radii)[0]
         for gap in backend.pairs("robots", "robot1", 5.0, "robot2"):
             met += 1
-            assert gaps[a.names[gap.a], b.names[gap.b]] <= gap.distance + 1e-9, gap
+            assert off[a.names[gap.a], b.names[gap.b]] <= gap.distance + 1e-9, gap
     backend.close()
     assert met > 1000
 
@@ -126,7 +126,7 @@ def test_distances_of_segments() -> None:
     q[:20] = p[:20]  # points
     s[10:30] = r[10:30]
     s[40:60] = r[40:60] + (q[40:60] - p[40:60])  # parallel
-    found = _between(p, q, r, s)
+    found = between(p, q, r, s)
     t = np.linspace(0.0, 1.0, 201)
     one = p[:, None] + (q - p)[:, None] * t[:, None]
     two = r[:, None] + (s - r)[:, None] * t[:, None]
