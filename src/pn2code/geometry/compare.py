@@ -20,9 +20,10 @@ import numpy as np
 from pn2code.base.frozen import frozen
 from pn2code.geometry.activities import Activity, Contents, Load, spot, spots
 from pn2code.geometry.answers import Nearest, Verdict
+from pn2code.geometry.apart import Apart
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.shown import Shown
-from pn2code.geometry.sweeps import SEARCHED, Apart, Sweeper, much_less
+from pn2code.geometry.sweeps import SEARCHED, Sweeper, much_less
 from pn2code.geometry.tracks import ArmShape, Track
 from pn2code.geometry.zone_speeds import slow_enough
 from pn2code.robot.along import AlongTrajectory

@@ -14,6 +14,7 @@ from pathlib import Path
 from pn2code.base.frozen import frozen
 from pn2code.geometry.activities import Activity, Doing, Load, spots
 from pn2code.geometry.answers import Layout, Move, Pair, Verdict
+from pn2code.geometry.apart import Apart
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import Leg, Planner
@@ -21,7 +22,6 @@ from pn2code.geometry.pieces import ROUNDING
 from pn2code.geometry.runs import Run, write
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.situations import Met, Side, Situations
-from pn2code.geometry.sweeps import Apart
 from pn2code.geometry.words import numbers, reason, words
 from pn2code.geometry.zones import Explore, Zones
 from pn2code.robot.bullet import BulletBackend

@@ -4,9 +4,10 @@
     sweeper.apart(track, other)           # Apart("clear" | "touch" | "open", distance, ...)
     sweeper.around(track, "scene")        # how near a leg comes to what stands
 
-Capsules first (NumPy, all pairs of pieces at once), then the collision library in the middle of pieces. These are clear
-when the distance there is more than no point can be further (`tracks`). So "clear" holds for all instants, not for
-samples. A piece that is smaller than `RESOLUTION` and neither clear nor touching is left open.
+Capsules first (NumPy, all pieces at once, of each only the links that may be near: `pieces`), then the collision library
+in the middle of pieces. These are clear when the distance there is more than no point can be further (`tracks`). So
+"clear" holds for all instants, not for samples. A piece that is smaller than `RESOLUTION` and neither clear nor touching
+is left open. How deep an overlap is takes most of the time; it is searched for only where it is told (`deepest`).
 """
 
 from __future__ import annotations
@@ -21,12 +22,13 @@ from typing import Literal
 import numpy as np
 
 from pn2code.base.frozen import frozen
+from pn2code.geometry.apart import Apart, Found, Standing, spread_of
 from pn2code.geometry.pieces import KEPT, ROUNDING, Front, Level, gaps
 from pn2code.geometry.shown import Shown
-from pn2code.geometry.tracks import Knots, Link, Track
+from pn2code.geometry.tracks import Track
 from pn2code.robot.backend import Clearance
 from pn2code.robot.parts import Part
-from pn2code.robot.transforms import Array, Flags, Numbers
+from pn2code.robot.transforms import Array, Flags
 
 RESOLUTION = 2e-4
 """m: two pieces in which no points are further apart than this are not divided."""
@@ -38,36 +40,13 @@ FINE, ROUGH = 2e-3, 0.15
 """m, or part of it: how exactly the least clearance, or the deepest overlap, is told."""
 MOST_QUERIES = 20_000
 """Of the collision library, for one question ..."""
-LIKELY = 2
-"""Pieces of a kind of size that are tried before they are small enough to be sure of them."""
 MOST_DEEPER = 600
 """... and to see how deep an overlap is that was found."""
 
+LIKELY = 2
+"""Pieces of one size that are tried before they are small enough to be sure of them."""
+
 Measure = Callable[[Array, Array, float], list[Clearance]]
-Outcome = Literal["clear", "touch", "open"]
-
-
-@frozen(eq=False)
-class Apart:
-    """How two things keep apart.
-
-    Args:
-        outcome: never nearer than touching, touching somewhere, or not known.
-        least: m, that is certain: where they touch, nothing overlaps by more than -least (-inf: nothing is certain).
-        nearest: the smallest distance that was measured (inf: none); where they touch, the deepest overlap.
-        where: the nearest links and points; at: of each leg the fraction of its way; joints: and where its arm is, rad.
-        why: of "open".
-        is_whole: whether the deepest overlap was searched for; False: this one was met first.
-    """
-
-    outcome: Outcome
-    least: float
-    nearest: float
-    where: Clearance | None = None
-    at: tuple[float, float] = (0.0, 0.0)
-    why: str = ""
-    joints: tuple[Array, ...] = ()
-    is_whole: bool = True
 
 
 class Sweeper:
@@ -141,7 +120,7 @@ class Sweeper:
     ) -> Apart:
         most = self.queries + MOST_QUERIES
         front = Front.whole(a, b)
-        found = _Found(a, b, is_free=is_free)
+        found = Found(a, b, is_free=is_free)
         while len(front.pieces):
             level = Level(front, a, b)
             is_kept = level.bound <= KEPT
@@ -160,7 +139,9 @@ class Sweeper:
             begins = np.searchsorted(front.row, np.arange(len(front.pieces) + 1))
             for piece in level.near[level.wide[level.near] <= COARSE]:
                 if self.queries >= most:
-                    return found.given_up()
+                    return found.given_up(
+                        f"more than {MOST_QUERIES:,} distances would have to be measured"
+                    )
                 self.queries += 1
                 q = level.joints(piece)
                 spreads = level.spreads(piece)
@@ -174,7 +155,7 @@ class Sweeper:
                     return found.touch
                 for sample in samples:
                     gap = sample.gap
-                    spread = _spread_of(gap.a, a, spreads[0]) + _spread_of(gap.b, b, spreads[1])
+                    spread = spread_of(gap.a, a, spreads[0]) + spread_of(gap.b, b, spreads[1])
                     which = found.which(gap, one, other)
                     least = np.maximum(level.bound[pairs][which], sample.slack - spread)
                     low[which] = np.minimum(low[which], least)
@@ -240,9 +221,9 @@ class Sweeper:
             for gap in found:
                 allowed = gap.permitted(is_free=a.leg.kind == "ptp")
                 slack = gap.distance if allowed is None else gap.distance + allowed
-                spread = _spread_of(gap.a, a, knots.spread[0])
+                spread = spread_of(gap.a, a, knots.spread[0])
                 if kind == "self":
-                    spread += _spread_of(gap.b, a, knots.spread[0])
+                    spread += spread_of(gap.b, a, knots.spread[0])
                 lowest = min(lowest, slack - spread)
                 touches = slack < 0.0 or (slack <= 0.0 and allowed is None)
                 if touches and (touch is None or slack < best):
@@ -289,97 +270,6 @@ class Sweeper:
         if a.trouble:
             return Apart("open", 0.0, best, where, (at, 0.0), a.trouble)
         return Apart("clear", max(0.0, min(least, best)), best, where, (at, 0.0))
-
-
-@frozen(eq=False)
-class _Sample:
-    """Two links, measured in the middle of a piece.
-
-    Args:
-        slack: m, how much nearer they may come; at: where on both ways; q: joint positions.
-    """
-
-    gap: Clearance
-    allowed: float | None
-    at: tuple[float, float]
-    q: tuple[Array, Array]
-
-    @property
-    def slack(self) -> float:
-        return self.gap.distance + (self.allowed or 0.0)
-
-    @property
-    def is_touch(self) -> bool:
-        return self.slack < 0.0 or (self.slack <= 0.0 and self.allowed is None)
-
-    def apart(self, outcome: Outcome, least: float, nearest: float, why: str = "") -> Apart:
-        whole = outcome != "touch"
-        return Apart(outcome, least, nearest, self.gap, self.at, why, self.q, whole)
-
-
-class _Found:
-    """What is known of two so far."""
-
-    def __init__(self, a: Track, b: Track | Standing, *, is_free: bool) -> None:
-        self._a, self._b, self._is_free = a, b, is_free
-        self._least = math.inf
-        self._nearest: _Sample | None = None
-        self.touch: Apart | None = None
-        self._open: _Sample | None = None
-
-    def certain(self, bounds: Array) -> None:
-        """Some links are apart at least so far."""
-        if len(bounds):
-            self._least = min(self._least, float(bounds.min()))
-
-    def look(self, found: list[Clearance], piece: Array, q: tuple[Array, Array]) -> list[_Sample]:
-        """What was measured in the middle of a piece."""
-        at = (float(piece[0] + piece[1]) / 2.0, float(piece[2] + piece[3]) / 2.0)
-        samples = [_Sample(x, x.permitted(is_free=self._is_free), at, q) for x in found]
-        for sample in samples:
-            if sample.allowed is None and sample.gap.distance < self.distance:
-                self._nearest = sample
-        deep = min((x for x in samples if x.is_touch), key=lambda x: x.slack, default=None)
-        if deep is not None:
-            self.touch = deep.apart("touch", -math.inf, deep.slack)
-        return samples
-
-    @property
-    def distance(self) -> float:
-        """m, the least that was measured."""
-        return math.inf if self._nearest is None else self._nearest.gap.distance
-
-    def which(self, gap: Clearance, one: Numbers, other: Numbers) -> Flags:
-        """Which of pairs of links these are; if one has no capsule of its own, it may be any."""
-        first, second = self._a.names.get(gap.a, -1), self._b.names.get(gap.b, -1)
-        own = np.ones(len(one), bool) if first < 0 else one == first
-        return own if second < 0 else own & (other == second)
-
-    def too_near(self, sample: _Sample) -> None:
-        """In a piece that is not divided any more, these are neither clear nor touch."""
-        if self._open is None or sample.slack < self._open.slack:
-            self._open = sample
-
-    def _told(self, outcome: Outcome, least: float, why: str = "") -> Apart:
-        if self._nearest is None:
-            return Apart(outcome, least, math.inf, why=why)
-        return replace(self._nearest.apart(outcome, least, self.distance, why), joints=())
-
-    def given_up(self) -> Apart:
-        """So much is not measured."""
-        why = f"more than {MOST_QUERIES:,} distances would have to be measured"
-        return self._told("open", 0.0, why)
-
-    def answer(self) -> Apart:
-        """When nothing is left to look at, and nothing touches."""
-        if self._open is not None:
-            near = f"{1000.0 * max(self._open.slack, 0.0):.2f} mm"
-            why = f"they come within {near}, which is less than can be told apart"
-            return self._open.apart("open", 0.0, self.distance, why)
-        trouble = self._a.trouble or self._b.trouble
-        if trouble:
-            return self._told("open", 0.0, trouble)
-        return self._told("clear", self._least)
 
 
 def much_less(distance: float) -> float:
@@ -433,7 +323,7 @@ def deepest(two: Two, known: Apart) -> Apart:
                 if allowed is not None and two.skipped is not None:
                     continue
                 slack = gap.distance if allowed is None else gap.distance + allowed
-                spread = _spread_of(gap.a, a, one.spread[0]) + _spread_of(gap.b, b, other.spread[0])
+                spread = spread_of(gap.a, a, one.spread[0]) + spread_of(gap.b, b, other.spread[0])
                 measured = min(measured, slack - spread)
                 if slack < best.nearest:
                     best = Apart(known.outcome, slack, slack, gap, middle, "", joints)
@@ -448,23 +338,6 @@ def deepest(two: Two, known: Apart) -> Apart:
     return replace(best, least=certain, is_whole=True)
 
 
-class Standing:
-    """A part that stands, in the form of a track."""
-
-    trouble = ""
-    is_still = True
-
-    def __init__(self, part: Part, box: tuple[Array, Array]) -> None:
-        link = Link.of(part.name, 0, part.frame, *box)
-        self.names = {part.name: 0}
-        self.radii = np.array([link.radius])
-        self._knots = Knots(np.zeros((1, 6)), link.ends[None, None], np.zeros((1, 1)))
-
-    def knots(self, a: Array, b: Array) -> Knots:
-        """Always the same."""
-        return self._knots.pick(np.zeros(len(a), int))
-
-
 def _halves(
     piece: Array, a: Track | Standing, b: Track | Standing, spread_a: Array, spread_b: Array
 ) -> list[Array]:
@@ -475,8 +348,3 @@ def _halves(
     one, other = piece.copy(), piece.copy()
     one[i + 1] = other[i] = middle
     return [one, other]
-
-
-def _spread_of(name: str, track: Track | Standing, spread: Array) -> float:
-    """How far a link may be from where it was measured."""
-    return float(spread[track.names[name]]) if name in track.names else float(spread.max())

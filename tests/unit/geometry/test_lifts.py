@@ -7,10 +7,10 @@ from typing import Any
 
 import pytest
 
+from pn2code.geometry.apart import Apart
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.legs import Planner
 from pn2code.geometry.shown import Shown
-from pn2code.geometry.sweeps import Apart
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.commands import Along, Command, MoveExternal
 from pn2code.robot.monitor import Monitor

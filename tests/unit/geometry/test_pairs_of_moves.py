@@ -10,13 +10,13 @@ import pytest
 from tools.geometry.pairs import WORKLOADS, Workload, facing, moves
 
 from pn2code.geometry import look
+from pn2code.geometry.apart import Apart
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.legs import Planner
 from pn2code.geometry.look import Look
 from pn2code.geometry.pieces import Front, Level, gaps
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.situations import Met
-from pn2code.geometry.sweeps import Apart
 from pn2code.geometry.tracks import ArmShape, Track
 from pn2code.robot.backend import Clearance
 from pn2code.robot.bullet import BulletBackend

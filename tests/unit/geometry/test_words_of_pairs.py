@@ -8,10 +8,10 @@ from pathlib import Path
 import pytest
 
 from pn2code.geometry.answers import Layout, Pair
+from pn2code.geometry.apart import Apart
 from pn2code.geometry.look import certain, touch_in_words
 from pn2code.geometry.report import text
 from pn2code.geometry.runs import Run
-from pn2code.geometry.sweeps import Apart
 from pn2code.robot.backend import Clearance
 
 

@@ -15,11 +15,11 @@ from helpers.robot_cells import nowhere, pose_mm
 from pn2code.cell.load import load as load_cell
 from pn2code.diagnostics import Diagnostics
 from pn2code.geometry.activities import Contents
+from pn2code.geometry.apart import Apart
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.look import touch_in_words
 from pn2code.geometry.shown import Shown
-from pn2code.geometry.sweeps import Apart
 from pn2code.replay.cell import describe
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.clamps import holding
