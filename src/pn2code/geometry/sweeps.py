@@ -4,10 +4,11 @@
     sweeper.apart(track, other)           # Apart("clear" | "touch" | "open", distance, ...)
     sweeper.around(track, "scene")        # how near a leg comes to what stands
 
-Capsules first (NumPy, all pieces at once, of each only the links that may be near: `pieces`), then the collision library
-in the middle of pieces. These are clear when the distance there is more than no point can be further (`tracks`). So
-"clear" holds for all instants, not for samples. A piece that is smaller than `RESOLUTION` and neither clear nor touching
-is left open. How deep an overlap is takes most of the time; it is searched for only where it is told (`deepest`).
+Capsules first (NumPy, all pieces at once, of each only the links that may be near: `pieces`), then the collision
+library in the middle of pieces. These are clear when the distance there is more than no point can be further
+(`tracks`). So "clear" holds for all instants, not for samples. A piece that is smaller than `RESOLUTION` and neither
+clear nor touching is left open. How deep an overlap is takes most of the time; that is searched for only where it is
+told (`deepest`).
 """
 
 from __future__ import annotations

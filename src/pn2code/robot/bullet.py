@@ -170,6 +170,7 @@ class BulletBackend:
         self._known: dict[tuple[str, ...], list[Clearance]] = {}
         self._searched = 0.0
         self._q: dict[str, tuple[float, ...]] = {}
+        self._arms: dict[str, _Side] = {}
         self._rules: dict[tuple[str, str], float | None] = {}
         for robot in cell.moving:
             self.set_joints(robot.name, robot.home)
@@ -283,7 +284,8 @@ class BulletBackend:
         if self._q.get(robot) == tuple(q):
             return
         self._q[robot] = tuple(q)
-        self._known = {k: v for k, v in self._known.items() if robot not in k}
+        if self._known:
+            self._known = {k: v for k, v in self._known.items() if robot not in k}
         self._p.resetJointStatesMultiDof(
             loaded.body, loaded.joints, [[float(v)] for v in q], physicsClientId=self._client
         )
@@ -556,8 +558,10 @@ class BulletBackend:
     def _sides(self, a: _Loaded) -> Iterator[_Side]:
         """A robot, the part that it carries, and those that stand on its turntables."""
         name = a.robot.name
-        links = {i: f"{name}/{link}" for i, link in a.links.items()}
-        yield _Side(name, a.body, links, "", a.robot.name, root=a.root)
+        if name not in self._arms:
+            links = {i: f"{name}/{link}" for i, link in a.links.items()}
+            self._arms[name] = _Side(name, a.body, links, "", name, root=a.root)
+        yield self._arms[name]
         for part in self._parts.values():
             if part.part.holder == name:
                 whole = f"{name}/{part.part.name}"
