@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tools.reduction_cells.bed import judge
 from tools.reduction_cells.limited import WRONG_LIMITS, Limited
 from typer.testing import CliRunner
 
@@ -240,3 +241,12 @@ def test_a_property_of_runs_needs_all_states(tmp_path: Path) -> None:
     found = verified(tmp_path, NET, *asked)
     assert found["properties"][0]["answer"] == "yes"
     assert found["cell"]["reduced"] is False
+
+
+def test_a_random_shop_has_the_same_verdicts(tmp_path: Path) -> None:
+    verdict = judge(
+        120002, tmp_path, mutants=False, wants_medium=False, is_shop=True, only_verdicts=True
+    )
+    assert verdict.wrong == ()
+    reached = ("checks with limits", "properties that hold with limits", "closed nets counted")
+    assert all(verdict.counts[name] > 0 for name in reached)

@@ -100,6 +100,20 @@ def test_a_walk_comes_to_where_one_step_in_a_thousand_does_not_lead_away(program
     assert answers(program, tables, [task], "walk", seconds=20.0)[0].value is True
 
 
+def test_successors_cost_what_changes_however_many_transitions_take_from_a_place(
+    program: Path,
+) -> None:
+    count = 60_000
+    tables = Tables(
+        (1, *([0] * 50)),
+        tuple({0: 1} for _ in range(count)), tuple({1 + t % 50: 1} for t in range(count)),
+        {f"p{p}": (p,) for p in range(51)}, {"t": tuple(range(count))},
+    )  # fmt: skip
+    one = AtMost(Constant(1), Tokens(("p50",)))
+    task = tables.ctl(0, Op("E", (Op("X", (one,)),)))
+    assert answers(program, tables, [task], "ctl", seconds=4.0)[0].value is True
+
+
 def test_branching_time(program: Path) -> None:
     true = 0
     for draw, tables, graph in nets():

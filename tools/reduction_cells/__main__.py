@@ -44,6 +44,9 @@ def main() -> int:
     parser.add_argument(
         "--family", choices=FAMILIES, default="any", help="of which cells (default: %(default)s)"
     )
+    parser.add_argument(
+        "--verdicts", action="store_true", help="compare verdicts only, not the spaces as well"
+    )
     parser.add_argument("--record", type=Path, help="where what is done is written down")
     parser.add_argument("--seconds", type=float, help="no further cell is begun after that")
     options = parser.parse_args()
@@ -63,6 +66,7 @@ def main() -> int:
                     mutants=options.mutants,
                     wants_medium=seed % options.medium == 0,
                     is_shop=is_shop,
+                    only_verdicts=options.verdicts,
                 )
             for text in done[seed].wrong:
                 print(f"cell {seed}: {text}", flush=True)

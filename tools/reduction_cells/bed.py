@@ -211,9 +211,15 @@ def _sorted(b: Bounds) -> Bounds:
 
 
 def judge(
-    seed: int, folder: Path, *, mutants: bool, wants_medium: bool, is_shop: bool = False
+    seed: int,
+    folder: Path,
+    *,
+    mutants: bool,
+    wants_medium: bool,
+    is_shop: bool = False,
+    only_verdicts: bool = False,
 ) -> Verdict:
-    """Makes a cell, and compares."""
+    """Makes a cell, and compares; `only_verdicts`: not the spaces as well."""
     make(seed, folder, is_shop=is_shop)
     d = Diagnostics()
     opened = open_net(folder, {}, warnings=d)
@@ -229,10 +235,26 @@ def judge(
         return Verdict((), frozenset(), Counter(["not modelled"]))
     if loose is None:
         return Verdict((), frozenset(), Counter(["no turns"]))
-    running, table = loose
     counts: Counter[str] = Counter(["cells"])
     wrong: list[str] = []
     shown: set[str] = set()
+    if not only_verdicts:
+        wrong += _of_spaces(cell, loose, counts, shown if mutants else None)
+    r = Random(seed)
+    wrong += _of_checks(cell, r, counts)
+    wrong += _of_properties(cell, r, counts, shown if mutants else None)
+    wrong += closed.judged(opened, partition, counts)
+    if wants_medium:
+        wrong += _of_medium(cell, counts)
+        wrong += files.judged(partition, opened.storage, counts, shown if mutants else None)
+    return Verdict(tuple(wrong), frozenset(shown), counts)
+
+
+def _of_spaces(
+    cell: _Cell, loose: tuple[Running, Turns], counts: Counter[str], shown: set[str] | None
+) -> Iterator[str]:
+    """`shown` gets the names of mutants that are noticed, if they are tried."""
+    running, table = loose
     for first in (True, False):
         space = _Space(cell, running, first=first)
         whole = space.explored(None)
@@ -241,7 +263,7 @@ def judge(
             continue
         reduced = space.explored(table)
         if reduced is None or not (reduced.complete or reduced.error):
-            wrong.append("turns do not end")
+            yield "turns do not end"
             continue
         counts["states"] += whole.nodes
         counts["states in turns"] += reduced.nodes
@@ -251,21 +273,14 @@ def judge(
             for kind, row in zip(space.asked(), reduced.answers, strict=False)
             if kind == "restless"
         )
-        wrong += [f"first {first}: {x}" for x in differences(space, whole, reduced)]
-        if mutants:
-            shown |= set(_shown(space, table, whole, reduced))
-        if first:
-            bed = Limited.of(partition, cell.plan)
-            wrong += [] if bed is None else bed.judged(whole, counts)
-            shown |= set() if bed is None or not mutants else bed.shown(whole)
-    r = Random(seed)
-    wrong += _of_checks(cell, r, counts)
-    wrong += _of_properties(cell, r, counts, shown if mutants else None)
-    wrong += closed.judged(opened, partition, counts)
-    if wants_medium:
-        wrong += _of_medium(cell, counts)
-        wrong += files.judged(partition, opened.storage, counts, shown if mutants else None)
-    return Verdict(tuple(wrong), frozenset(shown), counts)
+        yield from (f"first {first}: {x}" for x in differences(space, whole, reduced))
+        if shown is not None:
+            shown.update(_shown(space, table, whole, reduced))
+        bed = Limited.of(cell.partition, cell.plan) if first else None
+        if bed is not None:
+            yield from bed.judged(whole, counts)
+            if shown is not None:
+                shown.update(bed.shown(whole))
 
 
 def _shown(space: _Space, table: Turns, whole: Exploration, reduced: Exploration) -> Iterator[str]:

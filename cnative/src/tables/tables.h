@@ -164,6 +164,9 @@ void tb_go_to(tb_cursor_t *c, const tb_count_t *marking);
 /* False: a place would hold more than TB_MOST_TOKENS; nothing has changed. */
 bool tb_fire(tb_cursor_t *c, uint32_t transition);
 void tb_unfire(tb_cursor_t *c, uint32_t transition);
+/* The same of the marking alone: what is enabled stays as it was, so that it costs little where a place has many takers. */
+bool tb_move(tb_cursor_t *c, uint32_t transition);
+void tb_unmove(tb_cursor_t *c, uint32_t transition);
 
 static inline bool tb_is_enabled(const tb_cursor_t *c, uint32_t transition)
 {
@@ -174,6 +177,9 @@ static inline bool tb_is_enabled(const tb_cursor_t *c, uint32_t transition)
 bool tb_holds(const tb_formula_t *f, const tb_cursor_t *c);
 /* A guess how much is missing until the formula is as wanted; 0 if it is, and has no operator of time. */
 double tb_distance(const tb_formula_t *f, const tb_cursor_t *c, bool wanted);
+
+/* Whether it depends on how many transitions are enabled. */
+bool tb_counts_enabled(const tb_formula_t *f);
 int64_t tb_sum(const tb_formula_t *sum, const tb_count_t *marking);
 
 /* --- known markings ----------------------------------------------------------------------------------------------- */

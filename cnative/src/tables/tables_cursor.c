@@ -83,18 +83,49 @@ void tb_go_to(tb_cursor_t *c, const tb_count_t *marking)
     }
 }
 
-bool tb_fire(tb_cursor_t *c, uint32_t transition)
+/* Whether no place gets more tokens than there may be. */
+static bool fits(const tb_cursor_t *c, uint32_t transition)
 {
     const tb_arcs_t *changes = &c->net->changes;
-    const uint32_t first = changes->first[transition];
-    const uint32_t end = changes->first[transition + 1U];
-    for (uint32_t i = first; i < end; i++) {
+    for (uint32_t i = changes->first[transition]; i < changes->first[transition + 1U]; i++) {
         const tb_arc_t *change = &changes->arc[i];
         if (((int64_t)c->marking[change->node] + change->weight) > (int64_t)TB_MOST_TOKENS) {
             return false;
         }
     }
-    for (uint32_t i = first; i < end; i++) {
+    return true;
+}
+
+static void add_changes(tb_cursor_t *c, uint32_t transition, int64_t sign)
+{
+    const tb_arcs_t *changes = &c->net->changes;
+    for (uint32_t i = changes->first[transition]; i < changes->first[transition + 1U]; i++) {
+        const tb_arc_t *change = &changes->arc[i];
+        c->marking[change->node] = (tb_count_t)((int64_t)c->marking[change->node] + (sign * change->weight));
+    }
+}
+
+bool tb_move(tb_cursor_t *c, uint32_t transition)
+{
+    if (!fits(c, transition)) {
+        return false;
+    }
+    add_changes(c, transition, 1);
+    return true;
+}
+
+void tb_unmove(tb_cursor_t *c, uint32_t transition)
+{
+    add_changes(c, transition, -1);
+}
+
+bool tb_fire(tb_cursor_t *c, uint32_t transition)
+{
+    const tb_arcs_t *changes = &c->net->changes;
+    if (!fits(c, transition)) {
+        return false;
+    }
+    for (uint32_t i = changes->first[transition]; i < changes->first[transition + 1U]; i++) {
         const tb_arc_t *change = &changes->arc[i];
         tb_set(c, change->node, (tb_count_t)((int64_t)c->marking[change->node] + change->weight));
     }

@@ -51,6 +51,20 @@ static double parts_distance(const tb_formula_t *f, const tb_cursor_t *c, bool w
     return total;
 }
 
+bool tb_counts_enabled(const tb_formula_t *f)
+{
+    if (f->op == TB_DEAD) {
+        return true;
+    }
+    const bool has_parts = (f->op != TB_SUM) && (f->op != TB_ENABLED) && (f->op != TB_TRUE) && (f->op != TB_FALSE);
+    for (uint32_t i = 0U; has_parts && (i < f->count); i++) {
+        if (tb_counts_enabled(f->part[i])) {
+            return true;
+        }
+    }
+    return false;
+}
+
 double tb_distance(const tb_formula_t *f, const tb_cursor_t *c, bool wanted)
 {
     switch (f->op) {

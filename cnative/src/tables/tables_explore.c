@@ -82,17 +82,20 @@ void tb_explore(tb_job_t *job, bool count)
         totals.arcs += enabled;
         totals.dead += (enabled == 0U) ? 1U : 0U;
         for (uint32_t i = 0U; is_whole && is_wanted && (i < enabled); i++) {
-            is_whole = tb_fire(&c, fire[i]);
+            is_whole = tb_move(&c, fire[i]);
             if (!is_whole) {
                 break;
             }
             const tb_added_t added = tb_store_add(&store, c.marking, &number);
             is_whole = (added != TB_FULL) && !tb_is_over();
             if (added == TB_ADDED) {
-                is_wanted = (look(job, &c) > 0U) || count;
                 count_tokens(net, c.marking, &totals);
             }
-            tb_unfire(&c, fire[i]);
+            tb_unmove(&c, fire[i]);
+            if ((added == TB_ADDED) && (job->questions > 0U) && tb_fire(&c, fire[i])) {
+                is_wanted = (look(job, &c) > 0U) || count;
+                tb_unfire(&c, fire[i]);
+            }
         }
     }
     if (is_whole && is_wanted) {

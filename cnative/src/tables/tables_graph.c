@@ -184,12 +184,12 @@ bool tb_expand(tb_graph_t *g, uint32_t marking)
     put_in_order(g, enabled);
     uint32_t *found = &g->successor[g->successors];
     for (uint32_t i = 0U; i < enabled; i++) {
-        if (!tb_fire(&g->cursor, g->fire[i])) {
+        if (tb_is_over() || !tb_move(&g->cursor, g->fire[i])) {
             g->is_full = true;
             return false;
         }
         const tb_added_t added = tb_store_add(&g->store, g->cursor.marking, &found[i]);
-        tb_unfire(&g->cursor, g->fire[i]);
+        tb_unmove(&g->cursor, g->fire[i]);
         if (added == TB_FULL) {
             g->is_full = true;
             return false;

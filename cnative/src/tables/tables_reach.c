@@ -57,14 +57,20 @@ static bool searched(search_t *s)
         const uint32_t count =
             tb_stubborn(&s->stubborn, &s->cursor, is_reach ? q->formula : NULL, is_reach ? NULL : q->formula, s->fire);
         for (uint32_t i = 0U; i < count; i++) {
-            if (tb_is_over() || !tb_fire(&s->cursor, s->fire[i])) {
+            if (tb_is_over() || !tb_move(&s->cursor, s->fire[i])) {
                 return false;
             }
             const tb_added_t added = tb_store_add(&s->store, s->cursor.marking, &number);
-            if ((added == TB_FULL) || ((added == TB_ADDED) && found(s, number))) {
+            tb_unmove(&s->cursor, s->fire[i]);
+            if (added == TB_FULL) {
                 return false;
             }
-            tb_unfire(&s->cursor, s->fire[i]);
+            if (added == TB_ADDED) {
+                if (!tb_fire(&s->cursor, s->fire[i]) || found(s, number)) {
+                    return false;
+                }
+                tb_unfire(&s->cursor, s->fire[i]);
+            }
         }
     }
     return true;

@@ -85,15 +85,20 @@ static uint32_t chosen(tb_cursor_t *c, const tb_question_t *goal, bool is_eager)
     if ((goal == NULL) || (drawn(plain) == 0U)) {
         return c->enabled[drawn(c->enabled_count)];
     }
+    const bool is_over_enabled = (goal->kind == TB_REACH) && tb_counts_enabled(goal->formula);
     uint32_t candidate[MANY_CANDIDATES];
     const uint32_t count = candidates(c, is_eager, candidate);
     uint32_t best = UINT32_MAX;
     double nearest = 0.0;
     for (uint32_t i = 0U; i < count; i++) {
         const uint32_t t = candidate[i];
-        if (tb_fire(c, t)) {
+        if (is_over_enabled ? tb_fire(c, t) : tb_move(c, t)) {
             const double d = aim(goal, c);
-            tb_unfire(c, t);
+            if (is_over_enabled) {
+                tb_unfire(c, t);
+            } else {
+                tb_unmove(c, t);
+            }
             if ((best == UINT32_MAX) || (d < nearest)) {
                 best = t;
                 nearest = d;

@@ -208,6 +208,7 @@ class Engine:
     _activity_start: float = 0.0
     _ids: dict[str, str] = field(init=False)
     _commanded: dict[str, tuple[str, ...]] = field(init=False)
+    _owner_of: dict[str, str] = field(init=False)
     _ordered_by: dict[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -217,6 +218,10 @@ class Engine:
         self.parts = PartKeeper(self.cell, self.backend)
         self.zones = ZoneWatch(self.cell)
         self._ids = {t.name: t.id for t in divided.net.transitions}
+        self._owner_of = {
+            t.name: divided.owners[o].name
+            for t, o in zip(divided.net.transitions, divided.transition_owner, strict=True)
+        }
         self._commanded = {
             t.name: tuple({readers[a.place] for a in t.arcs if a.place in readers})
             for t in divided.net.transitions
@@ -342,16 +347,22 @@ class Engine:
         self._enter_activity(event, self.now)
 
     def _enter_activity(self, event: Mapping[str, Any], t: float) -> None:
-        """The supervisor's pages are its activities: the first firing on another page begins another one."""
+        """The pages below the supervisor's own are its activities: a firing on another page ends one."""
         path = event["transition"].split(".")
         depth = self.supervisor_depth
         activity = path[depth] if len(path) > depth + 1 else ""
-        if activity and activity != self.activity:
+        if activity != self.activity:
             self._close_activity(t)
             self.activity = activity
             self._activity_start = t
         for reader in self._commanded.get(event["transition"], ()):
             self._ordered_by[reader] = self.activity
+
+    def _pass_on(self, transition: str) -> None:
+        """Whom a robot gives an order works for the activity for which the robot does."""
+        activity = self._ordered_by.get(self._owner_of[transition])
+        if activity is not None:
+            self._ordered_by |= dict.fromkeys(self._commanded[transition], activity)
 
     def _close_activity(self, t: float) -> None:
         if self.activity:
@@ -634,6 +645,7 @@ class Engine:
                         "origin": self._ids.get(name, ""),
                     }
                 )
+                self._pass_on(name)
             case MessageConsumed(file=channel, values=values):
                 message = MessageRecord(self.now, channel, values)
                 self.record.messages.append(message)

@@ -112,6 +112,7 @@ class RealtimeEngine(Engine):
 
     def _begin_command(self, robot: RobotRunner, command: Command, line: int) -> None:
         """A wait is as long as it says after the messages before it, however late this turn is."""
+        self._read_trace()  # who has ordered it
         self._look_at_the_clock()
         Engine._begin_command(self, robot, command, line)
 

@@ -228,7 +228,8 @@ bool ex_counts_make(ex_run_t *run)
     for (uint32_t i = 0U; (problem == NULL) && (i < run->options.threads); i++) {
         counts->spot[i] = ex_alloc(&run->memory, ((uint64_t)counts->table.spots + 1U) * sizeof *counts->spot[i]);
         counts->held[i] = ex_table(&run->memory, pn_net.place_count, sizeof *counts->held[i]);
-        problem = ((counts->spot[i] == NULL) || (counts->held[i] == NULL)) ? "there is not enough memory for limits" : NULL;
+        problem =
+            ((counts->spot[i] == NULL) || (counts->held[i] == NULL)) ? "there is not enough memory for limits" : NULL;
     }
     if (problem != NULL) {
         ex_note(run, "reduction", problem, -1);
