@@ -20,6 +20,8 @@ const COARSE = 0.75;
 const PIXEL_STEPS = 2;
 /** Of a run that goes on: samples of a path that are drawn, and how often they are drawn anew. */
 const LIVE_SAMPLES = 600;
+/** How near to a path a click must be (CSS pixels). */
+const REACH_PX = 6;
 const PATHS_MS = 500;
 const ARM_COLOURS = [0x0072b2, 0xcc79a7, 0x009e73, 0xe69f00, 0x56b4e9, 0xd55e00];
 
@@ -28,9 +30,11 @@ export class CellView {
    * @param {HTMLElement} pane
    * @param {any} run
    * @param {string} missing why there is no 3D, "" if there is
+   * @param {{onArm: (robot: number, t: number) => void}} actions
    */
-  constructor(pane, run, missing) {
+  constructor(pane, run, missing, actions) {
     this.run = run;
+    this.actions = actions;
     this.pane = pane;
     this.t = 0;
     this.ratio = 1;
@@ -88,7 +92,11 @@ export class CellView {
     this.controls.enableDamping = false;
     this.controls.screenSpacePanning = true;
     this.controls.addEventListener("change", () => this.request());
-    canvas.addEventListener("pointerdown", () => (this.mounted = -1));
+    canvas.addEventListener("pointerdown", (/** @type {PointerEvent} */ e) => {
+      this.mounted = -1;
+      this.pressed = [e.clientX, e.clientY];
+    });
+    canvas.addEventListener("click", (/** @type {PointerEvent} */ e) => this.click(e));
     canvas.addEventListener("keydown", (/** @type {KeyboardEvent} */ e) => this.key(e));
     this.hasPaths = true;
     this.thrift = new Thrift();
@@ -208,6 +216,57 @@ export class CellView {
     this.camera.lookAt(this.controls.target);
   }
 
+  /**
+   * A click on an arm leads to what it is doing; one on the way of its tool to the moment when it was there.
+   * @param {PointerEvent} e
+   */
+  click(e) {
+    const [x, y] = this.pressed ?? [e.clientX, e.clientY];
+    if (Math.hypot(e.clientX - x, e.clientY - y) > 4) return; // the view was turned
+    const box = this.renderer.domElement.getBoundingClientRect();
+    const at = new THREE.Vector2(((e.clientX - box.left) / box.width) * 2 - 1, 1 - ((e.clientY - box.top) / box.height) * 2);
+    const way = this.hasPaths ? this.wayAt(at, box) : null;
+    const robot = way ? way.robot : this.armAt(at);
+    if (robot >= 0) this.actions.onArm(robot, way ? way.t : this.t);
+  }
+
+  /**
+   * The sample of a path that is nearest to a point of the picture (from -1 to 1), if one is near.
+   * @param {any} at
+   * @param {DOMRect} box
+   */
+  wayAt(at, box) {
+    /** @type {{robot: number, t: number} | null} */
+    let found = null;
+    let least = REACH_PX;
+    const point = new THREE.Vector3();
+    this.camera.updateMatrixWorld();
+    for (const [robot, trail] of (this.trails ?? []).entries()) {
+      for (let i = 0; i < (trail?.count ?? 0); i++) {
+        point.fromArray(trail.points, 3 * i).project(this.camera);
+        if (Math.abs(point.z) > 1) continue;
+        // Of those at one place the one that is nearest in time counts.
+        const away = Math.hypot((point.x - at.x) * box.width, (point.y - at.y) * box.height) / 2 + Math.abs(trail.t[i] - this.t) * 1e-3;
+        if (away >= least) continue;
+        least = away;
+        found = { robot, t: trail.t[i] };
+      }
+    }
+    return found;
+  }
+
+  /**
+   * The arm at a point of the picture, before which nothing stands; -1: none.
+   * @param {any} at
+   */
+  armAt(at) {
+    const ray = new THREE.Raycaster();
+    ray.setFromCamera(at, this.camera);
+    const groups = this.cell?.scene.children.filter((/** @type {any} */ c) => c.isGroup && c.visible);
+    const [hit] = ray.intersectObjects(groups, true);
+    return this.cell?.robots.findIndex((/** @type {any} */ r) => r.links.includes(hit?.object.parent)) ?? -1;
+  }
+
   /** @param {KeyboardEvent} e */
   key(e) {
     const spin = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[e.key];
@@ -301,7 +360,7 @@ export class CellView {
     const thin = new THREE.Line(past, new THREE.LineBasicMaterial({ vertexColors: true }));
     thin.frustumCulled = false;
     this.cell?.scene.add(behind, thin, ahead);
-    return { behind, thin, ahead, material, t, count: t.length };
+    return { behind, thin, ahead, material, t, points, count: t.length };
   }
 
   /** @param {boolean} on */

@@ -73,6 +73,18 @@ export class Messages {
     return this.times[i] ?? NaN;
   }
 
+  /**
+   * The message of a channel's place that came last, or else the next one.
+   * @param {number} place
+   */
+  reveal(place) {
+    const sent = this.count();
+    if (sent && this.messages[this.list.current]?.place === place) return;
+    let found = -1;
+    for (let i = 0; i < this.messages.length && (i < sent || found < 0); i++) if (this.messages[i].place === place) found = i;
+    if (found >= 0) this.list.go(found);
+  }
+
   /** There are more messages. */
   grow() {
     if (this.times.length === this.messages.length) return;

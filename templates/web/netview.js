@@ -270,7 +270,8 @@ export class NetView {
   }
 
   zoomed() {
-    this.sheet.setAttribute("viewBox", this.view?.map((/** @type {number} */ v) => v.toFixed(2)).join(" "));
+    const box = this.view?.map((/** @type {number} */ v) => v.toFixed(2)).join(" ");
+    if (this.sheet.getAttribute("viewBox") !== box) this.sheet.setAttribute("viewBox", box);
   }
 
   /** @param {WheelEvent} e */

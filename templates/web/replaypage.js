@@ -39,7 +39,7 @@ export class ReplayPage {
     };
     this.net = new NetView(byId("net"), this.course, actions);
     if (data.runs.length > 1) this.other(data.runs[1], actions);
-    else if (this.run.cell) this.cell = new CellView(byId("cell"), this.run, data.missing);
+    else if (this.run.cell) this.cell = new CellView(byId("cell"), this.run, data.missing, { onArm: (r, t) => this.onArm(r, t) });
     this.timeline = new Timeline(byId("timeline"), this.run, this.clock, {
       onBar: (bar) => this.onBar(bar), onStep: (k) => this.clock.step(k),
     });
@@ -198,6 +198,20 @@ export class ReplayPage {
     if (bar.transition >= 0) this.selectTransition(bar.transition, false);
   }
 
+  /**
+   * To what an arm does at a moment.
+   * @param {number} robot
+   * @param {number} t
+   */
+  onArm(robot, t) {
+    if (t !== this.clock.t) this.clock.seek(t);
+    const { parties, bars } = this.run.happenings;
+    const party = parties.findIndex((/** @type {any} */ p) => p.name === this.run.cell.robots[robot].name);
+    const begun = bars.filter((/** @type {any} */ b) => b.party === party && b.start <= t);
+    const bar = begun.find((/** @type {any} */ b) => t < b.end) ?? begun.pop();
+    if (bar?.transition >= 0) this.selectTransition(bar.transition, false);
+  }
+
   /** @param {any} message */
   onMessage(message) {
     this.clock.seek(message.t);
@@ -228,6 +242,7 @@ export class ReplayPage {
     const members = this.run.net.places[p].members.map((/** @type {any} */ m) => m[0]);
     if (members.length && !members.includes(this.net.current)) this.net.show(members[0]);
     this.net.mark(-1, p);
+    this.messages?.reveal(p);
   }
 
   fromAddress() {

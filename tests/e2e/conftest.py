@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from helpers import explorations
+from helpers import explorations, runtime_once
 from helpers.explored import SANITIZERS, Explorers
 from helpers.generated import Cached
 from helpers.objects import Objects
@@ -48,6 +48,12 @@ def quick_build() -> Iterator[None]:
     with pytest.MonkeyPatch.context() as changed:
         changed.setenv("CFLAGS", "-O0")
         yield
+
+
+@pytest.fixture(scope="session")
+def once_compiler(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What `helpers.runtime_once` says, for all workers."""
+    return once(tmp_path_factory, "runtime-once", runtime_once.write) / "cc"
 
 
 @pytest.fixture(scope="session")

@@ -280,7 +280,11 @@ def test_what_is_not_known(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> N
         fewer.setattr("pn2code.geometry.graph.MOST_STATES", 20)
         result = CliRunner().invoke(app, arguments)
         assert result.exit_code == 3
-        assert "not known: the cell has more states than were looked at" in result.stdout
+        assert (
+            "not known: the cell has more states than were looked at, 300,000 at most"
+            in result.stdout
+        )
+        assert "`--set`" in result.stdout
     with monkeypatch.context() as fewer:
         fewer.setattr("pn2code.geometry.situations.MOST", 20)
         result = CliRunner().invoke(app, arguments)

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tools.reduction_cells.bed import judge
 from tools.reduction_cells.limited import WRONG_LIMITS, Limited
 from typer.testing import CliRunner
 
@@ -199,3 +200,53 @@ def test_what_goes_round_is_looked_at_as_a_whole(tmp_path: Path) -> None:
     found = verified(tmp_path, net)
     assert found["cell"]["reduced"] is False
     assert answers(found) == answers(verified(tmp_path, net, "--no-reduction"))
+
+
+PROPERTIES = (
+    "ctl AF tokens(Finished) = 1",
+    "deadlock free except tokens(Finished) = 1",
+    "mutex Free, Busy",
+    "never tokens(Busy) = 0 && tokens(Waiting) = 0 && tokens(ask) = 1",
+    "reachable tokens(Told) = 1 && tokens(Busy) = 0",
+    "never tokens(Busy) = 1 && enabled(Send)",
+    "every fires(Send) is followed by tokens(ask) = 1 within 1 firings",
+    "bound Waiting <= 0",  # no: a run shows it
+    "reachable tokens(Done) = 1",
+)
+
+
+def test_properties_of_states_have_the_same_answers_with_any_number_of_parts(
+    tmp_path: Path,
+) -> None:
+    asked = [word for text in PROPERTIES for word in ("--property", text)]
+
+    def told(found: dict[str, Any]) -> list[str]:
+        return [row["answer"] for row in found["properties"]]
+
+    whole = verified(tmp_path / "whole", NET, "--no-reduction", *asked)
+    found = verified(tmp_path / "six", NET, *asked)
+    many = verified(tmp_path / "many", NET, *asked, parts=40)
+    assert told(found) == told(many) == told(whole)
+    assert told(whole) == ["yes"] * 4 + ["no", "yes", "yes", "no", "yes"]
+    assert found["cell"]["reduced"] is many["cell"]["reduced"] is True
+    assert found["why"] == many["why"] == "counted"
+    assert found["cell"]["states"] == many["cell"]["states"]
+    by_name = {row["holds"]: row for row in found["properties"]}
+    assert any("stands for many markings" in x for x in by_name["mutex Free, Busy"]["assumes"])
+    assert by_name["bound Waiting <= 0"]["evidence"]["confirmed"]
+
+
+def test_a_property_of_runs_needs_all_states(tmp_path: Path) -> None:
+    asked = ("--property", "every fires(Send) is followed by fires(Pack) || fires(Drop)")
+    found = verified(tmp_path, NET, *asked)
+    assert found["properties"][0]["answer"] == "yes"
+    assert found["cell"]["reduced"] is False
+
+
+def test_a_random_shop_has_the_same_verdicts(tmp_path: Path) -> None:
+    verdict = judge(
+        120002, tmp_path, mutants=False, wants_medium=False, is_shop=True, only_verdicts=True
+    )
+    assert verdict.wrong == ()
+    reached = ("checks with limits", "properties that hold with limits", "closed nets counted")
+    assert all(verdict.counts[name] > 0 for name in reached)

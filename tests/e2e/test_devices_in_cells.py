@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from e2e.test_check_geometry import looked
-from helpers.door_cell import NET, door_cell
+from helpers.belt_cell import belt_cell
+from helpers.door_cell import NET, TOML, door_cell
 from pn2code.diagnostics import Diagnostics
 from pn2code.pipeline import generate
 from pn2code.run.cell import RunOptions, RunResult, run_cell
@@ -75,3 +76,27 @@ def test_over_all_interleavings_the_door_is_in_the_way(tmp_path: Path) -> None:
     assert layout.of_moves == "yes" and layout.of_pairs == "no"
     assert {p.where.b for p in layout.pairs if p.where} == {"mill/door"}
     assert {m.robot for m in layout.moves} == {"arm", "mill"}
+
+
+def test_a_belt_brings_parts_to_its_stop(tmp_path: Path) -> None:
+    d = Diagnostics()
+    options = RunOptions(out=tmp_path / "run", backend="fake", checked=False, looks=False)
+    found = run_cell(belt_cell(tmp_path / "cell"), options, d)
+    assert found is not None, [e.message for e in d.errors]
+    assert found.record.verdict == "finished", found.record.reason
+    runs = [a.end - a.start for a in found.record.actions if a.label == "external"]
+    # 0.9 m at 0.25 m/s, of which both boxes are brought by the same belt.
+    assert runs == [pytest.approx(0.9 / 0.25 + 0.25 / 1.0 + 1.0 / 10.0)] * 2
+    taken = [p.change.pose for p in found.record.parts if p.change.effect == "takes"]
+    assert [(round(p.x, 6), round(p.y, 6)) for p in taken] == [(1.5, -0.6)] * 2
+
+
+def test_a_run_stops_where_an_arm_is_too_fast_in_a_zone(tmp_path: Path) -> None:
+    zone = "[zones.front]\npose = { x = 0.8, z = 1.0 }\nsize = [0.8, 0.8, 2.0]\nmax_speed = 0.2\n"
+    d = Diagnostics()
+    options = RunOptions(out=tmp_path / "run", backend="fake", checked=False, looks=False)
+    found = run_cell(door_cell(tmp_path / "cell", toml=TOML + zone), options, d)
+    assert found is not None, [e.message for e in d.errors]
+    record = found.record
+    assert record.verdict == "failed" and record.time > 0.0
+    assert "mm/s fast at" in record.reason and "in zone `front`, where 200.0" in record.reason

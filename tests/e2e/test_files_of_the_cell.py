@@ -183,6 +183,47 @@ def test_what_is_not_all_good_is_not_said_without_the_files(
     assert counts["files not of the cell"] == 1
 
 
+DATA = """    place told : SAID
+    place say : SAID"""
+
+
+def with_data(folder: Path, *, alone: bool) -> OpenNet:
+    """The device says data with its flag; the supervisor takes both, or (`alone`) has a use for the data alone."""
+    written(folder, parts=2)
+    net = NET.replace("{parts}", "2").replace("{heard}", "k").replace("{done}", "k")
+    net = net.replace("    place say : SAID", DATA, 1)
+    net = net.replace("ask -> ask, say -> say", "ask -> ask, say -> say, told -> told")
+    for where in ("in", "out"):
+        port = f"    place say port {where} : SAID"
+        net = net.replace(port, f"    place told port {where} : SAID\n{port}")
+    net = net.replace("      in say : k\n", "      in say : k\n      in told : k\n")
+    net = net.replace("      out say : k\n", "      out say : k\n      out told : k\n")
+    if alone:
+        net = net.replace(
+            "    trans Send\n", "    trans Early\n      in told : k\n    trans Send\n"
+        )
+    (folder / "cell.cpn").write_bytes(cpn(net))
+    data = '[[channel]]\nplace = "told"\nfile = "told.txt"\nkind = "data"\n'
+    (folder / "cell.toml").write_text(TOML + data, encoding="utf-8")
+    return opened(folder)
+
+
+def test_data_that_nobody_takes_without_their_flag_need_no_look_at_files(tmp_path: Path) -> None:
+    net = with_data(tmp_path, alone=False)
+    partition = divide(net.flat, net.config, Diagnostics())
+    assert partition is not None and by_cell.why_not(partition, Rules()) == ""
+    counts: Counter[str] = Counter()
+    assert list(judged(partition, net.storage, counts, None)) == []
+    assert counts["files: yes of the cell as well"] == 1
+
+
+def test_data_that_are_taken_without_their_flag_need_one(tmp_path: Path) -> None:
+    net = with_data(tmp_path, alone=True)
+    partition = divide(net.flat, net.config, Diagnostics())
+    assert partition is not None
+    assert "are acted on alone" in by_cell.why_not(partition, Rules())
+
+
 def test_whoever_would_speak_after_the_end_is_noticed(tmp_path: Path) -> None:
     change = ("in Left : 0", "in Left : 1")
     net = opened(written(tmp_path, parts=2, change=change))

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from helpers.browser import launched, opened
+from helpers.legible import complaints
 from helpers.lively import Person, Running, running, token_of
 from helpers.processes import pn2code
 
@@ -110,10 +111,13 @@ def test_in_the_page_a_person_answers_and_lets_a_device_fail(
             question = page.get_by_role("group", name="Question of belt")
             asked = "belt asks sensor verdict: what the camera finds of the part (v)?"
             question.get_by_text(asked).wait_for()
+            assert complaints(browser) == []
             question.get_by_role("button", name="bad", exact=True).click()
             question.wait_for(state="hidden")
             page.get_by_role("tab", name="Intervene").click()
             assert page.get_by_text("whether the gripper holds the part").is_visible()
+            browser.ask("() => live.page.frame.dark()")
+            assert complaints(browser) == []
             page.get_by_role("button", name="Hold: belt").click()
             page.get_by_role("button", name="Go on: belt").wait_for()
             page.get_by_role("button", name="Fail: belt").click()

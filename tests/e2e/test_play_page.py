@@ -11,6 +11,7 @@ import pytest
 
 from helpers import netbuilder
 from helpers.browser import PATIENCE_MS, Page, launched, opened
+from helpers.legible import complaints
 from helpers.monitors import Spec, with_monitors
 from helpers.played import Served, marking, of, served
 from helpers.processes import pn2code
@@ -219,6 +220,14 @@ class TestPlaying:
         browser.page.reload()
         browser.page.wait_for_selector("body[data-ready=true]")
         at(browser, 1)
+
+    def test_all_has_names_and_stands_out_by_day_and_night(self, browser: Page) -> None:
+        tabs = browser.page.get_by_role("tab")
+        for _ in range(2):
+            browser.ask("() => play.page.frame.dark()")
+            for name in tabs.all_inner_texts():
+                browser.page.get_by_role("tab", name=name, exact=True).click()
+                assert complaints(browser) == [], name
 
     def test_nothing_else_is_asked_for(self, browser: Page, server: Served) -> None:
         browser.page.keyboard.press("Space")

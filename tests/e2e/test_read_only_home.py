@@ -44,15 +44,6 @@ def closed(tmp_path: Path) -> Iterator[Path]:
     folder.chmod(0o755)
 
 
-@pytest.fixture(scope="module")
-def quick_compiler(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Nothing is optimized: each run compiles the runtime again."""
-    path = tmp_path_factory.mktemp("compiler") / "cc"
-    path.write_text('#!/bin/sh\nexec gcc "$@" -O0\n')
-    path.chmod(0o755)
-    return path
-
-
 def where(home: Path, compiler: Path, room: Path, **more: str) -> dict[str, str]:
     own = {"HOME": str(home), "CC": str(compiler), "TMPDIR": str(room), **more}
     return {k: v for k, v in os.environ.items() if k != "XDG_CACHE_HOME"} | own
@@ -68,13 +59,11 @@ def alone(*arguments: str | Path, **options: object) -> subprocess.CompletedProc
     return done
 
 
-def test_a_process_of_its_own(
-    net: Path, closed: Path, quick_compiler: Path, tmp_path: Path
-) -> None:
+def test_a_process_of_its_own(net: Path, closed: Path, once_compiler: Path, tmp_path: Path) -> None:
     """The tables of parsers, compiled modules, templates, the compiled net: nothing can be kept."""
     room = tmp_path / "room"
     room.mkdir()
-    own = where(closed, quick_compiler, room, PYTHONDONTWRITEBYTECODE="1")
+    own = where(closed, once_compiler, room, PYTHONDONTWRITEBYTECODE="1")
     done = alone("conform", net, "--json", env=own, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert f"{NOTE}`{closed}/.cache/pn2code` cannot be made: permission denied" in done.stderr
@@ -82,11 +71,11 @@ def test_a_process_of_its_own(
     assert not list(closed.iterdir()) and not list(room.iterdir())
 
 
-def test_no_home_at_all(net: Path, closed: Path, quick_compiler: Path, tmp_path: Path) -> None:
+def test_no_home_at_all(net: Path, closed: Path, once_compiler: Path, tmp_path: Path) -> None:
     """Nor does it lie where it can be made."""
     home, room = closed / "nobody", tmp_path / "room"
     room.mkdir()
-    own = where(home, quick_compiler, room)
+    own = where(home, once_compiler, room)
 
     def prepare() -> None:
         os.environ.clear()

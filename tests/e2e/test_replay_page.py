@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from helpers.browser import Page, launched, opened
+from helpers.legible import complaints
 from helpers.shown import PAIR, described
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.source import read
@@ -179,6 +180,61 @@ class TestRivetingCell:
         place = browser.ask("() => replay.page.course.net.places[replay.page.place].short")
         assert place == shown.result.record.traffic[0][1].channel
 
+    def test_a_place_leads_to_its_message(self, browser: Page, shown: Shown) -> None:
+        found = browser.ask("""() => {
+            const { page } = replay, { messages } = page;
+            page.tab("Messages");
+            replay.seek(50);
+            const sent = messages.messages.filter((m) => m.t <= 50);
+            const other = sent.findLastIndex((m) => m.place !== sent.at(-1).place);
+            page.selectPlace(sent[other].place);
+            return [messages.list.current, other, page.clock.t];
+        }""")
+        assert found[0] == found[1] and found[2] == 50
+
+    def test_the_way_of_an_arm_leads_to_its_moment_and_the_arm_to_what_it_does(
+        self, browser: Page, shown: Shown
+    ) -> None:
+        action = next(a for a in shown.result.record.actions if a.kind == "linear")
+        number = [r.name for r in shown.result.prepared.robot_cell.robots].index(action.robot)
+        where = """([robot, t, kind]) => {
+            replay.seek(t);
+            const { cell } = replay.page, { camera } = cell;
+            camera.updateMatrixWorld();
+            const f = replay.tcp(robot, t);
+            const points = [[f[3], f[7], f[11]]];
+            if (kind === "arm") {
+                const { links } = cell.cell.robots[robot];
+                const box = new THREE.Box3().setFromObject(links.find((l) => l.name.endsWith("link_1")));
+                points[0] = box.getCenter(new THREE.Vector3()).toArray();
+            }
+            const p = new THREE.Vector3().fromArray(points[0]).project(camera);
+            const b = cell.renderer.domElement.getBoundingClientRect();
+            return [b.left + (p.x + 1) * b.width / 2, b.top + (1 - p.y) * b.height / 2];
+        }"""
+        middle = (action.start + action.end) / 2
+        at = browser.ask(where, [number, middle, "way"])
+        browser.ask("() => (replay.page.cell.showPaths(true), replay.seek(0))")
+        browser.page.mouse.click(*at)
+        chosen = browser.ask("""() => {
+            const { clock, transition, course, cell } = replay.page;
+            return [clock.t, course.net.transitions[transition].name, cell.isGoing];
+        }""")
+        tcp = "([robot, t]) => { const f = replay.tcp(robot, t); return [f[3], f[7], f[11]]; }"
+        away = np.subtract(
+            browser.ask(tcp, [number, chosen[0]]), browser.ask(tcp, [number, middle])
+        )
+        assert np.linalg.norm(away) < 0.2, "it is at a moment when the tool was there"
+        browser.ask("() => replay.page.cell.showPaths(false)")
+        at = browser.ask(where, [number, middle, "arm"])
+        browser.page.mouse.click(*at)
+        assert browser.ask("() => replay.page.clock.t") == pytest.approx(middle)
+        selected = browser.ask(
+            "() => replay.page.course.net.transitions[replay.page.transition].name"
+        )
+        assert selected == action.transition
+        browser.ask("() => replay.page.cell.showPaths(true)")
+
     def test_keys_move_the_cursor(self, browser: Page, shown: Shown) -> None:
         browser.page.locator("body").click(position={"x": 200, "y": 12})
         keys = browser.page.keyboard
@@ -296,6 +352,14 @@ class TestRivetingCell:
             return seen.map((n) => n / timeline.lanes.length);
         }""")
         assert drawn == [1, 0, 1, 1, 1, 1]
+
+    def test_all_has_names_and_stands_out_by_day_and_night(self, browser: Page) -> None:
+        browser.ask("() => replay.seek(33.42)")
+        for _ in range(2):
+            browser.ask("() => replay.page.frame.dark()")
+            for name in ("Messages", "Steps", "Code", "Watch", "Run"):
+                browser.page.get_by_role("tab", name=name).click()
+                assert complaints(browser) == [], name
 
     def test_nothing_was_complained_of_or_asked_for(self, browser: Page, shown: Shown) -> None:
         assert browser.errors == []

@@ -27,6 +27,22 @@ CHANGES = (
 )  # fmt: skip
 SENSOR = '[sensors.eye]\nvariable = "there"\nsees = "infeed"\npart = "box"\n'
 
+MORE = """
+[zones.tip]
+pose = { x = 1.35, z = 1.37 }
+size = [0.2, 0.2, 0.2]
+[zones.aside]
+pose = { x = 1.35, y = 1.0, z = 1.37 }
+size = [0.2, 0.2, 0.2]
+[devices.feeder.axes.flap]
+kind = "swing"
+pose = { x = 3.0 }
+from = 0.0
+to = 90.0
+home = 30.0
+objects = [{ name = "leaf", size = [0.2, 0.02, 0.2], pose = { z = 0.5 } }]
+"""
+
 
 def cell(folder: Path, sensor: str = SENSOR) -> Path:
     net = NET
@@ -45,6 +61,25 @@ def test_it_says_whether_a_part_is_there(tmp_path: Path) -> None:
     assert found.record.verdict == "finished", found.record.reason
     said = [e["value"] for e in found.record.events if e.get("event") == "sense"]
     assert said == [True, False] and list(found.summary["parts"]) == ["box.1"]
+
+
+@pytest.mark.parametrize(
+    ("sees", "first"),
+    [
+        ('"tip"', True),  # the tool of the arm at HOME
+        ('"aside"', False),
+        ('"feeder.flap"\nat = 30.0', True),
+        ('"feeder.flap"\nat = 0.0', False),
+    ],
+)
+def test_it_sees_arms_in_zones_and_where_axes_are(tmp_path: Path, sees: str, first: bool) -> None:
+    toml = f'[sensors.eye]\nvariable = "there"\nsees = {sees}\n{MORE}'
+    d = Diagnostics()
+    options = RunOptions(tmp_path / "run", backend="fake", looks=False, checked=False)
+    found = run_cell(cell(tmp_path / "cell", toml), options, d)
+    assert found is not None, [i.message for i in d]
+    said = [e["value"] for e in found.record.events if e.get("event") == "sense"]
+    assert said[0] is first
 
 
 def test_what_it_says_is_left_open(tmp_path: Path) -> None:

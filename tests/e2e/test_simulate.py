@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import os
 import pty
-import shutil
 import signal
 import subprocess
 import sys
@@ -332,44 +331,35 @@ def test_a_trace_is_not_written_over_what_is_read(tmp_path: Path) -> None:
 # --- the compiler and its cache --------------------------------------------------------------------
 
 
-def _environment(tmp_path: Path, **changes: str) -> dict[str, str]:
-    """With a cache of its own, for which everything is compiled anew: as fast as that can be done."""
-    return {
-        **os.environ,
-        "XDG_CACHE_HOME": str(tmp_path / "cache"),
-        "CC": str(_compiler(tmp_path / "quick-cc")),
-        **changes,
-    }
+def _environment(tmp_path: Path, compiler: Path) -> dict[str, str]:
+    """With a cache of its own, for which everything is compiled anew."""
+    return {**os.environ, "XDG_CACHE_HOME": str(tmp_path / "cache"), "CC": str(compiler)}
 
 
-def _compiler(path: Path, before: str = "", after: str = "") -> Path:
-    """A compiler that does not optimize, and what it does besides."""
-    real = shutil.which("gcc") or shutil.which("cc")
-    path.write_text(
-        f'#!/bin/sh\n{before}\nfor a; do shift; [ "$a" = -O2 ] && a=-O0; set -- "$@" "$a"; done\n'
-        f'{real} "$@" || exit 1\n{after}\nexit 0\n'
-    )
+def _compiler(path: Path, usual: Path, before: str = "", after: str = "") -> Path:
+    """A compiler, and what it does besides."""
+    path.write_text(f'#!/bin/sh\n{before}\n{usual} "$@" || exit 1\n{after}\nexit 0\n')
     path.chmod(0o755)
     return path
 
 
-def test_a_second_run_does_not_compile(tmp_path: Path) -> None:
+def test_a_second_run_does_not_compile(tmp_path: Path, once_compiler: Path) -> None:
     net = write(COUNTER, tmp_path / "cell.cpn")
-    result(net, env=_environment(tmp_path))
+    result(net, env=_environment(tmp_path, once_compiler))
     folder = tmp_path / "cache" / "pn2code" / "programs"
     kept = sorted(p.name for p in folder.iterdir())
     assert [n.split("-")[0] for n in kept] == ["simulate", "simulate"]
     # A compiler that fails when it compiles, but still says its version.
-    fake = _compiler(tmp_path / "cc", before='[ "$1" = --version ] || exit 1')
-    environment = _environment(tmp_path, CC=str(fake))
+    fake = _compiler(tmp_path / "cc", once_compiler, before='[ "$1" = --version ] || exit 1')
+    environment = _environment(tmp_path, fake)
     other = write(COUNTER.replace("1000", "999"), tmp_path / "other.cpn")
     assert "build-failed" in simulate(other, "--engine", "compiled", env=environment, code=1).stderr
     assert sorted(p.name for p in folder.iterdir()) == kept, "nothing is left behind"
 
 
-def test_many_at_the_same_time(tmp_path: Path) -> None:
+def test_many_at_the_same_time(tmp_path: Path, once_compiler: Path) -> None:
     net = write(COUNTER, tmp_path / "cell.cpn")
-    environment = _environment(tmp_path)
+    environment = _environment(tmp_path, once_compiler)
     processes = [
         subprocess.Popen(
             command(net, "--json", "--engine", "compiled"), stdout=subprocess.PIPE, env=environment
@@ -385,7 +375,7 @@ def test_many_at_the_same_time(tmp_path: Path) -> None:
 def test_without_a_compiler(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "ziglang", None)  # not installed
     net = write(COUNTER, tmp_path / "cell.cpn")
-    environment = _environment(tmp_path, PATH=str(tmp_path), CC="")
+    environment = {**_environment(tmp_path, Path()), "PATH": str(tmp_path), "CC": ""}
     done = simulate(net, "--engine", "compiled", env=environment, code=2)
     assert "a C compiler is not installed" in done.stderr and "--engine reference" in done.stderr
     done = simulate(net, "--json", env=environment)
@@ -393,25 +383,25 @@ def test_without_a_compiler(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> 
     assert "a C compiler is not installed" in done.stderr
 
 
-def test_a_cache_that_cannot_be_written(tmp_path: Path) -> None:
+def test_a_cache_that_cannot_be_written(tmp_path: Path, once_compiler: Path) -> None:
     net = write(COUNTER, tmp_path / "cell.cpn")
     (tmp_path / "cache").write_text("a file, no folder")
-    found = result(net, "--engine", "compiled", env=_environment(tmp_path))
+    found = result(net, "--engine", "compiled", env=_environment(tmp_path, once_compiler))
     assert (found["engine"], found["steps"]) == ("compiled", 1000)
     (tmp_path / "cache").unlink()
     folder = tmp_path / "cache" / "pn2code"
     folder.mkdir(parents=True, mode=0o700)
     (folder / "programs").write_text("a file, no folder")
-    done = simulate(net, "--engine", "compiled", env=_environment(tmp_path))
+    done = simulate(net, "--engine", "compiled", env=_environment(tmp_path, once_compiler))
     assert "program-cache" in done.stderr
 
 
-def test_a_program_that_comes_to_a_bad_end(tmp_path: Path) -> None:
+def test_a_program_that_comes_to_a_bad_end(tmp_path: Path, once_compiler: Path) -> None:
     """As it happens when there is not enough memory."""
     killed = r'[ "$a" = program ] && printf "#!/bin/sh\nkill -9 \$\$\n" > program'
-    fake = _compiler(tmp_path / "cc", after=f"for a; do {killed}; done")
+    fake = _compiler(tmp_path / "cc", once_compiler, after=f"for a; do {killed}; done")
     net = write(COUNTER, tmp_path / "cell.cpn")
-    environment = _environment(tmp_path, CC=str(fake))
+    environment = _environment(tmp_path, fake)
     done = simulate(net, "--engine", "compiled", env=environment, code=1)
     assert "simulator-failed" in done.stderr and "signal 9" in done.stderr
 

@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from helpers import linker
 from pn2code.base.resources import cnative_folder
 from pn2code.cell.config import CellConfig
 from pn2code.cell.divide import divide
@@ -120,6 +121,7 @@ class Workshop:
         command = [
             self.compiler,
             *self.flags,
+            *linker.QUICK,
             "-o",
             str(program),
             *map(str, objects),

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from helpers import linker
 from helpers.compiled import WARNINGS
 from helpers.graph_facts import Facts
 from pn2code.base.resources import cnative_folder
@@ -35,6 +36,7 @@ THREADS = ("-g1", "-O0", "-fsanitize=thread")
 SECONDS = 600
 """Ends what hangs."""
 LIBRARY = "libnet.so"
+SHARED = ("-shared", *linker.QUICK)
 OTHER_HOSTS = tuple(name for name in HOSTS if name != "explore")
 
 
@@ -104,7 +106,7 @@ class Explorers:
         source = cnative_folder() / "src"
         sources = [f for f in sorted(source.rglob("*.c")) if not f.name.startswith(OTHER_HOSTS)]
         (host / "stub.c").write_text("char pn_net[1];\n")
-        made._run(host, "-shared", "stub.c", "-o", LIBRARY)
+        made._run(host, *SHARED, "stub.c", "-o", LIBRARY)
         made._run(host, "-c", *map(str, sources))
         objects = [str(f) for f in sorted(host.glob("*.o"))]
         made._run(host, "-rdynamic", *objects, LIBRARY, "-lm", "-o", "explore")
@@ -146,7 +148,7 @@ class Explorers:
             command += [f"-I{cnative_folder() / 'include'}", f"-I{folder}", "net.c", "-o", LIBRARY]
             if not subprocess.run(command, cwd=folder, capture_output=True, check=False).returncode:
                 return
-        self._run(folder, "-shared", "net.c", "-o", LIBRARY)
+        self._run(folder, *SHARED, "net.c", "-o", LIBRARY)
 
     def explore(
         self,

@@ -164,6 +164,18 @@ jaw = [0.04, 0.1, 0.05]
 colour = [0.2, 0.2, 0.2]
 holds = "here"
 
+[devices.belt.axes.conveyor]
+kind = "belt"
+pose = { x = 6.0, z = 0.5, yaw = 30.0 }
+length = 1.5
+width = 0.4
+height = 0.2
+speed = 0.25
+acceleration = 0.4
+jerk = 4.0
+colour = [0.1, 0.1, 0.1]
+stop = "here"
+
 [sensors.gauge]
 variable = "v"
 file = "gauge.txt"
@@ -172,6 +184,16 @@ seed = 5
 sees = "here"
 part = "box"
 says = "how thick the part is"
+
+[sensors.shut]
+variable = "w"
+sees = "belt.door"
+at = 0.8
+
+[zones.front]
+pose = { x = 1.0, yaw = 10.0 }
+size = [1.0, 2.0, 2.0]
+max_speed = 0.25
 
 [scene]
 floor = false
@@ -275,7 +297,7 @@ about = "net"
 
 _NEEDED = {
     "primitives": ("parts", "places", "frames", "robots", "devices"),
-    "sensors": ("parts", "places", "robots"),
+    "sensors": ("parts", "places", "robots", "devices"),
     "report": ("channel", "primitives", "parts", "places", "frames", "robots", "devices"),
     "devices": ("places",),
     "frames": ("robots", "parts"),
@@ -350,7 +372,7 @@ def read(folder: Path, data: dict[str, Any], section: str) -> tuple[str, Diagnos
         [(p.name, p.says, p.holds.text, p.expect, p.fair, p.of_net) for p in from_cell(config, d)],
     ]
     if cell is not None:
-        shown += [cell.motion, cell.scene, cell.parts, cell.places, cell.frames]
+        shown += [cell.motion, cell.scene, cell.parts, cell.places, cell.frames, cell.zones]
         shown += [
             (r.name, r.arm.name, r.tool and r.tool.name, r.base, r.home, r.branch, r.turning)
             for r in cell.robots

@@ -1,8 +1,9 @@
 """What need not be quick is compiled by `tcc`, where it is there: ten times as fast as by gcc without optimization.
 
-Only what is generated, and only where nothing but its answers is looked at: nets of explorers, and what `make` builds
-with `CFLAGS=-O0`; the runtime is compiled by gcc. What `tcc` does not accept is compiled as usual, which also says what
-is wrong with it. That C compiles without warnings is looked at elsewhere (`helpers.compiled`).
+Only what is generated, and only where nothing but its answers is looked at: nets of explorers and simulators, and what
+`make` builds with `CFLAGS=-O0`; the runtime is compiled by gcc. What `tcc` does not accept is compiled as usual, which
+also says what is wrong with it. That C compiles without warnings is looked at elsewhere (`helpers.compiled`). They are
+linked by `helpers.linker`.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from pathlib import Path
 
 import pytest
 
+from helpers import linker
 from pn2code.diagnostics import Diagnostics
 from pn2code.emission.output import OutputFile
 from pn2code.toolchain import programs
@@ -26,14 +28,17 @@ MARK = "-DPN_TESTED"
 
 SUPPORT = "libtcc1.a"
 """What its objects call where gcc has instructions of its own, as for a double of an unsigned number."""
+HOSTS = ("explore", "simulate")
+"""Whose nets it compiles: alone, also where users have them in one piece with a source of the host."""
 STRICT = ("-Werror", "-Wimplicit-function-declaration")
 """Functions of gcc that it does not have are refused, instead of being missed when all is linked."""
+WHOLE = '-DPN_NET_SOURCE="net.c"'
 SCRIPT_NAME = "quick-cc"
 SCRIPT = """#!/bin/sh
 case " $* " in
     *" -fsanitize"* | *" --coverage "*) ;;
     *" -c "*" net.c " | *" -c "*" cell_config.c ") {tiny} {strict} "$@" 2>/dev/null && exit 0 ;;
-    *" -o "*) exec {usual} "$@" {support} ;;
+    *" -o "*) exec {usual} "$@" {support} {linker} ;;
 esac
 exec {usual} "$@"
 """
@@ -64,7 +69,13 @@ class QuickMake:
         if library is not None and usual is not None and not script_at.exists():
             with tempfile.NamedTemporaryFile("w", dir=folder, delete=False) as script:
                 script.write(
-                    SCRIPT.format(tiny=tiny, strict=" ".join(STRICT), usual=usual, support=library)
+                    SCRIPT.format(
+                        tiny=tiny,
+                        strict=" ".join(STRICT),
+                        usual=usual,
+                        support=library,
+                        linker=" ".join(linker.QUICK),
+                    )
                 )
             Path(script.name).chmod(0o755)
             Path(script.name).replace(script_at)
@@ -95,15 +106,17 @@ def use(changed: pytest.MonkeyPatch) -> tuple[str, ...]:
     usual = programs._Builder._compiler
 
     def compiled(builder: programs._Builder, room: Path, *arguments: str, d: Diagnostics) -> bool:
-        is_net = arguments[-2:] == ("-c", "net.c") and builder.host.name == "explore"
+        is_net = arguments[-2:] == ("-c", "net.c") and builder.host.name in HOSTS
         is_quick = {"-O0", MARK} <= set(builder.flags) and not builder.interrupted()
+        if is_quick and WHOLE in arguments and builder.host.name in HOSTS:
+            return False
         if is_quick and is_net:
             command = [tiny, *STRICT, *builder.flags, *arguments]
             done = subprocess.run(command, cwd=room, capture_output=True, check=False)
             if done.returncode == 0:
                 return True
         if MARK in builder.flags and "-c" not in arguments:
-            arguments = (*arguments, library)
+            arguments = (*arguments, library, *linker.QUICK)
         return usual(builder, room, *arguments, d=d)
 
     changed.setattr(programs._Builder, "_compiler", compiled)

@@ -87,18 +87,37 @@ overSeam = { command = "move_joint", frame = "seam" }
             f"[robots.robot{i}.axes.rail{i}]\ndirection = {across[i - 1]}\nfrom = -0.5\nto = 0.5\n"
         )
     x, high = apart / 2.0, random.uniform(0.3, 0.6)
+    y, radius = random.uniform(-0.4, 0.4), random.uniform(0.2, 0.45)
     toml += f"""[robots.robot1.axes.plate]
 kind = "turntable"
-pose = {{ x = {x:.3f}, y = {random.uniform(-0.4, 0.4):.3f}, z = {high:.3f} }}
+pose = {{ x = {x:.3f}, y = {y:.3f}, z = {high:.3f} }}
 from = -200.0
 to = 200.0
-radius = {random.uniform(0.2, 0.45):.3f}
+radius = {radius:.3f}
 objects = [{{ name = "work", size = [{random.uniform(0.2, 0.9):.3f}, 0.1, 0.1], pose = {{ z = 0.05 }} }}]
 [frames.seam]
 parent = "robot1.plate"
 z = 0.25
 """
+    if random.random() < 0.7:
+        toml += _stack(x, y, high, radius, random)
     return "\n".join(out) + "\n", toml
+
+
+def _stack(x: float, y: float, high: float, radius: float, random: Random) -> str:
+    """Blocks on the plate, one on the other, which turn with it; and often a pillar on the floor beside it."""
+    tall, side = random.uniform(0.03, 0.12), random.choice([-1.0, 1.0])
+    at = [(x + random.uniform(-0.1, 0.1), y + side * 0.13, high + tall / 2.0)]
+    if random.random() < 0.5:
+        at.append((at[0][0], at[0][1], at[0][2] + tall))
+    places = ", ".join(f"{{ x = {a:.4f}, y = {b:.4f}, z = {c:.4f} }}" for a, b, c in at)
+    text = f'[parts.block]\nkind = "box"\nsize = [0.12, 0.12, {tall:.4f}]\nat = [{places}]\n'
+    if random.random() < 0.6:
+        length = random.uniform(0.2, high + 0.2)
+        beside = y - side * (radius + random.uniform(0.06, 0.4))
+        place = f"{{ x = {x:.4f}, y = {beside:.4f}, z = {length / 2.0:.4f} }}"
+        text += f'[parts.pillar]\nkind = "cylinder"\nradius = 0.04\nlength = {length:.4f}\nat = [{place}]\n'
+    return text
 
 
 def _external(robot: int, random: Random) -> str:

@@ -47,6 +47,7 @@ class Durations:
         functions: of one case of a test function, on the average.
         files: of one test of a file that has no other entry, on the average.
         seconds: of the whole suite, all tests and fixtures added up; 0 when it is not known.
+        cost: of the whole suite, in pieces of work of the processor (`pace.budget`); 0 when it is not known.
     """
 
     tests: dict[str, float] = field(default_factory=dict)
@@ -54,6 +55,7 @@ class Durations:
     functions: dict[str, float] = field(default_factory=dict)
     files: dict[str, float] = field(default_factory=dict)
     seconds: float = 0.0
+    cost: float = 0.0
 
     @staticmethod
     def of(recorded: Mapping[str, Any], committed: Mapping[str, Any]) -> Durations:
@@ -64,6 +66,7 @@ class Durations:
             dict(committed.get("functions", {})),
             dict(committed.get("files", {})),
             committed.get("seconds", 0.0),
+            committed.get("cost", 0.0),
         )
 
     def of_test(self, test: str) -> float:
@@ -100,6 +103,7 @@ class Durations:
         fixtures = {f: seconds for f, seconds in self.fixtures.items() if seconds >= LISTED_S}
         return {
             "seconds": round(self.total(), 1),
+            "cost": round(self.cost),
             "fixtures": _rounded(fixtures),
             "files": _rounded(files),
             "functions": _rounded(listed),

@@ -2,7 +2,8 @@
 
 With `--estimate` there is a line now and then that says how much is left, instead of a dot for each test. Each run
 records what its tests took (in pytest's cache); `--record FILE` writes the table of the project. The durations are
-those of the test processes, so with several of them they add up to more than the run takes.
+those of the test processes, so with several of them they add up to more than the run takes. A whole run that costs half
+as much again as the table says fails (`pace.budget`).
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ from typing import Any
 
 import pytest
 
+from helpers.thorough import THOROUGH
+from pace.budget import Meter, is_exceeded
 from pace.choose import Asked, chosen, longest_first
 from pace.durations import Durations
 from pace.estimate import Estimate, clock
@@ -33,8 +36,9 @@ _AGAIN_S = 0.5
 """On a terminal the line is written anew after that time."""
 _SLOWEST = 20
 _SLOW_S = 0.5
-EXCESS = 1.5
-"""A whole run that takes that many times what the table says is worth a warning."""
+_LOOK_EVERY = 500
+"""So many tests after each other the pace of the machine is looked at."""
+_COST = "pace-cost"
 _SHARED = ("session", "package", "module", "class")
 _THRESHOLDS = (500_000, 20, 20)
 """Those of the garbage collector, as `cli.main` sets them: nets are trees, in which it finds nothing."""
@@ -70,6 +74,11 @@ class Pace:
         self._began = time.monotonic()
         self._told_at, self._told_share = 0.0, 0.0
         self._is_whole = False
+        self._meter = Meter()
+        self._finished = 0
+        self._costs: list[
+            float | None
+        ] = []  # of processes that run tests for this one; None: it got lost
 
     def _kept(self) -> dict[str, Any]:
         cache = getattr(self._config, "cache", None)
@@ -225,17 +234,47 @@ class Pace:
         terminalreporter.write_line(f"{total:6.0f} s  together, in all processes")
         if self._is_whole and expected:
             terminalreporter.write_line(f"{expected:6.0f} s  recorded in {TABLE.name}")
-            if total > EXCESS * expected:
-                terminalreporter.write_line(
-                    f"warning: the tests took {total / expected:.1f} times what is recorded: the machine is busy, "
-                    "or something has become slow (see the slowest above)",
-                    yellow=True,
-                )
+        if self._is_too_expensive():
+            terminalreporter.write_line(
+                f"FAILED: the tests cost {self._took.cost / self._known.cost:.1f} times the processor time that is "
+                f"recorded in {TABLE.name}, and not because the machine is slow or busy: see the slowest above; if "
+                f"they are worth it, record it anew",
+                red=True,
+            )
 
-    def pytest_sessionfinish(self) -> None:
+    def _cost(self) -> float:
+        """Of all processes that run tests; 0 if one of them cannot say."""
+        if not self._costs:
+            return self._meter.cost()
+        told = [cost for cost in self._costs if cost is not None]
+        return sum(told) if len(told) == len(self._costs) else 0.0
+
+    def _is_too_expensive(self) -> bool:
+        is_judged = self._is_whole and not THOROUGH
+        return is_judged and is_exceeded(self._took.cost, self._known.cost)
+
+    @pytest.hookimpl(optionalhook=True)
+    def pytest_testnodedown(self, node: Any) -> None:
+        """A process that ran tests has ended, and tells what it cost."""
+        self._costs.append(getattr(node, "workeroutput", {}).get(_COST))
+
+    def pytest_runtest_logfinish(self) -> None:
+        """Where tests run."""
+        self._finished += 1
+        if self._finished % _LOOK_EVERY == 0:
+            self._meter.look()
+
+    def pytest_sessionfinish(self, session: pytest.Session) -> None:
         """Keeps what was measured."""
-        if self._is_worker or not self._took.tests:
+        if self._is_worker:
+            self._meter.look()
+            self._config.workeroutput[_COST] = self._meter.cost()  # type: ignore[attr-defined]
             return
+        if not self._took.tests:
+            return
+        self._took.cost = self._cost()
+        if self._is_too_expensive() and session.exitstatus == pytest.ExitCode.OK:
+            session.exitstatus = pytest.ExitCode.TESTS_FAILED
         cache = getattr(self._config, "cache", None)
         if cache is not None:
             cache.set(_RECORD, self._merged().as_record())

@@ -19,7 +19,6 @@ import statistics
 import subprocess
 import sys
 import tempfile
-import threading
 from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
@@ -83,20 +82,14 @@ class _Watchers(_Answers):
         self._reading: list[subprocess.Popen[str]] = []
 
     def begun(self, engine: Engine) -> None:
-        """From now on the folder says where the cell runs."""
-        assert isinstance(engine, RealtimeEngine)
-        self._engine, self._from = engine, 0
+        """The folder says where the cell runs, and nothing has happened yet: the run waits for those who watch."""
         command = [sys.executable, "-m", "pn2code", "watch", str(self._out), "--no-browser"]
         for _ in range(self._count):
             self._watching.append(subprocess.Popen(command, stdout=subprocess.PIPE, text=True))
-        threading.Thread(target=self._open, daemon=True).start()
-
-    def _open(self) -> None:
         for one in self._watching:
             assert one.stdout is not None
             if words := one.stdout.readline().split():
                 self._reading.append(_open(words[-1], 1))
-        self._from = len(self._engine.punctuality.answers)
 
     def ended(self, engine: Engine) -> None:
         """The watchers end; they must have seen something."""
@@ -109,7 +102,6 @@ class _Watchers(_Answers):
             raise SystemExit(
                 f"the watchers were told too little: {told} bytes; try a lower --speed"
             )
-        self.seconds = self.seconds[self._from :]  # while they started they were no watchers yet
 
 
 def answers(cell: Path, pages: int | None, speed: float, watchers: int = 0) -> list[float]:

@@ -113,8 +113,8 @@ def measure(folder: Path | None, repeat: int, minutes: int) -> int:
     late = [gap for _, gap, _ in smooth]
     print(f"| between two frames, 95 % | {median(late):.0f} ms | {_spread(late)} | |")
     for what, rows in (("", smooth), (", SwiftShader draws all of the page", whole)):
-        work = [each for _, _, each in rows]
-        print(f"| processor time for a frame{what} | {median(work):.0f} ms | {_spread(work)} | |")
+        took = [each for _, _, each in rows]
+        print(f"| processor time for a frame{what} | {median(took):.0f} ms | {_spread(took)} | |")
     others = [rate for rate, _, _ in whole]
     print(f"| frames a second, the same | {median(others):.0f} | {_spread(others)} | |")
     print(
@@ -143,11 +143,11 @@ def _first(browser: Any, file: Path) -> tuple[float, float]:
     """Seconds to the first picture, and processor time of all processes of the browser until then (s)."""
     with opened(browser, viewport=_SIZE) as found:
         found.page.add_init_script(_COUNTING)
-        before = _work()
+        before = work()
         found.open(file)
         found.wait("seen.first > 0")
-        work = _work() - before
-        return float(found.ask("() => seen.first")) / 1000, work
+        took = work() - before
+        return float(found.ask("() => seen.first")) / 1000, took
 
 
 def _smooth(browser: Any, file: Path) -> tuple[float, float, float]:
@@ -157,12 +157,12 @@ def _smooth(browser: Any, file: Path) -> tuple[float, float, float]:
         found.open(file)
         found.wait("seen.first > 0")
         time.sleep(1.0)
-        before = _work()
+        before = work()
         rate, gap = found.ask(_PLAY, 1000 * _PLAYED_S)
-        return float(rate), float(gap), 1000 * (_work() - before) / max(rate * _PLAYED_S, 1.0)
+        return float(rate), float(gap), 1000 * (work() - before) / max(rate * _PLAYED_S, 1.0)
 
 
-def _work() -> float:
+def work() -> float:
     """Processor time of all processes that this one has started, and of those that they have (s)."""
     children: dict[int, list[int]] = {}
     seconds: dict[int, float] = {}

@@ -1,6 +1,6 @@
 """The machine-tending family: n parts through feeder, loader, mill and finisher onto pallets; two arms, three devices.
 
-    python -m tools.bench.tending --parts 4 FOLDER           # cell.cpn and cell.toml
+    python -m tools.bench.tending --parts 4 FOLDER           # cell.cpn and cell.toml; --properties: what it must not do
     python -m tools.bench.tending --measure 2,4,6             # markings with and without partial order
     python -m tools.bench.tending --reduced --measure 8,12    # with it only
 
@@ -209,6 +209,17 @@ _DEVICE = """
 """
 
 
+_PROPERTIES = {
+    "ends": "ctl AF tokens(Supervisor'Finished) = 1",
+    "stops nowhere else": "deadlock free except tokens(Supervisor'Finished) = 1",
+    "arm 1 has one job": "mutex Supervisor'Feeding, Supervisor'Carrying",
+    "arm 2 has one job": "mutex Supervisor'Passing, Supervisor'Stowing",
+    "the mill has one part": "bound Supervisor'Milling <= 1",
+    "the loader is free when it is fed": "never tokens(Supervisor'Loading) = 1 && enabled(Supervisor'Feed)",
+    "both arms work": "reachable tokens(PageArm1'Gripped) = 1 && tokens(PageArm2'Gripped) = 1",
+}
+
+
 def net(parts: int) -> str:
     """The net, as `helpers.netbuilder` reads it."""
     top, ports, sockets = [], [], []
@@ -281,6 +292,14 @@ def write(folder: Path, parts: int) -> Path:
     return folder
 
 
+def write_properties(cell: Path) -> None:
+    """What is asked of it, beside the net."""
+    rows = (
+        f'[[property]]\nname = "{name}"\nholds = "{holds}"\n' for name, holds in _PROPERTIES.items()
+    )
+    (cell / "cell.properties.toml").write_text("\n".join(rows), encoding="utf-8")
+
+
 def measure(parts: int, limits: list[str], *options: str) -> dict[str, Any]:
     """What `pn2code verify` says of the closed net; `wall` are the seconds of the whole command."""
     with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
@@ -318,10 +337,13 @@ def main() -> int:
         "--states", type=int, default=10_000_000, help="most markings (default: %(default)s)"
     )
     parser.add_argument("--reduced", action="store_true", help="with partial order only")
+    parser.add_argument("--properties", action="store_true", help="write some of them, too")
     parser.add_argument("folder", type=Path, nargs="?")
     given = parser.parse_args()
     if given.folder is not None:
         print(write(given.folder, given.parts))
+        if given.properties:
+            write_properties(given.folder)
     limits = ["--max-states", str(given.states)]
     if given.measure:
         print("| parts | reduction | markings | dead | seconds | MiB | whole command, s |")

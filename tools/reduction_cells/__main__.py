@@ -19,6 +19,7 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))  # as pytest does
 
 import pytest
+from tools.reduction_cells.asked import WRONG_PROPERTIES
 from tools.reduction_cells.bed import Verdict, judge
 from tools.reduction_cells.files import ANY, FORGETFUL
 from tools.reduction_cells.limited import WRONG_LIMITS
@@ -43,6 +44,9 @@ def main() -> int:
     parser.add_argument(
         "--family", choices=FAMILIES, default="any", help="of which cells (default: %(default)s)"
     )
+    parser.add_argument(
+        "--verdicts", action="store_true", help="compare verdicts only, not the spaces as well"
+    )
     parser.add_argument("--record", type=Path, help="where what is done is written down")
     parser.add_argument("--seconds", type=float, help="no further cell is begun after that")
     options = parser.parse_args()
@@ -62,6 +66,7 @@ def main() -> int:
                     mutants=options.mutants,
                     wants_medium=seed % options.medium == 0,
                     is_shop=is_shop,
+                    only_verdicts=options.verdicts,
                 )
             for text in done[seed].wrong:
                 print(f"cell {seed}: {text}", flush=True)
@@ -82,7 +87,7 @@ def summary(verdicts: list[Verdict], *, mutants: bool) -> int:
         print(f"  {count:9,} {name}")
     names = (*MUTANTS, *WRONG_LIMITS)
     missed = [name for name in names if not shown[name]] if mutants else []
-    for name in (*names, NO_GROUPS, RASH, *FORGETFUL, ANY) if mutants else ():
+    for name in (*names, NO_GROUPS, RASH, *WRONG_PROPERTIES, *FORGETFUL, ANY) if mutants else ():
         print(f"  {shown[name]:9,} notice: {name}")  # some take rare cells
     for name in missed:
         print(f"not noticed: {name}")

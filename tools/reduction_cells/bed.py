@@ -5,7 +5,8 @@
   both or in none, and what is asked about single places, groups and orders has the same answers.
 * *limits*: the states in which tokens are counted up to a limit stand for all markings: whatever occurs, or is held, in
   these does so in those, and what is said of those is true of these.
-* *the checks of the supervisor*: with turns and without, wherever turns say anything; and with limits.
+* *the checks of the supervisor*: with turns and without, wherever turns say anything; and with limits, which tell what
+  is so of random properties as well (`asked`).
 * *the medium*: the same; and what the cell as it runs says of its files (`files`).
 * *the closed net*: what is said of it where its tokens are counted up to a limit (`closed`).
 """
@@ -20,7 +21,7 @@ from random import Random
 from typing import Any
 
 from tools.adversary.cells import random_cell as adversary_cell
-from tools.reduction_cells import closed, files
+from tools.reduction_cells import asked, closed, files
 from tools.reduction_cells.flows import flow
 from tools.reduction_cells.limited import Limited
 from tools.reduction_cells.mutants import MUTANTS, NO_GROUPS, RASH
@@ -35,6 +36,7 @@ from pn2code.channel_model import check as medium
 from pn2code.channel_model.rules import Rules
 from pn2code.cli.nets import open_net
 from pn2code.diagnostics import Diagnostics
+from pn2code.properties import meaning as m
 from pn2code.verdict.opened import OpenNet
 from pn2code.verify.controller import by_turns, control
 from pn2code.verify.controller.control_types import Control, Plan
@@ -46,6 +48,7 @@ from pn2code.verify.exploring.programs import Generated, Sizes
 from pn2code.verify.exploring.result import Bounds, Exploration
 from pn2code.verify.exploring.turns import Turns
 
+NONE = m.Properties()
 MOST = 40_000
 """States of a cell; larger ones are left out."""
 
@@ -92,8 +95,13 @@ class _Cell:
             arms=Arms.of(opened.config, Diagnostics()),
         )
 
-    def checked(self, turns_from: int | None, counts_from: int | None = None) -> Control | None:
-        """The checks of the supervisor."""
+    def checked(
+        self,
+        turns_from: int | None,
+        counts_from: int | None = None,
+        properties: m.Properties = NONE,
+    ) -> Control | None:
+        """The checks of the supervisor, and properties."""
         limits = Limits(
             max_states=MOST,
             threads=1,
@@ -101,7 +109,9 @@ class _Cell:
             turns_from=turns_from,
             counts_from=counts_from,
         )
-        return control.examine(self.partition, self.plan, limits, Diagnostics())
+        options = replace(self.plan.options, predicates=properties.predicates)
+        plan = replace(self.plan, properties=properties, options=options)
+        return control.examine(self.partition, plan, limits, Diagnostics())
 
     def medium(self, turns_from: int | None) -> medium.Answer:
         """That of its medium."""
@@ -201,9 +211,15 @@ def _sorted(b: Bounds) -> Bounds:
 
 
 def judge(
-    seed: int, folder: Path, *, mutants: bool, wants_medium: bool, is_shop: bool = False
+    seed: int,
+    folder: Path,
+    *,
+    mutants: bool,
+    wants_medium: bool,
+    is_shop: bool = False,
+    only_verdicts: bool = False,
 ) -> Verdict:
-    """Makes a cell, and compares."""
+    """Makes a cell, and compares; `only_verdicts`: not the spaces as well."""
     make(seed, folder, is_shop=is_shop)
     d = Diagnostics()
     opened = open_net(folder, {}, warnings=d)
@@ -219,10 +235,26 @@ def judge(
         return Verdict((), frozenset(), Counter(["not modelled"]))
     if loose is None:
         return Verdict((), frozenset(), Counter(["no turns"]))
-    running, table = loose
     counts: Counter[str] = Counter(["cells"])
     wrong: list[str] = []
     shown: set[str] = set()
+    if not only_verdicts:
+        wrong += _of_spaces(cell, loose, counts, shown if mutants else None)
+    r = Random(seed)
+    wrong += _of_checks(cell, r, counts)
+    wrong += _of_properties(cell, r, counts, shown if mutants else None)
+    wrong += closed.judged(opened, partition, counts)
+    if wants_medium:
+        wrong += _of_medium(cell, counts)
+        wrong += files.judged(partition, opened.storage, counts, shown if mutants else None)
+    return Verdict(tuple(wrong), frozenset(shown), counts)
+
+
+def _of_spaces(
+    cell: _Cell, loose: tuple[Running, Turns], counts: Counter[str], shown: set[str] | None
+) -> Iterator[str]:
+    """`shown` gets the names of mutants that are noticed, if they are tried."""
+    running, table = loose
     for first in (True, False):
         space = _Space(cell, running, first=first)
         whole = space.explored(None)
@@ -231,7 +263,7 @@ def judge(
             continue
         reduced = space.explored(table)
         if reduced is None or not (reduced.complete or reduced.error):
-            wrong.append("turns do not end")
+            yield "turns do not end"
             continue
         counts["states"] += whole.nodes
         counts["states in turns"] += reduced.nodes
@@ -241,19 +273,14 @@ def judge(
             for kind, row in zip(space.asked(), reduced.answers, strict=False)
             if kind == "restless"
         )
-        wrong += [f"first {first}: {x}" for x in differences(space, whole, reduced)]
-        if mutants:
-            shown |= set(_shown(space, table, whole, reduced))
-        if first:
-            bed = Limited.of(partition, cell.plan)
-            wrong += [] if bed is None else bed.judged(whole, counts)
-            shown |= set() if bed is None or not mutants else bed.shown(whole)
-    wrong += _of_checks(cell, Random(seed).choice(FEW), counts)
-    wrong += closed.judged(opened, partition, counts)
-    if wants_medium:
-        wrong += _of_medium(cell, counts)
-        wrong += files.judged(partition, opened.storage, counts, shown if mutants else None)
-    return Verdict(tuple(wrong), frozenset(shown), counts)
+        yield from (f"first {first}: {x}" for x in differences(space, whole, reduced))
+        if shown is not None:
+            shown.update(_shown(space, table, whole, reduced))
+        bed = Limited.of(cell.partition, cell.plan) if first else None
+        if bed is not None:
+            yield from bed.judged(whole, counts)
+            if shown is not None:
+                shown.update(bed.shown(whole))
 
 
 def _shown(space: _Space, table: Turns, whole: Exploration, reduced: Exploration) -> Iterator[str]:
@@ -268,8 +295,8 @@ def _shown(space: _Space, table: Turns, whole: Exploration, reduced: Exploration
         yield RASH
 
 
-def _of_checks(cell: _Cell, first: int, counts: Counter[str]) -> Iterator[str]:
-    """`first`: states before tokens are counted up to a limit."""
+def _of_checks(cell: _Cell, r: Random, counts: Counter[str]) -> Iterator[str]:
+    first = r.choice(FEW)
     found = cell.checked(MOST, first)
     counted = found if found is not None and found.is_counted else None
     counts["checks with limits"] += counted is not None
@@ -296,6 +323,24 @@ def _of_checks(cell: _Cell, first: int, counts: Counter[str]) -> Iterator[str]:
     yield from _other_checks(reduced, whole, _SIZES)
     places = len(cell.partition.net.places)
     yield from found_differences(reduced.found, whole.found, places)
+
+
+def _of_properties(
+    cell: _Cell, r: Random, counts: Counter[str], shown: set[str] | None
+) -> Iterator[str]:
+    """`shown` gets the names of wrong versions that are noticed, if they are tried."""
+    properties = asked.properties(r, cell.opened, cell.partition)
+    told = asked.OfStates.of(properties, cell.partition, cell.plan)
+    if told is None:
+        return
+    whole = cell.checked(None, properties=properties)
+    if whole is None or whole.found is None or not whole.found.complete:
+        return
+    yield from told.judged(whole, counts)
+    for name, change in asked.WRONG_PROPERTIES.items() if shown is not None else ():
+        other = asked.OfStates.of(properties, cell.partition, cell.plan, change)
+        if other is not None and any(other.wrong(whole)):
+            shown.add(name)
 
 
 def _other_checks(mine: Control, whole: Control, sizes: tuple[str, ...]) -> Iterator[str]:

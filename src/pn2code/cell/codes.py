@@ -19,6 +19,12 @@ CELL_VALUE = register(
     "a value of cell.toml has the wrong type or range",
     "The message says which value was found and what is expected, e.g. a number of seconds above zero.",
 )
+SENSOR_BLIND = register(
+    "sensor-blind",
+    "a sensor looks at a place where no part can ever stand",
+    "`sees` of a sensor names a place of cell.toml. Parts come into the cell where their kind has `at`, and where a "
+    "primitive creates them; if none comes near that place, and no tool takes any, the sensor says `false` each time.",
+)
 INPUT = register(
     "input-file",
     "the input files that were given do not fit the cell",

@@ -108,7 +108,8 @@ class SensorConfig:
         default: what it says where there is no such file; None: the file must be there. With neither, it is drawn
             at random.
         seed: of what is drawn at random.
-        sees: the place at which it looks for a part in a run, of the kind `part` ("": any); "": it sees nothing.
+        sees: the place at which it looks for a part in a run, of the kind `part` ("": any), a zone, or an axis of a
+            device, `mill.door`, which it sees `at` (m, degrees); "": it sees nothing.
         says: what it tells, in plain words.
     """
 
@@ -121,6 +122,7 @@ class SensorConfig:
     sees: str = ""
     part: str = ""
     says: str = ""
+    at: float = 0.0
 
 
 @frozen

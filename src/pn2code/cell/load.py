@@ -7,7 +7,7 @@ one who understands it.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from pathlib import Path, PurePath
 from typing import Any, cast
@@ -26,6 +26,13 @@ from pn2code.cell.config import (
     SupervisorConfig,
 )
 from pn2code.cell.files import check_files, one_name
+from pn2code.cell.named_elsewhere import (
+    along_of,
+    expect_named,
+    fixed_of,
+    seen_by,
+    table_of,
+)
 from pn2code.cell.partition import ChannelKind
 from pn2code.cell.tables import KeyPath, Tables
 from pn2code.cell.toml_file import Locator, read
@@ -49,9 +56,6 @@ from pn2code.cell_file.whole import FILE, LAYOUT, PLACED
 from pn2code.diagnostics import Diagnostics, Origin, PlacedText
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot.commands import EFFECTS, Effect, Handling
-
-AlongAxes = tuple[tuple[str, bool], ...]
-"""External axes of a move, each with whether it slides."""
 
 
 def load(path: Path, d: Diagnostics, *, layout: str | None = None) -> CellConfig | None:
@@ -112,16 +116,16 @@ def _config(
         geometry={
             "robots": {
                 name: {k: v for k, v in table.items() if k != "instance"}
-                for name, table in _table(merged.get("robots")).items()
+                for name, table in table_of(merged.get("robots")).items()
                 if isinstance(table, dict)
             },
             **{key: merged.get(key, {}) for key in PLACED if key != "robots"},
             "devices": {
                 name: {"axes": table["axes"]}
-                for name, table in _table(data.get("devices")).items()
+                for name, table in table_of(data.get("devices")).items()
                 if isinstance(table, dict) and "axes" in table
             },
-            "primitives": _table(data.get("primitives")),
+            "primitives": table_of(data.get("primitives")),
         },
         layouts={
             name: str(t.get("description", ""))
@@ -148,11 +152,11 @@ def _apply_layout(
         at: KeyPath = ("layouts", name)
         r.keys(table, at, LAYOUT.names())
         r.get(table, at, LAYOUT["description"])
-        known = _table(data.get("robots"))
+        known = table_of(data.get("robots"))
         for key in PLACED:
             r.get(table, at, replace(LAYOUT[key], expected="a table"))
         _check_frames(data, layouts, name, r)
-        robots = _table(table.get("robots"))
+        robots = table_of(table.get("robots"))
         for robot in robots:
             one = Key(robot, "table", "", "a table", inner=LAYOUT["robots"].inner)
             changed = r.get(robots, (*at, "robots"), one, {})
@@ -189,9 +193,9 @@ def _check_frames(data: dict[str, Any], layouts: dict[str, Any], name: str, r: T
 
     Otherwise its name is a mistake, and the frame that was meant would stay where it is.
     """
-    known = _table(data.get("frames"))
-    others = [known] if known else [_table(_table(t).get("frames")) for t in layouts.values()]
-    for frame in _table(layouts[name].get("frames")):
+    known = table_of(data.get("frames"))
+    others = [known] if known else [table_of(table_of(t).get("frames")) for t in layouts.values()]
+    for frame in table_of(layouts[name].get("frames")):
         if not all(frame in other for other in others):
             r.d.error(
                 codes.CELL_KEY,
@@ -199,11 +203,6 @@ def _check_frames(data: dict[str, Any], layouts: dict[str, Any], name: str, r: T
                 r.at("layouts", name, "frames", frame),
                 hint=did_you_mean(frame, known) or f"add a table `[frames.{frame}]`",
             )
-
-
-def _table(value: object) -> dict[str, Any]:
-    """A table; empty where something else stands, which is reported elsewhere."""
-    return value if isinstance(value, dict) else {}
 
 
 def _merge(base: Mapping[str, Any], over: Mapping[str, Any]) -> dict[str, Any]:
@@ -370,7 +369,7 @@ def _primitives(r: Tables, data: dict[str, Any]) -> dict[str, Primitive]:
         action = r.get(table, at, PRIMITIVE["action"], "") if tool else ""
         if tool and not action and "action" in table:
             r.d.error(codes.CELL_VALUE, "`action` is empty", r.at(*at, "action"))
-        along = tuple(_along(r, data, table, at, command))
+        along = tuple(along_of(r, data, table, at, command))
         timed = PRIMITIVE.key("duration_s", command) if "duration_s" in own else None
         out[name] = Primitive(
             name,
@@ -388,7 +387,7 @@ def _primitives(r: Tables, data: dict[str, Any]) -> dict[str, Primitive]:
             r.number(table, at, PRIMITIVE["arm_angle"])
             if "arm_angle" in own and "arm_angle" in table
             else None,
-            _fixed(r, data, table, at, along) if "to" in own else None,
+            fixed_of(r, data, table, at, along) if "to" in own else None,
         )
         _check_approach(r, out[name], at)
     return out
@@ -401,7 +400,7 @@ def _frame(
     key = PRIMITIVE.key("frame", command)
     frame = str(r.get(table, at, key, ""))
     own = ("world",) if command == "move_joint" else ("world", "tool")
-    frames = _table(data.get("frames"))
+    frames = table_of(data.get("frames"))
     if frame and frame not in own and (frame == "tool" or frame not in frames):
         r.d.error(
             codes.CELL_VALUE,
@@ -422,7 +421,9 @@ def _tcp(r: Tables, data: dict[str, Any], table: dict[str, Any], at: KeyPath) ->
         return ""
     name = str(r.get(table, at, PRIMITIVE["tcp"], ""))
     known = {
-        tcp for x in _table(data.get("robots")).values() for tcp in _table(_table(x).get("tcps"))
+        tcp
+        for x in table_of(data.get("robots")).values()
+        for tcp in table_of(table_of(x).get("tcps"))
     }
     if name and name not in known:
         r.d.error(
@@ -433,109 +434,6 @@ def _tcp(r: Tables, data: dict[str, Any], table: dict[str, Any], at: KeyPath) ->
             or f"add a table `[robots.NAME.tcps.{name}]` (docs/robots.md)",
         )
     return name
-
-
-def _along(
-    r: Tables, data: dict[str, Any], table: dict[str, Any], at: KeyPath, command: str
-) -> Iterator[tuple[str, bool]]:
-    """External axes that move as well, each of the kind that its key says, of some robot."""
-    if command == "move_external" and not ({"track", "turntable", "axis"} & table.keys()):
-        r.d.error(
-            codes.CELL_KEY,
-            f"`primitives.{at[1]}` names no external axis",
-            r.at(*at),
-            hint='add `track = "..."` or `turntable = "..."`, the name of an axis of `[robots.NAME.axes]`, or `axis = '
-            '"..."`, also of `[devices.NAME.axes]`',
-        )
-    for kind in ("track", "turntable"):
-        if kind not in table or kind not in PRIMITIVE.names(command):
-            continue
-        name = r.get(table, at, PRIMITIVE.key(kind, command), "")
-        robots = [_table(x) for x in _table(data.get("robots")).values()]
-        known = {
-            axis: _table(x).get("kind", "track")
-            for robot in robots
-            for axis, x in _table(robot.get("axes")).items()
-        }
-        own = [axis for axis, x in known.items() if x == kind]
-        if name and name not in own:
-            r.d.error(
-                codes.CELL_VALUE,
-                f"no robot has a {kind} `{name}`",
-                r.at(*at, kind),
-                hint=did_you_mean(name, own, "")
-                or f"add a table `[robots.NAME.axes.{name}]` (docs/robots.md)",
-            )
-        yield name, kind == "track"
-    if command == "move_external" and "axis" in table:
-        name = r.get(table, at, PRIMITIVE["axis"], "")
-        kinds = [(axis, x) for owner in axes_of_all(data).values() for axis, x in owner.items()]
-        sliding = {x not in TURNING for axis, x in kinds if axis == name}
-        if name and not sliding:
-            r.d.error(
-                codes.CELL_VALUE,
-                f"no robot or device has an axis `{name}`",
-                r.at(*at, "axis"),
-                hint=did_you_mean(name, [axis for axis, _ in kinds], "")
-                or f"add a table `[devices.NAME.axes.{name}]` (docs/robots.md)",
-            )
-        elif len(sliding) > 1:
-            r.d.error(
-                codes.CELL_VALUE,
-                f"one axis `{name}` slides and another one turns, so that its position is mm and degrees",
-                r.at(*at, "axis"),
-                hint="give one of them another name",
-            )
-        yield name, sliding != {False}
-
-
-TURNING = ("turntable", "swing")
-"""Kinds of axes that turn; all others slide."""
-
-
-def axes_of_all(data: dict[str, Any]) -> dict[str, dict[str, str]]:
-    """Of each robot and device its external axes, each with its kind; what is wrong with them is reported elsewhere."""
-    out: dict[str, dict[str, str]] = {}
-    for section, default in (("robots", "track"), ("devices", "slide")):
-        for owner, table in _table(data.get(section)).items():
-            axes = _table(_table(table).get("axes"))
-            out[owner] = {a: str(_table(x).get("kind", default)) for a, x in axes.items()}
-    return out
-
-
-def _fixed(
-    r: Tables, data: dict[str, Any], table: dict[str, Any], at: KeyPath, along: AlongAxes
-) -> float | None:
-    """Where the only axis of a move goes that the function does not say, in mm or degrees."""
-    if "to" not in table:
-        return None
-    to = r.number(table, at, PRIMITIVE["to"], 0.0)
-    if len(along) != 1:
-        r.d.error(
-            codes.CELL_VALUE,
-            f"`to` is where one axis goes, and there are {len(along)}",
-            r.at(*at, "to"),
-            hint="make an entry for each of them, or let the function take the positions",
-        )
-        return None
-    axis, slides = along[0]
-    for section in ("robots", "devices"):
-        for table_ in _table(data.get(section)).values():
-            own = _table(_table(_table(table_).get("axes")).get(axis))
-            said = {"from": 0.0, "to": own.get("length")} if own.get("kind") == "belt" else own
-            ends = [x for key in ("from", "to") if isinstance(x := said.get(key), int | float)]
-            if len(ends) < 2:
-                continue  # that is reported elsewhere
-            low, high = ends
-            if not low <= to <= high:
-                r.d.error(
-                    codes.CELL_VALUE,
-                    f"`to` is {to:g}, but axis `{axis}` goes from {low:g} to {high:g}",
-                    r.at(*at, "to"),
-                    hint="a position in m, or in degrees of what turns",
-                )
-                return None
-    return to * 1000.0 if slides else to
 
 
 def _scaled(
@@ -584,20 +482,8 @@ def _handling(
         return None
     part = r.get(table, at, PRIMITIVE[given[0]], "")
     for name, key, section in ((part, given[0], "parts"), (place, "at", "places")):
-        _expect_named(r, data, name, (*at, key), section)
+        expect_named(r, data, name, (*at, key), section)
     return Handling(given[0], part, place)
-
-
-def _expect_named(r: Tables, data: dict[str, Any], name: str, at: KeyPath, section: str) -> None:
-    """What a key names is there."""
-    known = _table(data.get(section))
-    if name and name not in known:
-        r.d.error(
-            codes.CELL_VALUE,
-            f"`{at[-1]}` names `{name}`, but there is no `[{section}.{name}]`",
-            r.at(*at),
-            hint=did_you_mean(name, known) or f"add a table `[{section}.{name}]` (docs/robots.md)",
-        )
 
 
 _NEEDS: dict[Effect, tuple[Effect, str]] = {
@@ -622,7 +508,7 @@ def _check_handling(r: Tables, data: dict[str, Any], primitives: Mapping[str, Pr
                     r.at("primitives", name, effect),
                     hint=f'add `{other} = "{part}"` to the primitive that does it',
                 )
-        kind = _table(_table(data.get("parts")).get(part))
+        kind = table_of(table_of(data.get("parts")).get(part))
         if kind and "takes" in by and "creates" not in by and not kind.get("at"):
             r.d.error(
                 codes.CELL_VALUE,
@@ -656,7 +542,7 @@ def _devices(r: Tables, data: dict[str, Any]) -> Iterable[RobotConfig]:
     for name, at, table in r.named(data, "devices"):
         r.keys(table, at, DEVICE.names())
         _name(r, name, at, "a device name")
-        if name in _table(data.get("robots")):
+        if name in table_of(data.get("robots")):
             r.d.error(
                 codes.CELL_VALUE,
                 f"`{name}` is a robot and a device",
@@ -691,24 +577,9 @@ def _sensors(r: Tables, data: dict[str, Any]) -> Iterable[SensorConfig]:
             )
             default = None
         seed = r.get(table, at, SENSOR["seed"])
-        sees, part = _seen(r, data, table, at)
+        sees, part, where = seen_by(r, data, table, at)
         says = r.get(table, at, SENSOR["says"])
-        yield SensorConfig(name, variable, file, default, seed, r.at(*at), sees, part, says)
-
-
-def _seen(r: Tables, data: dict[str, Any], table: dict[str, Any], at: KeyPath) -> tuple[str, str]:
-    """The place at which a sensor looks, and for which kind of parts."""
-    sees, part = (r.get(table, at, SENSOR[key], "") for key in ("sees", "part"))
-    for name, key, section in ((sees, "sees", "places"), (part, "part", "parts")):
-        _expect_named(r, data, name, (*at, key), section)
-    if part and not sees:
-        r.d.error(
-            codes.CELL_KEY,
-            "`part` says which kind of parts the sensor sees, but not where",
-            r.at(*at, "part"),
-            hint="add `sees` with the name of a place",
-        )
-    return sees, part
+        yield SensorConfig(name, variable, file, default, seed, r.at(*at), sees, part, says, where)
 
 
 def _report(r: Tables, data: dict[str, Any], config: CellConfig) -> ReportConfig:

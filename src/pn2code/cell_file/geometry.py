@@ -416,6 +416,31 @@ AXIS = Section(
     ),
     by="kind",
 )
+ZONE = Section(
+    (
+        Key("pose", "table", "The middle of the box in the world.", POSE_WORDS, inner=POSE),
+        Key(
+            "size",
+            "numbers",
+            "Full lengths of the box.",
+            "three numbers: full lengths, m",
+            required=True,
+            unit="m",
+            counts=(3,),
+            low=0.0,
+            above=True,
+        ),
+        Key(
+            "max_speed",
+            "number",
+            "Where people may be: no point of what moves may be faster in it; without it, as fast as may be.",
+            "a number",
+            unit="m/s",
+            low=1e-4,
+            high=100.0,
+        ),
+    )
+)
 _SIGNS = ("plus", "minus")
 BRANCHES = (
     *(f"{s}/{e}/{w}" for s in ("front", "back") for e in ("up", "down") for w in _SIGNS),

@@ -348,15 +348,22 @@ SENSOR = Section(
         Key(
             "sees",
             "text",
-            "A name of `[places]`: in a run the sensor, of a truth value, says whether a part stands there at the time "
-            "it is asked. See *Sensors that see the scene*.",
-            "the name of a place",
+            "In a run the sensor, of a truth value, says at the time it is asked: of a name of `[places]`, whether a "
+            "part stands there; of one of `[zones]`, whether an arm is in it; of `DEVICE.AXIS`, whether the axis is at "
+            "`at`. See *Sensors that see the scene*.",
+            "the name of a place, a zone or an axis",
         ),
         Key(
             "part",
             "text",
             "with `sees`: Only a part of this kind, a name of `[parts]`, is seen; without it, any part.",
             "the name of a kind of parts",
+        ),
+        Key(
+            "at",
+            "number",
+            "with `sees` of an axis: Where that is seen, to 1 mm or 0.1 degrees; m, or degrees of what turns.",
+            "a number",
         ),
         Key(
             "says",

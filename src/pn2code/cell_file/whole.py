@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pn2code.cell_file.geometry import FRAME, MOTION, PART, POSE, ROBOT, SCENE
+from pn2code.cell_file.geometry import FRAME, MOTION, PART, POSE, ROBOT, SCENE, ZONE
 from pn2code.cell_file.keys import Key, Section
 from pn2code.cell_file.logic import (
     BOUND,
@@ -51,6 +51,14 @@ _PLACED = (
         "named",
         "A frame in which moves of `[primitives]` have their poses, with a name; not `world` or `tool`.",
         inner=FRAME,
+        entry="NAME",
+        is_word=True,
+    ),
+    Key(
+        "zones",
+        "named",
+        "A box in the room: where people may be, or where a sensor sees arms ([robots.md](robots.md#zones)).",
+        inner=ZONE,
         entry="NAME",
         is_word=True,
     ),

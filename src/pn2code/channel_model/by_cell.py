@@ -14,7 +14,7 @@ Let R be the former, as turns look at it (`Running.of(loose=True)`), and M the l
 *and if in the cell*
 
   4  transitions of a robot that compete for a token need the same messages,
-  5  each of them sends at most one message, and
+  5  each of them sends at most one message, or data and a flag, and whoever takes the data takes the flag, too, and
   6  robots send no messages to each other,
 
 *then M has no fault, and from each of its states an end can be reached.* The steps of the proof; a prefix of a run of
@@ -31,11 +31,20 @@ looks, its publishing with the step that renames; if a channel is one that R may
 comes at the end of the round. What a robot does comes as late as possible: before the first look that finds its
 message, or one that it has sent later. If a look finds an empty file, the robot's message, if it has put one already,
 will be found by a later look, and so will those that it sends later, as they are written after it. So R finds nothing
-there either (5: no second message of the same transition could have been found before). A robot does what it does in
+there either. A robot does what it does in
 M, because it chooses among transitions that need the same messages (4), and the one that it takes has all of its own:
 so have the others, and what is enabled depends on its own places and on these messages, of which there is one each
 (1). What is left when M's prefix ends comes last. Then each side has the same in its memory, and a channel of R holds
 what has been put, and not consumed.
+
+*Data and a flag* of one transition (5) are written one after the other, the flag last; a round looks at flags first.
+In R this transition comes before the first look that finds the flag, or what is sent later; so M may have found the
+data in an earlier round, and R not yet. The data alone enable nothing, since whoever takes them needs the flag. It is
+not there from an earlier transition either: then this transition could come in R while it is, and the channel would
+hold two, against 1. So in M nothing is fired after that round but what would be without it. In R the data are found
+where the flag is, or in the same round after it, or, if the transition came for what is sent later, in the round in
+which M has found them at the latest or a later one that ends before the flag is found. At the end of the round in which
+the flag is found both have both.
 
 *No fault.* Take a shortest prefix after which a writer w has a message for a file that is not empty. If the message
 before has not been consumed, the channel holds two in R, against 1. If it has, by the reader r, then r has since
@@ -76,6 +85,7 @@ from pn2code.verify.controller.running import (
     SUPERVISOR,
     NotModelledError,
     Running,
+    staged,
 )
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits
@@ -121,6 +131,7 @@ def why_not(partition: Partition, rules: Rules) -> str:
 
 def _against(partition: Partition) -> Iterator[str]:
     channels = {c.place for c in partition.channels}
+    in_order = {c.place for c in staged(partition)}
 
     def inputs(t: FlatTransition) -> set[int]:
         return {a.place for a in t.arcs if a.kind is not ArcKind.OUTPUT}
@@ -129,8 +140,8 @@ def _against(partition: Partition) -> Iterator[str]:
         own = [t for t in partition.net.transitions if partition.transition_owner[t.index] == owner]
         for i, t in enumerate(own):
             sent = {a.place for a in t.arcs if a.kind is ArcKind.OUTPUT and a.place in channels}
-            if len(sent) > 1:
-                yield f"`{t.name}` sends {len(sent)} messages"
+            if len(sent) > 1 and sent & in_order:
+                yield f"`{t.name}` sends {len(sent)} messages, of which some are acted on alone"
             for u in own[:i]:
                 one, other = inputs(t), inputs(u)
                 if (one & other) - channels and (one ^ other) & channels:

@@ -28,11 +28,14 @@ Inscriptions and expressions also differ in the following, each on purpose:
 * **The values of an `intinf` with bounds** are listed from the lowest by `CS.all ()`; the engine lists them from the highest.
 * **`Vector.update`** notices an index beyond the end; `IntInf.div` and similar functions raise `Div` for 0 by 0; `IntInf.pow (1, ~1)` is 1, in the engine 0.
 * **Undetermined type variables** after the value restriction (`val f = rev o rev`) become `unit`; in SML/NJ each becomes a new type.
-* **`ListMergeSort.sort`** keeps the order of equal elements; the engine's may exchange them.
+* **`ListMergeSort.sort`** and `ArrayQSort.sort` keep the order of equal elements; the engine's may exchange them.
 * **`gamma` and `beta`** of parameters that are not above zero raise `Gamma` and `Beta`; the engine has some number, or draws without end. All other
   distributions raise the same exceptions for the same parameters.
 * **`%#0g` of `Format.format`** shows the point (`2.50000`), which is missing in the engine (`250000`).
 * **`CS.col` of a union at positions below zero** may give the last constant constructor in the engine; here it raises `CPN'Error`.
+* **`DynamicArray.subArray`** gives a part of an array; in the engine it raises `Subscript` or `Size`. `DynamicArray.collate` of equal arrays is `EQUAL`, in the engine `LESS`.
+* **`Word64.min`** is the smaller one; in the engine it is the larger one. `Word64.scan` takes no sign, and no blank after `0w`, as that of the other
+  words; the engine takes both. `Int64.fromString` reads numbers of 64 bits; the engine raises `Overflow` above 2,147,483,647.
 * **`Real.nextAfter`** works; SML/NJ raises `Fail`. `String.fromCString` reads up to the first character that it cannot read; SML/NJ gives `NONE`.
 * **Time zones**: dates are those of UTC.
 """

@@ -18,12 +18,13 @@ from pn2code.geometry.legs import Leg, Planner, Stand
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.sweeps import ROUNDING
 from pn2code.robot.belts import until_stop
+from pn2code.robot.clamps import holding, taken_along
 from pn2code.robot.commands import Command, Handling, ToolAction
 from pn2code.robot.executor import turned_by
 from pn2code.robot.ground import Ground
 from pn2code.robot.lying import Trouble, overlap
 from pn2code.robot.parts import Part, PartChange, PartFault, Parts
-from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, describe, inverse, matrix_of
 
 _DIGITS = 6
@@ -189,13 +190,15 @@ class Doing:
             standing = (*(s for s in others if s.robot != owner), *((stand,) if stand else ()))
             if stand is not None:
                 own = self._cell.robot(owner)
-                if own.is_device and own.carrying:
+                if own.belts:
                     command = until_stop(own, _parts(contents, standing, 0.0), command)
                 leg = self.planner.leg(stand, command)
                 if leg.path is not None and leg.is_moving:
                     plates = turned_by(self._cell.robot(owner), leg.path)
                     turns |= plates
                     done = self._turning(done, command, plates, standing, contents)
+                    if pulled := self._pulled(own, leg, plates, contents):
+                        done = replace(done, fault=pulled, is_part=True, command=command, doubt="")
                     if done.fault:
                         legs = legs or [(self.planner.standing(stand), contents)]
                         break
@@ -204,7 +207,8 @@ class Doing:
                     done = replace(done, fault=leg.fault.message, command=None, doubt="")
                     break
                 stand = leg.end
-                if own.is_device and leg.path is not None and (ran := turned_by(own, leg.path)):
+                ran = turned_by(own, leg.path, own.belts) if leg.path is not None else None
+                if ran:
                     kinds |= frozenset(self._cell.parts)
                     done = replace(done, kinds=kinds)
                     try:
@@ -250,7 +254,7 @@ class Doing:
             parts = _parts(contents, standing, slack)
             parts.stand(device.name, leg.path.q(leg.path.duration))
             try:
-                for axis in device.carrying:
+                for axis in device.belts:
                     plate = f"{device.name}/{axis.name}"
                     if plate in ran:
                         parts.run_out(plate)
@@ -292,12 +296,31 @@ class Doing:
             riders = [p for inside in contents for p in inside.parts.riders(plate)]
             wide = max((ground.radius(p.kind.name) for p in riders), default=0.0)
             return float(np.hypot(*beside)) <= wide + around
+        if axis.is_track:
+            # Wherever it is on its way.
+            along = float(np.clip(off[:3] @ axis.direction, axis.lower, axis.upper))
+            apart = float(np.linalg.norm(off[:3] - along * axis.direction))
+            lying = [p for inside in contents for p in inside.parts.riders(plate)]
+            far = [
+                float(np.linalg.norm(p.frame[:3, 3])) + ground.radius(p.kind.name) for p in lying
+            ]
+            return bool(apart <= max([own.reach, *far]) + around)
         reach = own.reach
         for inside in contents:
             for part in inside.parts.riders(plate):
-                far = float(np.hypot(*part.frame[:2, 3])) + ground.radius(part.kind.name)
-                reach = max(reach, far)
+                off_axis = float(np.hypot(*part.frame[:2, 3]))
+                reach = max(reach, off_axis + ground.radius(part.kind.name))
         return float(np.hypot(*off[:2])) <= reach + around
+
+    def _pulled(self, own: CellRobot, leg: Leg, plates: frozenset[str], contents: Contents) -> str:
+        """That a device takes a part along which a clamp of its own holds then; "": it does not."""
+        if not own.axes.clamps:
+            return ""
+        for part, frame in taken_along(own, leg.start.q, contents.load(own.name), plates):
+            for held in holding(self._cell, part.kind, frame):
+                if held.device is own and held.holds(leg.start.q):
+                    return held.words(own.name, part.name, leg.start.q)
+        return ""
 
     def _turning(
         self,

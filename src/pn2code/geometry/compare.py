@@ -17,19 +17,22 @@ import numpy as np
 
 from pn2code.base.frozen import frozen
 from pn2code.geometry.activities import Activity, Contents, Load, spot, spots
-from pn2code.geometry.answers import Nearest
+from pn2code.geometry.answers import Nearest, Verdict
 from pn2code.geometry.legs import Leg, Planner
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.sweeps import SEARCHED, Apart, Sweeper, much_less
 from pn2code.geometry.tracks import ArmShape, Track
+from pn2code.geometry.zone_speeds import slow_enough
 from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.backend import Clearance
-from pn2code.robot.clamps import holding
+from pn2code.robot.clamps import holding, taken_along
+from pn2code.robot.executor import turned_by
 from pn2code.robot.kinematics import MOST_CONDITION
 from pn2code.robot.motion import LinearTrajectory
 from pn2code.robot.parts import Part
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array
+from pn2code.robot.zones import ZoneWatch
 
 _PIECES = 16
 _SAMPLES = 65
@@ -62,6 +65,8 @@ class Comparison:
         self._beside: dict[tuple[tuple[int, str], str], Apart] = {}
         self._margins: dict[int, Margins] = {}
         self.compared = 0
+        self._watch = ZoneWatch(cell)
+        self._hurries: dict[tuple[int, str], tuple[Verdict, str]] = {}
 
     def _track(self, leg: Leg, load: Load) -> tuple[tuple[int, str], Track]:
         if leg.path is None:
@@ -79,6 +84,15 @@ class Comparison:
             links = tuple(shape.holding(p, *self._boxes[p.kind.name]) for p in named)
             self._tracks[key] = Track(shape, leg, links, named)
         return key, self._tracks[key]
+
+    def hurries(self, leg: Leg, load: Load) -> tuple[Verdict, str]:
+        """Whether a leg is slow enough in zones, and why it is not."""
+        if not self._watch.limited or not leg.is_moving or not self._has_shape((leg, load)):
+            return "yes", ""
+        key, track = self._track(leg, load)
+        if key not in self._hurries:
+            self._hurries[key] = slow_enough(self._watch, track, load)
+        return self._hurries[key]
 
     def _has_shape(self, moved: tuple[Leg, Load]) -> bool:
         """Whether anything moves: of a device with a belt only what stands on it."""
@@ -145,24 +159,24 @@ class Comparison:
                 yield leg, other, self.two((leg, own), (other, its))
 
     def _pulled(self, leg: Leg, contents: Contents, other: Leg) -> Apart | None:
-        """That an arm goes away with a part which a clamp of a device holds then; None: it does not."""
-        arm, device = self.cell.robot(leg.robot), self.cell.robot(other.robot)
-        part = contents.held_by(leg.robot)
-        if part is None or arm.is_device or not device.axes.clamps or not leg.is_moving:
+        """That something goes away with a part which a clamp of a device holds then; None: it does not."""
+        robot, device = self.cell.robot(leg.robot), self.cell.robot(other.robot)
+        load = contents.load(leg.robot)
+        if not load or not device.axes.clamps or not leg.is_moving or leg.path is None:
             return None
         path = other.path if other.path is not None else self._planner.standing(other.start).path
         assert path is not None
-        frame = arm.T_world_base @ leg.start.T_base_tcp @ part.frame
-        for held in holding(self.cell, part.kind, frame):
-            # The way of a clamp is straight, so it is narrowest at one of its ends.
-            ends = path.on_way(np.array([0.0, 1.0]))
-            q = min(ends, key=held.gap)
-            if held.device is device and held.holds(q):
-                x, y, z = frame[:3, 3].tolist()
-                names = f"{leg.robot}/{part.kind.name}", held.name
-                gap = Clearance("robots", leg.robot, *names, 0.0, None, (x, y, z), (x, y, z))
-                why = held.words(leg.robot, part.kind.name, q)
-                return Apart("touch", 0.0, 0.0, gap, (0.0, 0.0), why, (leg.start.q, q))
+        for part, frame in taken_along(robot, leg.start.q, load, turned_by(robot, leg.path)):
+            for held in holding(self.cell, part.kind, frame):
+                # The way of a clamp is straight, so it is narrowest at one of its ends.
+                ends = path.on_way(np.array([0.0, 1.0]))
+                q = min(ends, key=held.gap)
+                if held.device is device and held.holds(q):
+                    x, y, z = frame[:3, 3].tolist()
+                    names = f"{leg.robot}/{part.kind.name}", held.name
+                    gap = Clearance("robots", leg.robot, *names, 0.0, None, (x, y, z), (x, y, z))
+                    why = held.words(leg.robot, part.kind.name, q)
+                    return Apart("touch", 0.0, 0.0, gap, (0.0, 0.0), why, (leg.start.q, q))
         return None
 
     def beside(self, a: tuple[Leg, Load], part: Part) -> Apart:

@@ -69,9 +69,8 @@ class Leg:
 def rewound(robot: CellRobot, q: Array) -> Array:
     """The same, with belts as if they had not run yet: however far they have, they go on in the same way."""
     out = np.array(q)
-    for axis in robot.carrying:
-        if axis.belt is not None:
-            out[robot.index(axis.name)] = 0.0
+    for axis in robot.belts:
+        out[robot.index(axis.name)] = 0.0
     return out
 
 

@@ -45,7 +45,7 @@ class Follower:
         q = self._at(s.ravel())
         q = q.reshape(count, SAMPLES + 1, q.shape[1])
         half = (b - a) * (self._speed / (2.0 * SAMPLES))
-        turns, is_fine = self._bounds(q, s.reshape(count, SAMPLES + 1), half)
+        turns, is_fine, _ = self._bounds(q, s.reshape(count, SAMPLES + 1), half)
         middle = q[:, SAMPLES // 2]
         away = (np.abs(q - middle[:, None]) + turns).max(axis=1)
         away[~is_fine] = np.inf
@@ -58,14 +58,31 @@ class Follower:
             away[lost] = 0.0
         return middle, away
 
+    def rates(self, a: Array, b: Array) -> tuple[Array, Array]:
+        """How far each axis goes for one unit of the way, anywhere in the pieces from a to b: between these, (n, axes).
+
+        Where that is not known, they are infinite.
+        """
+        parts = np.linspace(0.0, 1.0, SAMPLES + 1)
+        s = a[:, None] + (b - a)[:, None] * parts
+        q = self._at(s.ravel())
+        q = q.reshape(len(a), SAMPLES + 1, q.shape[1])
+        half = (b - a) * (self._speed / (2.0 * SAMPLES))
+        _, is_fine, (own, more) = self._bounds(q, s.reshape(len(a), SAMPLES + 1), half)
+        more[~is_fine] = np.inf
+        return (own - more).min(axis=1), (own + more).max(axis=1)
+
     def _at(self, s: Array) -> Array:
         """Joint positions on the branch of the line, with the turns that the plan has there."""
         rows = self._path.rows(s)
         index = np.searchsorted(self._planned, s).clip(0, len(self._planned) - 1)
         return self._k.unwound(rows, self._path.grid[index])
 
-    def _bounds(self, q: Array, s: Array, half: Array) -> tuple[Array, Flags]:
-        """How far each axis turns from a sample to half way to the next, (n, samples, axes); for which pieces."""
+    def _bounds(self, q: Array, s: Array, half: Array) -> tuple[Array, Flags, tuple[Array, Array]]:
+        """How far each axis turns from a sample to half way to the next, (n, samples, axes); for which pieces.
+
+        And how fast for one unit of the way: at the sample, and by how much that can be off.
+        """
         there = ~np.isnan(q).any(axis=(1, 2))
         axes = q.shape[2]
         flat = np.nan_to_num(q).reshape(-1, axes)
@@ -87,6 +104,7 @@ class Follower:
         shift = line.shifts(s.ravel()).reshape(spin.shape)
         twist = self._k.led_twist(np.concatenate([shift, spin], axis=2), self._path.swivel)
         turns = np.zeros(q.shape)
+        rates = np.zeros(q.shape), np.zeros(q.shape)
         if is_fine.any():
             own = np.linalg.solve(jacobian[is_fine], twist[is_fine][..., None])[..., 0]
             least = sigma[is_fine]
@@ -95,8 +113,9 @@ class Follower:
             way = w[is_fine] / max(self._speed, 1e-12)
             more = (other + w[is_fine] / least) * self._speed + way * line.bend / least
             bound = (np.abs(own) + more[..., None]) * way[..., None]
+            rates[0][is_fine], rates[1][is_fine] = own, more[..., None]
             turns[is_fine] = np.minimum(bound, y[is_fine][..., None])
-        return turns, is_fine
+        return turns, is_fine, rates
 
 
 def _steepness(kinematics: Kinematics) -> float:

@@ -177,6 +177,9 @@ class Look:
                 answer, why = "no", touch_in_words(apart) + what
             elif apart.outcome == "open" and answer == "yes":
                 answer, why = "unknown", apart.why
+        hurry, words_ = self.comparison.hurries(leg, load)
+        if hurry == "no" and answer != "no" or hurry == "unknown" and answer == "yes":
+            answer, why = hurry, words_
         return Move(
             leg.robot,
             t,

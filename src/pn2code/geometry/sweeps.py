@@ -152,7 +152,11 @@ class Sweeper:
                     return Apart("open", 0.0, nearest, where, at, why)
                 self.queries += 1
                 q_a, q_b = one.q[one_at[i]], two.q[two_at[i]]
-                found = measure(q_a, q_b, float(wide[i]) + 2.0 * ROUNDING)
+                limit = float(wide[i]) + FINE
+                found = measure(q_a, q_b, limit)
+                # What was not found is further away, or its capsules are.
+                unseen = np.maximum(bound[i], limit - both[i]).min()
+                least = min(least, float(unseen) - ROUNDING)
                 middle = ((own[0] + own[1]) / 2.0, (own[2] + own[3]) / 2.0)
                 is_clear = True
                 for gap in found:

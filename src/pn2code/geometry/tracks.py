@@ -25,9 +25,9 @@ from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.chain import cross
 from pn2code.robot.motion import JointTrajectory, LinearTrajectory, Still
 from pn2code.robot.parts import Part
+from pn2code.robot.placed_links import placed_links
 from pn2code.robot.robot_cell import CellRobot
 from pn2code.robot.transforms import Array, Flags, Numbers
-from pn2code.robot.urdf import Joint, Urdf
 
 
 @frozen(eq=False)
@@ -71,7 +71,7 @@ class ArmShape:
     def of(robot: CellRobot, backend: BulletBackend) -> ArmShape:
         """As the collision library has them."""
         links = []
-        for name, joint, frame in _frames(robot):
+        for name, joint, frame in placed_links(robot):
             box = backend.box(robot.name, name)
             if box is not None:
                 links.append(Link.of(f"{robot.name}/{name}", joint, frame, *box))
@@ -93,35 +93,6 @@ class ArmShape:
         if joints.stop < link.joint <= count:  # a turntable
             return np.asarray(np.arange(count) == link.joint - 1)
         return np.asarray(np.arange(count) < min(link.joint, joints.stop))
-
-
-def _frames(robot: CellRobot) -> list[tuple[str, int, Array]]:
-    """Each link with the axis that moves it last (`Link.joint`), and its frame in that of this axis."""
-    arm = robot.arm
-    moving = {name: i for i, name in enumerate(arm.axes)}
-    out = []
-    for link in arm.urdf.links:
-        joint, frame = _placed(arm.urdf, link, moving)
-        out.append((link, joint, frame))
-    if robot.tool is not None:
-        for link in robot.tool.urdf.links:
-            out.append((f"tool_{link}", len(arm.axes) + 1, _placed(robot.tool.urdf, link, {})[1]))
-    return out
-
-
-def _placed(tree: Urdf, link: str, moving: dict[str, int]) -> tuple[int, Array]:
-    joint, frame = 0, np.eye(4)
-    for step in tree.chain(link):
-        if step.name in moving:
-            joint, frame = moving[step.name] + 1, np.eye(4)
-        else:
-            frame = frame @ _at_zero(step)
-    return joint, frame
-
-
-def _at_zero(joint: Joint) -> Array:
-    """Joints that are no axes of the arm stand at zero."""
-    return joint.T_parent_joint
 
 
 @frozen(eq=False)
@@ -223,6 +194,85 @@ class Track:
         else:
             q, turns = path.on_way(a), np.zeros((len(a), len(self.shape.robot.arm.axes)))
         return self._placed(q, turns, rigid)
+
+    def boxes(self, q: Array) -> Array:
+        """The corners of each link in the world, at joint positions (n, axes): (n, links, 8, 3)."""
+        frames = self.shape.robot.kinematics.link_frames(q)
+        base = self.shape.robot.T_world_base
+        eye = np.eye(4)[None].repeat(len(q), 0)
+        placed = base @ np.stack([eye, *frames], axis=1)[:, self._joints]
+        turn, shift = placed[..., :3, :3].transpose(0, 1, 3, 2), placed[..., None, :3, 3]
+        return np.asarray(self._corners @ turn + shift)
+
+    def speeds(self, a: Array, b: Array) -> Array:
+        """How far points of a link go at most for one unit of the way, anywhere in pieces from a to b, (n, links).
+
+        That is what it is in the middle of the piece if each axis goes as it does on average, and what can be different
+        in the piece: how fast axes go, and how all turn what they carry.
+        """
+        path = self.leg.path
+        assert path is not None
+        half = (b - a) / 2.0
+        if self._follower is not None:
+            low, high = self._follower.rates(a, b)
+            _, turns = self._follower.pieces(a, b)
+            if isinstance(path, AlongTrajectory):
+                low, high = (self._whole(path, x) for x in (low, high))
+                own, turns = turns, np.abs(path.delta) * half[:, None]
+                turns[:, path.joints] = own
+        elif isinstance(path, JointTrajectory):
+            low = high = np.repeat(path.turns[None], len(a), axis=0)
+            turns = np.abs(low) * half[:, None]
+        else:
+            return np.zeros((len(a), len(self.links)))
+        q = self.knots(a, b).q
+        is_known = np.isfinite(low).all(axis=1) & np.isfinite(turns).all(axis=1)
+        out = np.full((len(a), len(self.links)), np.inf)
+        if is_known.any():
+            some = (x[is_known] for x in (q, low, high, turns, half))
+            out[is_known] = self._of_known(*some)
+        if self._follower is not None:
+            last = self.shape.robot.kinematics.joints.stop
+            for i, link in enumerate(self.links):
+                if link.joint in (last, low.shape[1] + 1):
+                    out[:, i] = np.minimum(out[:, i], self._on_line(link, np.ones(len(a))))
+        return out
+
+    @staticmethod
+    def _whole(path: AlongTrajectory, own: Array) -> Array:
+        out = np.repeat(np.asarray(path.delta, float)[None], len(own), axis=0)
+        out[:, path.joints] = own
+        return out
+
+    def _of_known(self, q: Array, low: Array, high: Array, turns: Array, half: Array) -> Array:
+        mean, off = (low + high) / 2.0, (high - low) / 2.0
+        most = self._fastest(q, np.abs(mean) + off, turns)
+        step = 1e-6
+        both = [self.boxes(q + x * step * mean) for x in (-1.0, 1.0)]
+        now = np.linalg.norm(both[1] - both[0], axis=3).max(axis=2) / (2.0 * step)
+        turning = [not slides for slides in self._slides]
+        turn = (np.abs(mean) + off)[:, turning].sum(axis=1)
+        more = self._fastest(q, off, turns) + 2.0 * (turn * half)[:, None] * most
+        return np.asarray(np.minimum(most, now + more + 1e-6))
+
+    def _fastest(self, q: Array, rates: Array, turns: Array) -> Array:
+        """As `_placed` has it: each axis turns what comes behind it, which is no further from it than there."""
+        kinematics = self.shape.robot.kinematics
+        frames = kinematics.link_frames(q)
+        axes = kinematics.axes_of(frames)
+        back = np.linalg.inv(self.shape.robot.T_world_base)
+        corners = self.boxes(q) @ back[:3, :3].T + back[:3, 3]
+        spread, fast = np.zeros((2, len(q), len(self.links)))
+        for j in reversed(range(rates.shape[1])):
+            if self._slides[j]:
+                way, speed = turns[:, j, None], rates[:, j, None] * np.ones_like(spread)
+            else:
+                arms = corners - frames[j][:, None, None, :3, 3]
+                off = np.sqrt((cross(axes[:, None, None, j], arms) ** 2).sum(-1).max(axis=2))
+                way, speed = turns[:, j, None] * (off + spread), rates[:, j, None] * (off + spread)
+            fast = np.where(self._moved[:, j], fast + speed, fast)
+            spread = np.where(self._moved[:, j], spread + way, spread)
+        return fast
 
     def _placed(self, q: Array, turns: Array, rigid: Array | None) -> Knots:
         kinematics = self.shape.robot.kinematics

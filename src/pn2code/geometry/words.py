@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+from pn2code.geometry.graph import MOST_STATES
 from pn2code.robot.commands import (
     Along,
     Command,
@@ -21,7 +22,8 @@ from pn2code.robot.commands import (
 from pn2code.verify.answers.reasons import clause
 
 _OPEN = {
-    "states": "the cell has more states than were looked at",
+    "states": f"the cell has more states than were looked at, {MOST_STATES:,} at most: fewer parts or rounds make it "
+    "smaller (a `val` of the net with `--set`), and so do colour sets with fewer values",
     "seconds": "the time was over before all states of the cell were seen",
     "memory": "the memory was full before all states of the cell were seen",
     "interrupted": "it was interrupted before all states of the cell were seen",

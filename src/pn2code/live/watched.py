@@ -258,7 +258,7 @@ class Watched(Closing):
         path = transition.split(".")
         depth = self._cell.partition.owners[0].instance.count("/") + 1
         activity = path[depth] if len(path) > depth + 1 else ""
-        if activity and activity != self._activity:
+        if activity != self._activity:
             self._leave(t)
             self._activity, self._activity_since = activity, t
 

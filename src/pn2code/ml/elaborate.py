@@ -44,6 +44,7 @@ from pn2code.ml.parsing.parser import (
     parse_layered,
     parse_program,
 )
+from pn2code.ml.parsing.plain_text import plain_names
 from pn2code.ml.typing.annotations import Annotations
 from pn2code.ml.typing.colset_specs import Colsets, ColsetSpec
 from pn2code.ml.typing.context import Context, TooDeepError, suggestion
@@ -289,7 +290,8 @@ class Elaborator:
         """
         program = parse_program(text, self._d)
         if program is None:
-            self._break(declared_names(text), ())
+            colsets, values = plain_names(text.text)
+            self.unreadable((*declared_names(text), *values), colsets)
             return
         self._each(text, program, examine)
 
@@ -320,7 +322,7 @@ class Elaborator:
         before = self._ctx.errors
         self._ctx.tainted = False
         build = self._declare.declare(changed)
-        if self._ctx.errors == before:
+        if self._ctx.errors == before and not self._ctx.tainted:
             self._ctx.resolve_pending()
         self._ctx.open_records.clear()
         if self._ctx.errors > before or self._ctx.tainted:

@@ -19,6 +19,7 @@ from pn2code.ml.core.terms import Exp, Lit
 from pn2code.ml.core.types import INT, Type, list_of, timed_of
 from pn2code.ml.elaborate import ColsetSpec, Elaborator, is_layered
 from pn2code.ml.parsing.parser import declared_names, odd_declaration
+from pn2code.ml.parsing.plain_text import plain_names
 from pn2code.net import engine_guards, infix_names, initial_effects, reserved_words, space_names
 from pn2code.net.binding import Parts, Planner
 from pn2code.net.codes import (
@@ -182,7 +183,10 @@ class _Checker:
                 e.declarations(declaration.text)
             case RawMl():
                 before = e.infix
+                errors = len(self.d.errors)
                 e.declarations(declaration.text, reserved_words.refuse)
+                if len(self.d.errors) > errors:
+                    self.broken.update(plain_names(declaration.text.text)[0])
                 infix_names.warn(e.infix - before, declaration.origin, self.d)
                 if reserved_words.says_nothing(declaration.text):
                     self.d.warning(

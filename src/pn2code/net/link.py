@@ -144,7 +144,7 @@ class _Linker:
             id=place.id,
             name=place.name,
             colset=place.type,
-            initial_marking=place.initial,
+            initial_marking=_initial(place.initial),
             port=port,
             fusion=fusion_of.get(place.id, ""),
             origin=place.origin,
@@ -392,6 +392,12 @@ def _blocks(block: RawBlock, outer: str = "") -> Iterator[tuple[Origin, str]]:
             yield from _blocks(item, "/".join(filter(None, (outer, item.name))))
         elif isinstance(item, RawMl) and outer:
             yield item.origin, outer
+
+
+def _initial(marking: Inscription | None) -> Inscription | None:
+    """None where the text still stands that CPN Tools shows for no initial marking."""
+    stands = marking is not None and marking.text.text.strip() == "INIT MARK"
+    return None if stands else marking
 
 
 def _unless(inscription: Inscription | None, defaults: set[str]) -> Inscription | None:

@@ -199,6 +199,13 @@ def _declared(
     return tuple(x for x in labels if not x.isdecimal()) if kind == "record" else labels
 
 
+def _bounds(part: Node, kind: Node) -> list[Node]:
+    """The `ml` texts of a `with` or an `and`; none if all are empty: CPN Tools then sees no bounds."""
+    texts = part.all("ml")
+    is_written = kind.tag == "subset" or any(text.text.strip() for text in texts)
+    return list(texts) if is_written else []
+
+
 def _details(
     kind: Node, base: Origin
 ) -> tuple[tuple[str, ...], tuple[tuple[str, str], ...], tuple[Node, ...]]:
@@ -213,10 +220,11 @@ def _details(
             case "ml":
                 texts.append(child)
             case "with" | "and" | "by":
-                ids += [i.text.strip() for i in child.all("id")]
-                texts += child.all("ml")
+                names = [i.text.strip() for i in child.all("id")]
+                ids += names if any(names) else []
+                texts += _bounds(child, kind)
                 for inner in child.all("and"):
-                    texts += inner.all("ml")
+                    texts += _bounds(inner, kind)
             case "recordfield":
                 parts = [i.text.strip() for i in child.all("id")]
                 fields.append((parts[0] if parts else "", parts[1] if len(parts) > 1 else ""))

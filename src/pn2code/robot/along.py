@@ -155,6 +155,10 @@ class AlongTrajectory:
         out[self.joints] = self.led.qd(t)
         return np.asarray(out)
 
+    def progress(self, t: float) -> tuple[float, float]:
+        """Fraction of the way at a time, and its speed, 1/s."""
+        return self.led.progress(t)
+
     def sample(self, times: Array) -> Array:
         """Joint positions at many times."""
         times = np.clip(times, 0.0, self.duration)

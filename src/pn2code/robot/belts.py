@@ -21,7 +21,7 @@ def until_stop(device: CellRobot, parts: Parts, command: Command) -> Command:
     """A command with belts that run as far as the parts on them let them."""
     if not isinstance(command, MoveExternal):
         return command
-    belts = {a.name: a for a in device.carrying if a.belt is not None and a.belt.stop}
+    belts = {a.name: a for a in device.belts if a.belt is not None and a.belt.stop}
     if not belts:
         return command
     along = tuple(

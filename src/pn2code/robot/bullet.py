@@ -361,7 +361,8 @@ class BulletBackend:
         others = [(side.whole, side.id, -1) for side in self._standing()]
         for a in self._robots.values():
             others += [(side.whole, side.id, -1) for side in self._riding(a)]
-            others += [(f"{a.robot.name}/{t}", a.body, a.index[t]) for t in a.robot.arm.tables]
+            if not a.robot.is_device:  # what moves of devices is looked at with what moves
+                others += [(f"{a.robot.name}/{t}", a.body, a.index[t]) for t in a.robot.arm.tables]
         for what, body, link in others:
             if body == own.id:
                 continue

@@ -1,5 +1,6 @@
 """Parts that clamps hold: a part in a clamp that is not open cannot be taken away.
 
+    for part, frame in taken_along(robot, q, parts, plates): ...
     for held in holding(cell, kind, T_world_part): held.device, held.clamp
     held.gap(q)                     # m, where the device stands at q
 
@@ -9,10 +10,11 @@ greatest one. What the jaws touch is another matter, which distances tell.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterable, Iterator
 
 from pn2code.base.frozen import frozen
 from pn2code.robot.external import Clamp
+from pn2code.robot.parts import Part
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, difference, matrix_of
@@ -58,3 +60,18 @@ def holding(cell: RobotCell, kind: PartKind, T_world_part: Array) -> Iterator[He
                 spot = matrix_of(cell.places[clamp.place])
                 if difference(T_world_part, spot)[0] <= kind.tolerance:
                     yield Held(device, clamp)
+
+
+def taken_along(
+    robot: CellRobot, q: Array, parts: Iterable[Part], plates: Collection[str]
+) -> Iterator[tuple[Part, Array]]:
+    """What a robot or device that begins to move at `q` takes along, and where that is, `T_world_part`.
+
+    That is what its tool holds, and what stands on those of its turntables or belts (`plates`) that move.
+    """
+    for part in parts:
+        if part.holder == robot.name:
+            yield part, robot.T_world_base @ robot.kinematics.forward(q) @ part.frame
+        elif part.plate in plates:
+            axis = next(a for a in robot.carrying if part.plate == f"{robot.name}/{a.name}")
+            yield part, robot.T_world_plate(axis, q) @ part.frame

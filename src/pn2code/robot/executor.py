@@ -37,6 +37,7 @@ from pn2code.robot.commands import (
     Wait,
     tcp_of,
 )
+from pn2code.robot.external import ExternalAxis
 from pn2code.robot.kinematics import Kinematics
 from pn2code.robot.motion import (
     LinearTrajectory,
@@ -107,13 +108,16 @@ class Motion:
 
 
 def turned(robot: CellRobot, motion: Motion) -> frozenset[str]:
-    """The turntables and belts that a motion moves, as `left/plate`."""
+    """The turntables, belts and other axes of devices that a motion moves, as `left/plate`."""
     return turned_by(robot, motion.trajectory)
 
 
-def turned_by(robot: CellRobot, path: Trajectory) -> frozenset[str]:
-    """The same of a trajectory."""
-    tables = {robot.index(axis.name): axis.name for axis in robot.carrying}
+def turned_by(
+    robot: CellRobot, path: Trajectory, axes: tuple[ExternalAxis, ...] | None = None
+) -> frozenset[str]:
+    """The same of a trajectory; `axes`: of these alone."""
+    axes = robot.carrying if axes is None else axes
+    tables = {robot.index(axis.name): axis.name for axis in axes}
     if not tables:
         return frozenset()
     off = np.abs(path.q(path.duration) - path.q(0.0))

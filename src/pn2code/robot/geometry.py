@@ -73,7 +73,7 @@ def bodies(cell: RobotCell) -> tuple[Body, ...]:
         elif robot.base.z > 0.05:
             out.append(_pedestal(robot))
     for device in cell.devices:
-        for axis in device.carrying:
+        for axis in device.belts:
             name = f"{device.name}/{axis.name}"
             out += [body_of(replace(o, name=name)) for o in axis.objects]
     if scene.panel is not None:

@@ -20,10 +20,12 @@ import numpy as np
 
 from pn2code.base.frozen import frozen
 from pn2code.robot.carried import plate_of
+from pn2code.robot.external import ExternalAxis
 from pn2code.robot.geometry import Body, bodies
 from pn2code.robot.hulls import Face, Hull, around, face, inside, overlap, part_below, shrunk
 from pn2code.robot.parts_table import PartKind
-from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.robot_cell import CellRobot, RobotCell
+from pn2code.robot.scene_objects import SceneObject
 from pn2code.robot.transforms import Array, matrix_of
 
 REST_GAP = 0.005
@@ -40,7 +42,7 @@ _UPRIGHT = 1e-4
 
 @frozen(eq=False)
 class Plate:
-    """A turntable.
+    """What takes parts along that stand on it: a turntable, a belt, another axis of a device.
 
     Args:
         robot: whose it is; index: of its axis, in joint positions.
@@ -230,7 +232,10 @@ def _hulls(body: Body) -> Iterator[Hull]:
 
 def _plates(cell: RobotCell) -> Iterator[tuple[str, Plate]]:
     for device in cell.devices:
-        for belt in device.carrying:
+        for axis in device.carrying:
+            if axis.belt is None:
+                yield f"{device.name}/{axis.name}", _plate(device, axis, "moves")
+        for belt in device.belts:
             # Its body is a thing of the scene, which stands.
             width = belt.belt.width if belt.belt is not None else 0.0
             own_reach = float(np.hypot(belt.upper, width / 2.0))
@@ -241,16 +246,18 @@ def _plates(cell: RobotCell) -> Iterator[tuple[str, Plate]]:
             )
     for robot in cell.robots:
         for axis in robot.axes.tables:
-            hulls = []
-            for thing in (plate_of(axis), *axis.objects):
-                own = Hull.of(thing)
-                if own is not None:
-                    hulls.append(own.at(matrix_of(thing.pose)))
-            corners = np.vstack([h.corners for h in hulls])
-            reach = float(np.hypot(corners[:, 0], corners[:, 1]).max())
-            up = (robot.T_world_base @ axis.T_base_axis)[:3, :3] @ axis.direction
-            upright = bool(abs(float(up[2]) - 1.0) <= _UPRIGHT**2)
-            yield (
-                f"{robot.name}/{axis.name}",
-                Plate(robot.name, robot.index(axis.name), tuple(hulls), reach, upright),
-            )
+            yield f"{robot.name}/{axis.name}", _plate(robot, axis, "turns", plate_of(axis))
+
+
+def _plate(robot: CellRobot, axis: ExternalAxis, does: str, *more: SceneObject) -> Plate:
+    hulls = []
+    for thing in (*more, *axis.objects):
+        own = Hull.of(thing)
+        if own is not None:
+            hulls.append(own.at(matrix_of(thing.pose)))
+    corners = np.vstack([np.zeros((1, 3)), *(h.corners for h in hulls)])
+    reach = float(np.linalg.norm(corners if axis.is_track else corners[:, :2], axis=1).max())
+    up = (robot.T_world_base @ axis.T_base_axis)[:3, :3] @ axis.direction
+    # A line leads what stands on it along, however it is inclined.
+    upright = axis.is_track or bool(abs(abs(float(up[2])) - 1.0) <= _UPRIGHT**2)
+    return Plate(robot.name, robot.index(axis.name), tuple(hulls), reach, upright, does)

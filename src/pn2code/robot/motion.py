@@ -205,6 +205,10 @@ class JointTrajectory:
             return self._target
         return np.asarray(self._start + self._law.at(t)[0] * self._way)
 
+    def progress(self, t: float) -> tuple[float, float]:
+        """Fraction of the way at a time, and its speed, 1/s."""
+        return (1.0, 0.0) if self._law is None else self._law.at(t)
+
     def qd(self, t: float) -> Array:
         """Joint speed, rad/s."""
         if self._law is None or not 0.0 < t < self.duration:
@@ -411,6 +415,10 @@ class LinearTrajectory:
             return np.zeros(self.grid.shape[1])
         now = np.array([t])
         return np.asarray(self.rates(self.q(t)[None], np.array([self.rate(t)]), self.way(now))[0])
+
+    def progress(self, t: float) -> tuple[float, float]:
+        """Fraction of the way at a time, and its speed, 1/s."""
+        return self._law.at(t)
 
     def rate(self, t: float) -> float:
         """Speed along the way, 1/s."""

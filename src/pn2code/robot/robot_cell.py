@@ -20,6 +20,7 @@ from pn2code.robot.parts_table import PartKind
 from pn2code.robot.payload import Load
 from pn2code.robot.scene_objects import SceneObject
 from pn2code.robot.transforms import Array, matrix_of, rotation_about
+from pn2code.robot.zones_table import Zone
 
 PART_CONTACT = 1e-3
 """m: parts are taken from what they rest on, and tools touch them: so deep they may overlap."""
@@ -141,8 +142,14 @@ class CellRobot:
 
     @property
     def carrying(self) -> tuple[ExternalAxis, ...]:
-        """The axes with which parts go that stand on them: turntables of a robot, belts of a device."""
-        return tuple(a for a in self.axes.tables if not self.is_device or a.belt is not None)
+        """The axes with which parts go that stand on them: turntables of a robot, those of a device but for jaws."""
+        jaws = {name for clamp in self.axes.clamps for name in clamp.jaws}
+        return tuple(a for a in self.axes.tables if a.name not in jaws)
+
+    @property
+    def belts(self) -> tuple[ExternalAxis, ...]:
+        """Those that are belts."""
+        return tuple(a for a in self.axes.tables if a.belt is not None)
 
     def T_world_plate(self, axis: ExternalAxis, q: Sequence[float] | Array) -> Array:  # noqa: N802
         """Where one of these is, with what goes with it."""
@@ -153,6 +160,15 @@ class CellRobot:
         else:
             step[:3, :3] = rotation_about(axis.direction, position)
         return np.asarray(self.T_world_base @ (axis.T_base_axis @ step))
+
+    def is_at(self, axis: str, q: Sequence[float] | Array, position: float) -> bool:
+        """Whether an axis is at a position (m, degrees), to 1 mm or 0.1 degrees; of a clamp that is its gap."""
+        own = self.axes.axis(axis)
+        assert own is not None, "the cell has been checked"
+        moved = [name for name, _ in self.axes.moved(axis, position)]
+        now = sum(float(q[self.index(name)]) for name in moved)
+        off = abs(now - position) if own.is_track else abs(math.degrees(now) - position)
+        return off <= (0.001 if own.is_track else 0.1)
 
     @property
     def is_device(self) -> bool:
@@ -233,6 +249,7 @@ class RobotCell:
         parts: the kinds of parts that are carried, by name.
         places: poses in the world that have a name.
         frames: in which moves can be given, by name; each in the world.
+        zones: boxes in the room, by name.
     """
 
     robots: tuple[CellRobot, ...]
@@ -242,6 +259,7 @@ class RobotCell:
     places: Mapping[str, Pose] = field(default_factory=dict)
     frames: Mapping[str, Pose] = field(default_factory=dict)
     devices: tuple[CellRobot, ...] = ()
+    zones: Mapping[str, Zone] = field(default_factory=dict)
 
     @property
     def moving(self) -> tuple[CellRobot, ...]:

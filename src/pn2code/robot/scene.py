@@ -43,6 +43,7 @@ from pn2code.robot.scene_objects import SceneObject, read_object
 from pn2code.robot.table import Locate, Table, is_number
 from pn2code.robot.table_poses import read_own_pose, read_pose
 from pn2code.robot.transforms import Array, matrix_of
+from pn2code.robot.zones_table import read_zones
 
 RADIANS = "angles in cell.toml are in degrees; if these are radians, multiply them by 57.2958"
 FEW_RADIANS = 3.2
@@ -91,9 +92,10 @@ def load(
     robots = tuple(_loaded(_with_frames(r, frames), kinds, taken, named[r.name]) for r in robots)
     devices = read_devices(table("devices", None), folder, places)
     scene = _scene(table("scene", SCENE), robots, devices, names, kinds, folder)
+    zones = read_zones(table("zones", None))
     if len(d.errors) != before:
         return None
-    return RobotCell(robots, motion, scene, kinds, places, frames.standing, devices)
+    return RobotCell(robots, motion, scene, kinds, places, frames.standing, devices, zones)
 
 
 def _with_frames(robot: CellRobot, frames: Frames) -> CellRobot:
@@ -268,8 +270,8 @@ def _scene(
     depth = t.number("tool_contact_depth")
     contacts = _default_contacts(robots, depth) if depth > 0.0 else []
     objects = tuple(o for e in t.tables("objects") if (o := read_object(e, folder)) is not None)
-    belts = [f"{r.name}/{a.name}" for r in devices for a in r.carrying]
-    contacts += [*_gripping(robots, kinds, objects, belts), *_clamping(devices, kinds)]
+    plates = [f"{r.name}/{a.name}" for r in devices for a in r.carrying]
+    contacts += [*_gripping(robots, kinds, objects, plates), *_clamping(devices, kinds)]
     _named_once(t, objects, kinds)
     things = [
         *names,

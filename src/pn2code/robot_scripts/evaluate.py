@@ -82,6 +82,17 @@ class Evaluator:
                 case _:
                     pass
 
+    @property
+    def functions(self) -> dict[int, core.Exp]:
+        """What is declared, by the uid of its symbol."""
+        found: dict[int, core.Exp] = {}
+        for dec, symbol in self._declarations.values():
+            if isinstance(dec, core.ValBind):
+                found[symbol.uid] = dec.value
+            elif isinstance(dec, core.RecBind):
+                found[symbol.uid] = next(f for s, f in dec.bindings if s == symbol)
+        return found
+
     def evaluate(self, e: core.Exp, env: Env) -> Value:
         """The value of an expression; UnsupportedError where scripts have nothing for it."""
         self._depth += 1

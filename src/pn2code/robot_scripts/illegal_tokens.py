@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 
 from pn2code.ml.core import terms as core
+from pn2code.ml.core.colsets import Colset
 from pn2code.net.flat import ArcKind, FlatPlace
-from pn2code.robot_scripts import membership
+from pn2code.robot_scripts import membership, unread
 from pn2code.robot_scripts.evaluate import Evaluator
 from pn2code.robot_scripts.failing import Known
 from pn2code.robot_scripts.ir import Chain, Line, Node
@@ -74,9 +75,18 @@ def stops(
                     asked = membership.of_token(place.colset, value, e, taken, there)
                     if asked:
                         out[_stop(transition.short, place, value, path, asked)] = None
-            except UnsupportedError:
+            except UnsupportedError as problem:
                 if arc.place not in machine.sinks:
                     raise
+
+                def plain(part: Colset, e: core.Exp) -> bool:
+                    try:
+                        return not membership.of_token(part, pure.evaluate(e, env), e, taken, known)
+                    except UnsupportedError:
+                        return False
+
+                if not all(unread.is_member(place.colset, e, plain) for e in values or ()):
+                    raise unread.refused(place, problem) from None
     return list(out)
 
 

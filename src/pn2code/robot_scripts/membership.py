@@ -31,7 +31,7 @@ def of_pattern(pattern: core.Pat, source: Colset | None) -> Iterator[tuple[Symbo
             yield symbol, source
             yield from of_pattern(inner, source)
         case core.PRecord(fields):
-            parts = _parts(source)
+            parts = parts_of(source)
             for label, part in fields:
                 yield from of_pattern(part, parts.get(label))
         case core.PCon(argument=argument) if argument is not None:
@@ -98,13 +98,13 @@ def _components(
 ) -> Iterator[tuple[Colset, Value, core.Exp | None]]:
     """The parts of a value that have bounds, with what gives each of them where that is written."""
     c = c.resolved
-    if not _has_bounds(c):
+    if not has_bounds(c):
         return
     if c.kind not in (Kind.RECORD, Kind.PRODUCT) or isinstance(e, core.Var | core.Select):
         yield c, value, e
         return
     written = dict(e.fields) if isinstance(e, core.RecordExp) else {}
-    for label, part in _parts(c).items():
+    for label, part in parts_of(c).items():
         yield from _components(part, select(value, label, span), written.get(label), span)
 
 
@@ -114,7 +114,7 @@ def _source(e: core.Exp | None, taken: Set[int]) -> Colset | None:
         case core.Var(symbol) if symbol.uid in taken:
             return symbol.colset
         case core.Select(label, record):
-            return _parts(_source(record, taken)).get(label)
+            return parts_of(_source(record, taken)).get(label)
         case _:
             return None
 
@@ -155,11 +155,11 @@ class _UnaskableError(Exception):
 def _of(c: Colset, value: Value, source: Colset | None, span: Span) -> Iterator[t.Expression]:
     c = c.resolved
     source = None if source is None else source.resolved
-    if c == source or not _has_bounds(c):
+    if c == source or not has_bounds(c):
         return
     if c.kind in (Kind.RECORD, Kind.PRODUCT):
-        inner = _parts(source)
-        for label, part in _parts(c).items():
+        inner = parts_of(source)
+        for label, part in parts_of(c).items():
             yield from _of(part, select(value, label, span), inner.get(label), span)
         return
     if c.kind not in (Kind.INT, Kind.REAL) or not isinstance(value, Scalar):
@@ -181,7 +181,7 @@ def _compared(name: str, value: Scalar, end: int | float | str, span: Span) -> t
     return found.exp
 
 
-def _parts(c: Colset | None) -> dict[str, Colset]:
+def parts_of(c: Colset | None) -> dict[str, Colset]:
     """The components of a record or product by label."""
     while c is not None and c.kind in (Kind.ALIAS, Kind.SUBSET):
         c = c.components[0]
@@ -191,8 +191,8 @@ def _parts(c: Colset | None) -> dict[str, Colset]:
     return {x: part for x, part in zip(labels, c.components, strict=True) if part is not None}
 
 
-def _has_bounds(c: Colset) -> bool:
+def has_bounds(c: Colset) -> bool:
     """Whether some value of its type is not in a colour set."""
     if c.kind is Kind.SUBSET or c.low is not None or c.high is not None or c.length is not None:
         return True
-    return any(_has_bounds(part) for part in c.components if part is not None)
+    return any(has_bounds(part) for part in c.components if part is not None)

@@ -26,7 +26,7 @@ from pn2code.ml.core.colsets import Colset, Kind
 from pn2code.ml.core.terms import Symbol
 from pn2code.net.flat import ArcKind, BindAll, BindEquation, BindRandom
 from pn2code.robot_scripts import codes as codes
-from pn2code.robot_scripts import membership, moves
+from pn2code.robot_scripts import membership, moves, unread
 from pn2code.robot_scripts.assignments import one_after_the_other
 from pn2code.robot_scripts.conditions import Asked, Order
 from pn2code.robot_scripts.evaluate import Evaluator
@@ -440,12 +440,38 @@ class StepTranslator:
                 try:
                     place = self.shapes.get(arc.place)
                     out += self._of_alternative(conditions, [*(values or ()), delay], env, place)
-                except UnsupportedError:
-                    if is_seen:
+                except UnsupportedError as problem:
+                    computed = [
+                        *(c for c, _ in conditions),
+                        *(values or ()),
+                        *([delay] if delay else ()),
+                    ]
+                    if is_seen or values is None:
                         raise
+                    if not all(self._is_sure(e, situation, env) for e in computed):
+                        raise unread.refused(self.machine.net.places[arc.place], problem) from None
         if transition.delay is not None:
             out += self.pure.owing(transition.delay, env)[1]
         return out
+
+    def _is_sure(self, e: core.Exp, situation: Situation, env: Env) -> bool:
+        """Whether the net surely has a value for what a script does not compute."""
+        code = situation.step.transition.code
+        results = {v.uid for v in code.outputs} if code else set()
+        variables = situation.step.transition.variables
+        taken = {v.uid for v in variables} - results
+        known = self.known(situation.ordered).with_colours(variables, taken, env)
+
+        def plain(part: core.Exp) -> bool:
+            try:
+                value, owed = self.pure.owing(part, env)
+            except UnsupportedError:
+                return False
+            return not open_of(owed, None, known) and not any(
+                known.fails(x.exp) for x in scalars_in(value)
+            )
+
+        return unread.is_sure(e, self.pure.functions, plain)
 
     def _of_alternative(
         self,

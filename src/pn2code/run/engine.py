@@ -29,7 +29,7 @@ from pn2code.emission.output import Block, OutputFile
 from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.backend import Backend
 from pn2code.robot.belts import until_stop
-from pn2code.robot.clamps import holding
+from pn2code.robot.clamps import holding, taken_along
 from pn2code.robot.commands import (
     Along,
     Command,
@@ -47,12 +47,13 @@ from pn2code.robot.commands import (
     Wait,
     tcp_of,
 )
-from pn2code.robot.executor import Motion, RobotExecutor, turned
+from pn2code.robot.executor import Motion, RobotExecutor, turned, turned_by
 from pn2code.robot.monitor import Monitor, Sample
 from pn2code.robot.motion import LinearTrajectory, MotionFault
 from pn2code.robot.parts import PartFault
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array, describe, matrix_of, pose_of
+from pn2code.robot.zones import ZoneWatch
 from pn2code.run.accuracy import distance, distance_to_line
 from pn2code.run.device import DeviceExecutor
 from pn2code.run.files import RobotFiles
@@ -199,6 +200,7 @@ class Engine:
     now: float = 0.0
     activity: str = ""
     parts: PartKeeper = field(init=False)
+    zones: ZoneWatch = field(init=False)
     _next_model_time: float | None = None
     _answer_due: float = math.inf
     _steps: Iterator[int] = field(default_factory=lambda: itertools.count(1))
@@ -206,6 +208,7 @@ class Engine:
     _activity_start: float = 0.0
     _ids: dict[str, str] = field(init=False)
     _commanded: dict[str, tuple[str, ...]] = field(init=False)
+    _owner_of: dict[str, str] = field(init=False)
     _ordered_by: dict[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -213,7 +216,12 @@ class Engine:
         divided = self.partition
         readers = {c.place: divided.owners[c.reader].name for c in divided.channels}
         self.parts = PartKeeper(self.cell, self.backend)
+        self.zones = ZoneWatch(self.cell)
         self._ids = {t.name: t.id for t in divided.net.transitions}
+        self._owner_of = {
+            t.name: divided.owners[o].name
+            for t, o in zip(divided.net.transitions, divided.transition_owner, strict=True)
+        }
         self._commanded = {
             t.name: tuple({readers[a.place] for a in t.arcs if a.place in readers})
             for t in divided.net.transitions
@@ -339,16 +347,22 @@ class Engine:
         self._enter_activity(event, self.now)
 
     def _enter_activity(self, event: Mapping[str, Any], t: float) -> None:
-        """The supervisor's pages are its activities: the first firing on another page begins another one."""
+        """The pages below the supervisor's own are its activities: a firing on another page ends one."""
         path = event["transition"].split(".")
         depth = self.supervisor_depth
         activity = path[depth] if len(path) > depth + 1 else ""
-        if activity and activity != self.activity:
+        if activity != self.activity:
             self._close_activity(t)
             self.activity = activity
             self._activity_start = t
         for reader in self._commanded.get(event["transition"], ()):
             self._ordered_by[reader] = self.activity
+
+    def _pass_on(self, transition: str) -> None:
+        """Whom a robot gives an order works for the activity for which the robot does."""
+        activity = self._ordered_by.get(self._owner_of[transition])
+        if activity is not None:
+            self._ordered_by |= dict.fromkeys(self._commanded[transition], activity)
 
     def _close_activity(self, t: float) -> None:
         if self.activity:
@@ -407,9 +421,19 @@ class Engine:
     def _sensor_says(self, robot: RobotRunner, request: Sense) -> Scalar | None:
         looks = self.sensors.seen.get(request.sensor)
         if looks is not None:
-            self._look_at_turntables()
-            return self.parts.parts.is_seen(*looks)
+            return self._sees(*looks, self.sensors.at.get(request.sensor, 0.0))
         return self.sensors.ask(robot.name, request.sensor)
+
+    def _sees(self, name: str, kind: str, at: float) -> bool:
+        """Whether a part is at a place, an arm in a zone, an axis of a device where it is seen."""
+        self._look_at_turntables()
+        joints = {r.name: r.joints(self.now) for r in self._arms()}
+        device, dot, axis = name.partition(".")
+        if dot:
+            return self.cell.robot(device).is_at(axis, joints[device], at)
+        if name in self.cell.zones:
+            return self.zones.occupied(name, joints, self.parts.parts.present.values())
+        return self.parts.parts.is_seen(name, kind)
 
     def _told(self, robot: RobotRunner, request: Sense, said: Said) -> Request:
         """A sensor has said something: what the script wants next."""
@@ -430,7 +454,7 @@ class Engine:
             where = robot.element_at(line)
             at = f" (net transition {where})" if where else ""
             raise CellStoppedError(f"{robot.script}:{line}{at}: {fault}") from None
-        self._expect_let_go(robot, command, line)
+        self._expect_let_go(robot, motion, line)
         self._expect_riders_stay(robot, motion, line)
         if self.stops is not None:
             motion = self._held_up(robot, motion, self.stops)
@@ -458,7 +482,7 @@ class Engine:
         """What belts that have come to rest have taken along stands there, or on something else."""
         if robot.arm is None or not robot.arm.robot.is_device:
             return
-        for plate in turned(robot.arm.robot, motion):
+        for plate in turned_by(robot.arm.robot, motion.trajectory, robot.arm.robot.belts):
             self._look_at_turntables()
             try:
                 settled = self.parts.run_out(plate)
@@ -469,23 +493,23 @@ class Engine:
             for change in settled:
                 self.record.parts.append(PartRecord(self.now, robot.name, change))
 
-    def _expect_let_go(self, robot: RobotRunner, command: Command, line: int) -> None:
-        """What an arm carries away is in no clamp that still holds it."""
-        if robot.arm is None or not isinstance(command, Move):
+    def _expect_let_go(self, robot: RobotRunner, motion: Motion, line: int) -> None:
+        """What an arm, a turntable or a belt takes along is in no clamp that still holds it."""
+        if robot.arm is None or not isinstance(motion.command, Move):
             return
-        part = self.parts.parts.held_by(robot.name)
-        if part is None:
-            return
+        arm, q = robot.arm.robot, robot.arm.q
+        present = self.parts.parts.present.values()
         stands = {r.name: r for r in self._arms()}
-        for held in holding(self.cell, part.kind, matrix_of(robot.arm.pose) @ part.frame):
-            q = stands[held.device.name].joints(self.now)
-            if held.holds(q):
-                where = robot.element_at(line)
-                at = f" (net transition {where})" if where else ""
-                words = held.words(robot.name, part.name, q)
-                raise CellStoppedError(
-                    f"{robot.script}:{line}{at}: {words}, at TCP pose {describe(robot.arm.pose)}"
-                )
+        for part, frame in taken_along(arm, q, present, turned(arm, motion)):
+            for held in holding(self.cell, part.kind, frame):
+                own = stands[held.device.name].joints(self.now)
+                if held.holds(own):
+                    where = robot.element_at(line)
+                    at = f" (net transition {where})" if where else ""
+                    words = held.words(robot.name, part.name, own)
+                    raise CellStoppedError(
+                        f"{robot.script}:{line}{at}: {words}, part at {describe(pose_of(frame))}"
+                    )
 
     def _expect_riders_stay(self, robot: RobotRunner, motion: Motion, line: int) -> None:
         """What stands on a turntable that begins to turn stays there, or the cell stops."""
@@ -621,6 +645,7 @@ class Engine:
                         "origin": self._ids.get(name, ""),
                     }
                 )
+                self._pass_on(name)
             case MessageConsumed(file=channel, values=values):
                 message = MessageRecord(self.now, channel, values)
                 self.record.messages.append(message)
@@ -662,6 +687,20 @@ class Engine:
         if verdict.fault is not None:
             self.now = t
             raise CellStoppedError(f"{verdict.fault.message}; {self._doing()}")
+        self._expect_slow(t, joints)
+
+    def _expect_slow(self, t: float, joints: Mapping[str, Array]) -> None:
+        """Nothing is faster in a zone than may be there."""
+        if not self.zones.limited:
+            return
+        speeds = {
+            r.name: r.motion.trajectory.qd(t - r.motion.began) for r in self._arms() if r.motion
+        }
+        found = self.zones.too_fast(joints, speeds, self.parts.parts.present.values())
+        if found is not None:
+            self.now = t
+            who = self.cell.robot(found.robot).words
+            raise CellStoppedError(f"{who}: {found.words()}; {self._doing()}")
 
     def _doing(self) -> str:
         """What everybody was doing, for messages: script line, net transition, command."""

@@ -112,6 +112,7 @@ class RealtimeEngine(Engine):
 
     def _begin_command(self, robot: RobotRunner, command: Command, line: int) -> None:
         """A wait is as long as it says after the messages before it, however late this turn is."""
+        self._read_trace()  # who has ordered it
         self._look_at_the_clock()
         Engine._begin_command(self, robot, command, line)
 
@@ -206,8 +207,11 @@ class RealtimeEngine(Engine):
         robot = self._named(party)
         if robot is None:
             return
-        doing = kind_and_label(robot.motion.command)[1] if robot.motion else "its program"
-        line = robot.waiting.line if robot.waiting else robot.line
+        if robot.asking is not None:
+            doing, line = f"its question to sensor {robot.asking.sensor}", robot.asking.line
+        else:
+            doing = kind_and_label(robot.motion.command)[1] if robot.motion else "its program"
+            line = robot.waiting.line if robot.waiting else robot.line
         where = robot.element_at(line)
         at = f" (net transition {where})" if where else ""
         self._interfered(party, f"{doing} was made to fail")

@@ -56,11 +56,13 @@ class Sensors:
     """All sensors of a cell.
 
     Args:
-        seen: the place, and the kind of parts ("": any), at which a sensor looks.
+        seen: the place and the kind of parts ("": any), the zone, or the axis (`mill.door`) at which a sensor looks.
+        at: of an axis, where it is seen, m or degrees.
     """
 
     _sensors: dict[str, _Sensor] = field(default_factory=dict)
     seen: dict[str, tuple[str, str]] = field(default_factory=dict)
+    at: dict[str, float] = field(default_factory=dict)
 
     def ask(self, who: str, sensor: str) -> Value | None:
         """What a sensor says to a robot or device; None: there is no such sensor."""
@@ -80,23 +82,25 @@ def load(
     before = len(d.errors)
     out: dict[str, _Sensor] = {}
     seen: dict[str, tuple[str, str]] = {}
+    at: dict[str, float] = {}
     for sensor, scalar in usable(config, net):
         if sensor.sees and scalar.kind is not ScalarKind.BOOL:
             d.error(
                 CELL_VALUE,
-                f"sensor `{sensor.name}` sees whether a part is at `{sensor.sees}`, but its variable is of colour set "
-                f"`{scalar.colset}`",
+                f"sensor `{sensor.name}` sees whether something is at `{sensor.sees}`, but its variable is of colour "
+                f"set `{scalar.colset}`",
                 sensor.origin,
                 hint="let the variable be a truth value (a colour set `bool`)",
             )
             continue
         if sensor.sees:
             seen[sensor.name] = (sensor.sees, sensor.part)
+            at[sensor.name] = sensor.at
         script = _script(sensor, (scalar,), tuple(folders), d)
         is_drawn = not sensor.file and sensor.default is None
         choices = _choices(sensor, scalar, d) if is_drawn else ()
         out[sensor.name] = _Sensor(sensor.seed if seed is None else seed, script, choices)
-    return Sensors(out, seen) if len(d.errors) == before else None
+    return Sensors(out, seen, at) if len(d.errors) == before else None
 
 
 def usable(config: CellConfig, net: FlatNet) -> Iterator[tuple[SensorConfig, Scalar]]:

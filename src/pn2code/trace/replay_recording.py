@@ -129,7 +129,7 @@ class _Follower:
                 which = f", instance {step.instance}" if step.instance > 1 else ""
                 why = f"`{step.transition}`: the net has no such transition{page}{which}"
                 return self.refused(states[0], number, why, run)
-            self.game.evaluator.steps = number + 1
+            self.game.evaluator.steps = number
             after: dict[State, None] = {}
             reasons: dict[str, None] = {}
             given_up = False
@@ -146,6 +146,7 @@ class _Follower:
                 refusal = self.refused(states[0], number, why, run)
                 return replace(refusal, given_up=given_up)
             states = list(after)[:MOST_STATES]
+            self.game.evaluator.steps = number + 1
         return self.finished(states, run)
 
     def tokens_of(self, run: Recording) -> dict[int, dict[str, int]]:
@@ -266,7 +267,12 @@ class _Follower:
     # --- a step ----------------------------------------------------------------------------------------
 
     def step(self, state: State, t: FlatTransition, step: RecordedStep) -> Iterator[State]:
-        """The states after an occurrence; raises _Refused when there is none."""
+        """The states after an occurrence; raises _Refused when there is none.
+
+        Inscriptions see `step ()` as it was while the occurrence was looked for, and counted while it occurs.
+        """
+        evaluator = self.game.evaluator
+        done = evaluator.steps
         self.references.restore(state.references)
         self.check_names(t, step)
         state = self.at_time(state, step.time)
@@ -274,6 +280,7 @@ class _Follower:
         reason = ""
         count = 0
         for enabled in self.enabled(state, t, step):
+            evaluator.steps = done + 1
             try:
                 after = self.occur(state, t, enabled, step)
             except GivenUpError:
@@ -281,6 +288,8 @@ class _Follower:
             except (_Refused, GameError) as refused:
                 reason = reason or str(refused)
                 continue
+            finally:
+                evaluator.steps = done
             count += 1
             yield after
         if not count:

@@ -42,6 +42,7 @@ from pn2code.run.sensors import load as load_sensors
 from pn2code.tdl import tree as t
 from pn2code.tdl.evaluate import ScriptError, ScriptPose, ScriptValue, evaluate
 from pn2code.tdl.messages import to_si
+from pn2code.verdict.scene_sensors import blind
 
 _ToPose = MoveJoint | MoveLinear | MoveCircular
 
@@ -73,6 +74,7 @@ def look_ahead(
             return
         where = f" in layout `{layout}`" if layout else ""
         _home(cell, chosen, where, d)
+        blind(cell, chosen, where, d)
         for ir in programs:
             _kind_of_arm(cell, ir, where, d)
     arms = Arms.of(config, d, partial=False)

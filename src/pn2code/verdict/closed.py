@@ -4,7 +4,7 @@
 
 It is the cell as it runs that counts, so of a closed net with more than `Limits.counts_from` markings it is first tried
 to count tokens up to a limit only (`verify.exploring.net_by_counts`). Where that shows nothing, all markings are
-explored, as without. A picture, a property, or another reduction needs all markings.
+explored, as without. A picture, a property of the closed net, or another reduction needs all markings.
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ def explored(
         may_count: whether less than all markings is enough.
     """
     first = limits.counts_from
-    plain = not (limits.reductions or limits.approximation or options.graph or options.questions)
+    plain = not (limits.reductions or limits.approximation or options.graph)
     is_enough = limits.max_states is None or (first is not None and limits.max_states > first)
     if first is None or not may_count or not plain or not is_enough or opened.flat.timed:
         return explore(opened.flat, opened.storage, limits, d, options)

@@ -32,6 +32,7 @@ from pn2code.verify.answers.reasons import clause
 from pn2code.verify.codes import TRACE_UNWRITABLE
 from pn2code.verify.controller.cell_answers import of_cell
 from pn2code.verify.controller.control_types import Control
+from pn2code.verify.controller.stated import all_stated
 from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.covering import Covering
 from pn2code.verify.exploring.covering import write as write_covering
@@ -164,6 +165,14 @@ def _bindings_of_cell(
             all_orders=is_choosing,
         )
     )
+
+
+def are_of_states(asked: Asked, opened: OpenNet) -> bool:
+    """Whether all that is asked of a cell is known where each state of it stands for many markings."""
+    if not asked:
+        return True
+    partition = divided(opened, Diagnostics())
+    return partition is not None and not asked.splits and all_stated(asked.properties, partition)
 
 
 def divided(opened: OpenNet, d: Diagnostics) -> Partition | None:

@@ -209,7 +209,7 @@ def look(
     of_net = own_options or options
     if is_cell and of_net.covering and of_net.sizes is not None:
         of_net = replace(of_net, heaps=_open_channels(opened, of_net.sizes))
-    may_count = is_cell and not asked
+    may_count = is_cell and properties.are_of_states(asked, opened)
     found = closed.explored(opened, part, of_net, d, may_count=may_count)
     if found is None:
         return None

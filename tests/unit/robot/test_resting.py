@@ -33,11 +33,26 @@ PLATE = {
 }
 
 
+LIFT = {
+    "axes": {
+        "platform": {
+            "kind": "slide",
+            "pose": {"x": 1.5, "y": 0.6, "z": 0.4},
+            "direction": [0.0, 0.0, 1.0],
+            "from": 0.0,
+            "to": 0.5,
+            "objects": [{"name": "top", "size": [0.5, 0.5, 0.05], "pose": {"z": -0.025}}],
+        }
+    }
+}
+
+
 def cell_of(*at: dict[str, float], plate: dict[str, Any] | None = None, **more: Any) -> RobotCell:
     data = tomllib.loads(TOML)
     data["parts"]["box"]["at"] = list(at)
     if plate is not None:
         data["robots"]["robot"]["axes"] = {"plate": plate}
+    data["devices"] |= more.pop("devices", {})
     data["scene"]["objects"] += more.pop("objects", [])
     data["parts"] |= more
     d = Diagnostics()
@@ -311,3 +326,45 @@ def test_what_a_tool_carries_keeps_clear_of_its_own_turntable(
         gaps = [c for c in found if (c.a, c.b) == ("robot/box.1", "robot/plate")]
         assert min(c.distance for c in gaps) == pytest.approx(distance, abs=1e-4)
         assert {c.allowed for c in gaps} == {0.001} and not any(c.stands for c in gaps)
+
+
+# --- lifts and other axes of devices ---------------------------------------------------------------
+
+
+@pytest.mark.bullet
+def test_a_part_goes_with_the_lift_on_which_it_stands(request: pytest.FixtureRequest) -> None:
+    beam = {"name": "beam", "size": [0.6, 0.1, 0.1], "pose": {"x": 1.5, "y": 0.6, "z": 0.9}}
+    cell = cell_of(
+        {"x": 1.6, "y": 0.6, "z": 0.475},
+        {"x": 1.0, "y": -0.6, "z": 0.075},
+        devices={"elevator": LIFT},
+        objects=[beam],
+    )
+    backend = open_backend("bullet", cell, looks=False)
+    request.addfinalizer(backend.close)
+    keeper = PartKeeper(cell, backend)
+    keeper.begin()
+    parts = keeper.parts
+    assert parts.present["box.1"].plate == "elevator/platform"
+    parts.turn("elevator/platform")
+    parts.stand("elevator", [0.3])
+    assert parts.world(parts.present["box.1"])[:3, 3] == pytest.approx([1.6, 0.6, 0.775])
+    backend.set_joints("elevator", [0.3])
+    gaps = [c for c in backend.clearances(0.5) or () if (c.a, c.b) == ("box.1", "beam")]
+    assert min(c.distance for c in gaps) == pytest.approx(0.0, abs=1e-4)
+    backend.set_joints("elevator", [0.35])
+    gaps = [c for c in backend.clearances(0.5) or () if (c.a, c.b) == ("box.1", "beam")]
+    assert min(c.distance for c in gaps) == pytest.approx(-0.05, abs=1e-4)
+    parts.handle("robot", TAKE, above(1.0, -0.6, 0.15))
+    put = parts.handle("robot", RELEASE, above(1.4, 0.4, 0.85))
+    assert (put.on, put.plate) == (("elevator/platform",), "elevator/platform")
+    shelf = {"name": "shelf", "size": [0.1, 0.5, 0.4], "pose": {"x": 1.8, "y": 0.6, "z": 0.2}}
+    both = cell_of({"x": 1.7, "y": 0.6, "z": 0.475}, devices={"elevator": LIFT}, objects=[shelf])
+    with pytest.raises(PartFault, match=r"`elevator/platform` moves, but `box\.1` on it also"):
+        Parts(both).turn("elevator/platform")
+
+
+def test_the_jaws_of_a_clamp_carry_nothing() -> None:
+    jaws = {"kind": "clamp", "pose": {"x": 1.5, "y": 0.6, "z": 0.4}, "from": 0.0, "to": 0.1}
+    cell = cell_of(devices={"vice": {"axes": {"jaws": jaws | {"jaw": [0.1, 0.3, 0.1]}}}})
+    assert not cell.devices[0].carrying and not Ground.of(cell).plates

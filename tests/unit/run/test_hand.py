@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -18,11 +20,14 @@ from pn2code.robot.commands import Pose, Wait
 from pn2code.robot.executor import Motion
 from pn2code.robot.motion import Still
 from pn2code.run.choices import Choice, permitted
+from pn2code.run.engine import CellStoppedError
 from pn2code.run.hand import Hand, Said
 from pn2code.run.late_files import Fate, LateFiles
+from pn2code.run.realtime import RealtimeEngine
 from pn2code.run.stops import Paused, paused, resumed
 from pn2code.tdl.interpret import Interpreter
 from pn2code.tdl.requests import FileError, Sense
+from pn2code.tdl.types import Type
 
 RESULT = Scalar(ScalarKind.INT, "RESULT", "RESULT", (), 1, 3)
 TEXT = Scalar(ScalarKind.STRING, "TEXT", "TEXT")
@@ -314,3 +319,25 @@ def test_a_question_has_the_words_of_the_sensor_and_what_it_may_be_told() -> Non
         assert told["says"] == "how deep the hole is"
         assert told["allowed"] == "a value of DEPTH from -2 to 900"
     assert asked["values"] == []
+
+
+@pytest.mark.parametrize(
+    ("asking", "says"),
+    [
+        (Sense("eye", Type.INT, 12), "r.tdl:12: robot1: its question to sensor eye fails"),
+        (None, "r.tdl:7: robot1: its program fails"),
+    ],
+)
+def test_what_is_made_to_fail(asking: Sense | None, says: str) -> None:
+    """A question that is open, and not the command before it."""
+    robot = SimpleNamespace(
+        name="robot1", script="r.tdl", asking=asking, motion=None, waiting=None, line=7,
+        element_at=lambda _line: "",
+    )  # fmt: skip
+    noted: list[str] = []
+    engine = SimpleNamespace(
+        _named=lambda _party: robot, _interfered=lambda _party, text: noted.append(text)
+    )
+    with pytest.raises(CellStoppedError, match=re.escape(says)):
+        RealtimeEngine.fail(engine, "robot1")  # type: ignore[arg-type]
+    assert noted == [says.split(": ")[2].replace(" fails", " was made to fail")]

@@ -52,18 +52,29 @@ def record() -> RunRecord:
 
 def test_activities_that_overlap_and_repeat_are_totalled(record: RunRecord) -> None:
     load, mill = activities(record, ROBOTS)
-    assert (load.name, load.times, load.intervals) == ("Load", 2, ((0.0, 10.0), (15.0, 20.0)))
+    # From 4 to 5 and from 8 to 9 the mill works, and nobody loads.
+    assert (load.name, load.times) == ("Load", 4)
+    assert load.intervals == ((0.0, 4.0), (5.0, 8.0), (9.0, 10.0), (15.0, 20.0))
     assert (mill.name, mill.times, mill.intervals) == ("Mill", 2, ((4.0, 9.0), (10.0, 14.0)))
-    assert (load.seconds, mill.seconds) == (15.0, 9.0)
+    assert (load.seconds, mill.seconds) == (13.0, 9.0)
     assert load.busy == {"arm": 7.0, "mill": 0.0}
     assert mill.busy == {"arm": 0.0, "mill": 9.0}
     assert [busy_seconds(record, r) for r in ROBOTS] == [7.0, 9.0]
 
 
+def test_a_page_that_waits_while_others_work_is_not_under_way(record: RunRecord) -> None:
+    """It has fired last, and the supervisor's own page, or another one, has work done; its firing alone is a moment."""
+    record.activities[:] = [ActivityRecord("Load", 0.0, 20.0), ActivityRecord("Note", 20.0, 20.0)]
+    record.actions[:] = [action("arm", 0.0, 3.0, "Load"), action("mill", 3.0, 20.0, "")]
+    load, note = activities(record, ROBOTS)
+    assert (load.times, load.intervals) == (1, ((0.0, 3.0),))
+    assert (note.times, note.seconds) == (1, 0.0)
+
+
 def test_the_summary_has_an_activity_once(record: RunRecord) -> None:
     found = json.loads(json.dumps(summarise(record, ReportConfig(), ROBOTS, {})))
     assert [(a["name"], a["times"], a["seconds"]) for a in found["activities"]] == [
-        ("Load", 2, 15.0),
+        ("Load", 4, 13.0),
         ("Mill", 2, 9.0),
     ]
     assert found["activities"][1]["intervals"] == [[4.0, 9.0], [10.0, 14.0]]
@@ -94,7 +105,7 @@ def test_charts(record: RunRecord, figures: dict[str, Figure], tmp_path: Path) -
     (rows,) = figures["gantt.png"].axes
     assert [t.get_text() for t in rows.get_yticklabels()] == ["Load", "Mill", "arm", "mill"]
     said = [t.get_text() for t in rows.texts]
-    assert said == ["2 times, 15.0 s", "2 times, 9.0 s", "35 % busy", "45 % busy"]
+    assert said == ["4 times, 13.0 s", "2 times, 9.0 s", "35 % busy", "45 % busy"]
     upper, lower = figures["clearances.png"].axes
     for axes, ticks, warning in (
         (upper, ["0", "1", "2", "5", "10", "20", "50", "100", "200", "500", "1000"], "warning below 20 mm"),

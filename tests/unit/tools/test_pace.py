@@ -3,9 +3,16 @@
 from __future__ import annotations
 
 import gc
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
+from pace import budget
+from pace.budget import Meter, is_exceeded
 from pace.choose import Asked, chosen, longest_first
 from pace.durations import UNKNOWN_S, Durations
 from pace.estimate import Estimate, clock
@@ -50,6 +57,7 @@ def test_what_is_known_of_a_test() -> None:
     both = Durations.of(KNOWN.as_record(), {"functions": {f"{A}::test_two": 99.0}})
     assert both.of_test(f"{A}::test_two") == 3.0
     assert both.fixtures == KNOWN.fixtures
+    assert Durations.of({}, {"cost": 7.0}).cost == 7.0
 
 
 def test_quick_tests_of_a_file_have_one_entry() -> None:
@@ -106,3 +114,45 @@ def test_the_garbage_collector_leaves_what_was_collected_alone() -> None:
     """It works all the same: some tests make circles that are large."""
     assert gc.isenabled()
     assert gc.get_freeze_count() > 10_000
+
+
+def test_what_a_run_costs_is_measured_by_the_pace_of_the_machine(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Twice as slow, the same cost."""
+    for slow in (1.0, 2.0):
+        monkeypatch.setattr(budget, "piece", lambda slow=slow: 0.02 * slow)
+        used = iter((10.0, 10.0 + 30.0 * slow))
+        monkeypatch.setattr(budget, "processor", lambda used=used: next(used))
+        meter = Meter()
+        meter.look()
+        assert meter.cost() == pytest.approx(1500.0)
+    assert is_exceeded(1501.0, 1000.0) and not is_exceeded(1500.0, 1000.0)
+    assert not is_exceeded(1501.0, 0.0), "nothing is recorded"
+
+
+@pytest.mark.parametrize(
+    ("cost", "asked", "code"),
+    [(0.001, ["-n", "2"], 1), (1e9, [], 0), (0.001, ["-k", "well"], 0), (0.001, [], 1)],
+)
+def test_a_whole_run_that_costs_too_much_fails(
+    cost: float, asked: list[str], code: int, tmp_path: Path
+) -> None:
+    table = tmp_path / "table.json"
+    table.write_text(json.dumps({"cost": cost}))
+    (tmp_path / "conftest.py").write_text(
+        "from pathlib import Path\n"
+        "from pace import plugin\n"
+        f"plugin.TABLE = Path({str(table)!r})\n"
+        "pytest_plugins = ('pace.plugin',)\n"
+    )
+    (tmp_path / "test_well.py").write_text("def test_well(): pass\n")
+    tests = str(Path(__file__).parents[2])
+    kept = {k: v for k, v in os.environ.items() if k != "PN2CODE_THOROUGH"}
+    done = subprocess.run(
+        [sys.executable, "-m", "pytest", "--estimate", *asked], cwd=tmp_path, capture_output=True, text=True,
+        check=False, env={**kept, "PYTHONPATH": tests + os.pathsep + os.environ.get("PYTHONPATH", "")},
+    )  # fmt: skip
+    assert done.returncode == code, done.stdout + done.stderr
+    assert ("times the processor time" in done.stdout) == (code == 1)
+    assert "1 passed" in done.stdout

@@ -25,6 +25,30 @@ def _slices_of(vectors: str, whole: str, element: str) -> str:
     )
 
 
+def _byte_arrays() -> str:
+    """The declaration of slices of arrays of bytes."""
+    text = (FOLDER / "ArraySlice.sml").read_text(encoding="ascii")
+    types = "type elem = Word8.word\n    type array = Word8Array.array\n    type vector = Word8Vector.vector\n"
+    for old, new in (
+        ("structure ArraySlice", "structure Word8ArraySlice"),
+        ("datatype 'a slice = Slice of 'a array", f"{types}    datatype slice = Slice of array"),
+        ("Vector.fromList", "Word8Vector.fromList"),
+        ("VectorSlice.", "Word8VectorSlice."),
+    ):
+        text = text.replace(old, new)
+    return text
+
+
+def _table(name: str, key: str, hashed: str, same: str = "op =") -> str:
+    """The declaration of hash tables with keys of one type."""
+    return (
+        f"structure {name} = struct\n    structure Key = struct type hash_key = {key} end\n"
+        f"    open HashTable\n    type 'a hash_table = ({key}, 'a) HashTable.hash_table\n"
+        f"    fun mkTable (hint, missing) = HashTable.mkTable ({hashed}, {same}) (hint, missing)\n"
+        "    fun inDomain table key = isSome (find table key)\nend"
+    )
+
+
 _KEYS = {
     "Int": "struct type ord_key = int val compare = Int.compare end",
     "Word": "struct type ord_key = word val compare = Word.compare end",
@@ -54,6 +78,10 @@ MADE: dict[str, str] = {
     },
     "CharVectorSlice": _slices_of("CharVector", "string", "char"),
     "Word8VectorSlice": _slices_of("Word8Vector", "Word8Vector.vector", "Word8.word"),
+    "Word8ArraySlice": _byte_arrays(),
+    "IntHashTable": _table("IntHashTable", "int", "Word.fromInt"),
+    "WordHashTable": _table("WordHashTable", "word", "fn (key : word) => key"),
+    "AtomTable": _table("AtomTable", "Atom.atom", "Atom.hash", "Atom.sameAtom"),
     **{
         name: f"structure {name} = List{name[-3:]}Fn ({_KEYS[next(k for k in _KEYS if name.startswith(k))]})"
         for name in _STRUCTURES

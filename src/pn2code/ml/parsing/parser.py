@@ -17,6 +17,7 @@ from pn2code.ml import codes
 from pn2code.ml.parsing import advice, syntax
 from pn2code.ml.parsing.lalr import Loop, SyntaxProblem
 from pn2code.ml.parsing.lexer import Lexeme, insert_delay_parentheses, tokenize
+from pn2code.ml.parsing.plain_text import guessed_names, old_declaration
 from pn2code.ml.parsing.tables import tables
 from pn2code.ml.parsing.tree import Group, NotANameError, TreeBuilder
 
@@ -33,8 +34,16 @@ def _loop() -> Loop:
 
 def parse_program(source: SourceText, d: Diagnostics) -> tuple[syntax.Dec, ...] | None:
     """Declarations; None when an error was reported."""
-    tokens = tokenize(source, d)
-    if tokens is None or _old_declaration(source, tokens, d):
+    tried = Diagnostics()
+    tokens = tokenize(source, tried)
+    if tokens is None:
+        old = old_declaration(source.text)
+        if old is None:
+            d.items.extend(tried.items)
+        else:  # `1..3` is no word of CPN ML, but that is not the point
+            _refuse_old(old.word, source.span(old.start, old.end), d)
+        return None
+    if _old_declaration(source, tokens, d):
         return None
     tree = _parse(source, tokens, "program", d)
     return cast(tuple[syntax.Dec, ...], tree.items) if isinstance(tree, Group) else None
@@ -161,7 +170,10 @@ def declared_names(source: SourceText, start: int = 0, end: int | None = None) -
 @lru_cache(maxsize=4)
 def _declared(text: str) -> tuple[tuple[int, ...], tuple[int, ...], tuple[str, ...]]:
     """Where the names begin and end that a text seems to declare, and they themselves."""
-    tokens = tokenize(SourceText(text, NOWHERE), Diagnostics()) or []
+    tokens = tokenize(SourceText(text, NOWHERE), Diagnostics())
+    if tokens is None:
+        guessed = guessed_names(text)
+        return (0,) * len(guessed), (0,) * len(guessed), guessed
     found = [
         token
         for before, token in pairwise(tokens)
@@ -194,14 +206,18 @@ def _old_declaration(source: SourceText, tokens: Sequence[Lexeme], d: Diagnostic
         if first and token.kind == "ID" and token.text in _OLD_DECLARATIONS:
             following = tokens[i + 1].kind
             if following == "ID":
-                d.error(
-                    codes.UNSUPPORTED_ML,
-                    f"a `{token.text}` declaration as plain text is not supported",
-                    source.span(token.start, token.end),
-                    hint="declare it in CPN Tools as a declaration of its own, not inside an ML declaration",
-                )
+                _refuse_old(token.text, source.span(token.start, token.end), d)
                 return True
     return False
+
+
+def _refuse_old(word: str, at: Span, d: Diagnostics) -> None:
+    d.error(
+        codes.UNSUPPORTED_ML,
+        f"a `{word}` declaration as plain text is not supported",
+        at,
+        hint="declare it in CPN Tools as a declaration of its own, not inside an ML declaration",
+    )
 
 
 # --- syntax errors in words --------------------------------------------------------------------

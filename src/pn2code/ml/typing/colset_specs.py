@@ -237,7 +237,7 @@ class Colsets:
 
     def _bool(self, spec: ColsetSpec) -> Colset | None:
         names = spec.ids or ("false", "true")
-        if len(names) != 2:
+        if len(names) != 2 or not all(names):
             self._incomplete(spec, "needs a name for false and one for true, or none")
             return None
         for name, constructor in zip(names, (FALSE, TRUE), strict=True):

@@ -20,6 +20,9 @@ weights of places (`verify.exploring.ranking`):
                        is said where the supervisor never has a choice in any state
     dead transitions   what occurs in no state never occurs; of all others a run in the whole space, or in turns, is
                        known
+    properties         conditions on all states (`stated`): the places of each are a group, and have no limits, so each
+                       marking has a state with the same tokens there. What is not so in a state has to be known from
+                       the part of the whole space
 
 All of it has to come out so; else nothing is said.
 """
@@ -39,6 +42,7 @@ from pn2code.verify.controller.control_types import Plan
 from pn2code.verify.controller.kept_silence import kept_silence
 from pn2code.verify.controller.left_over import nothing_left
 from pn2code.verify.controller.running import SUPERVISOR, Running, chunks
+from pn2code.verify.controller.stated import Stated, stated
 from pn2code.verify.exploring.counted import MOST_STATES, SOON, counted
 from pn2code.verify.exploring.counts import LEAST_TOKENS, Counts
 from pn2code.verify.exploring.explore import ExploreOptions, explore
@@ -62,12 +66,14 @@ class Seen:
         looked: the net and its states.
         said: what follows of the questions about the cell, in the order of `control.of_cell`.
         asked: the same of those about its orders.
+        answers: what is said of properties, in their order.
         is_quiet: whether nothing is left for the supervisor where nothing can happen any more (`left_over`).
     """
 
     looked: Looked
     said: tuple[Mapping[str, Any], ...]
     asked: tuple[Mapping[str, Any], ...]
+    answers: tuple[Mapping[str, Any], ...]
     is_quiet: bool
 
 
@@ -80,10 +86,17 @@ class Abstract:
     turns: Turns
     ranking: Ranking
     sizes: Sizes
+    properties: tuple[Stated, ...] = ()
+    """what is asked of all states besides"""
 
 
 def abstract(
-    partition: Partition, plan: Plan, kept: Sequence[int] = (), *, least: int = LEAST_TOKENS
+    partition: Partition,
+    plan: Plan,
+    kept: Sequence[int] = (),
+    properties: Sequence[Stated] = (),
+    *,
+    least: int = LEAST_TOKENS,
 ) -> Abstract | None:
     """The net of turns with its limits; None: there is nothing to count so.
 
@@ -91,20 +104,22 @@ def abstract(
         partition: the cell.
         plan: what is asked.
         kept: more places of which all tokens count.
+        properties: conditions on its states, those of `plan` that are not known.
         least: as for `counts`.
     """
-    loose = loosened(partition)
+    loose = loosened(partition, [x.places for x in properties])
     if loose is None or not partition.final_places:
         return None
     running, table = loose
     own = {p.index for p in partition.net.places}
     open_ = {p for p, most in plan.capacities.items() if plan.bounds.get(p, most + 1) > most}
     asked = {p for s in running.silences for p in group(s)} | open_ | set(kept)
+    asked |= {p for x in properties for p in x.exact}
     free = own - asked - {c.place for c in partition.channels}
     made = counted(running.net, plan.storage, table, free, never=running.probes, least=least)
     if made is None:
         return None
-    return Abstract(running, made.counts, made.turns, made.ranking, made.sizes)
+    return Abstract(running, made.counts, made.turns, made.ranking, made.sizes, tuple(properties))
 
 
 def look(
@@ -127,10 +142,16 @@ def look(
         order: what is known of all orders from a part of their space.
         in_order: questions about orders, which are answered where the supervisor never has a choice.
     """
-    made = abstract(partition, plan, options.whole)
-    if made is None:
+    known = part.answers[: len(plan.properties.properties)]
+    properties = _open_properties(partition, plan, known)
+    made = None
+    if properties is not None:
+        made = abstract(partition, plan, options.whole, [x for _, x in properties])
+    if made is None or properties is None:
         return None
     running = made.running
+    if running.meek and any(row["trace"] for row in known):
+        return None  # whether scripts can do so is looked for in the whole net
     lengths = _lengths(partition, plan, made)
     if lengths is None:
         return None
@@ -174,7 +195,27 @@ def look(
     asked = (YES, {**YES, "value": firings}, *confluence)
     said = _said(partition, plan, made, found, rows, longest)
     looked = Looked(running, _bounded(found, made, plan), None)
-    return Seen(looked, said, asked, quiet["answer"] == "yes")
+    told = dict(enumerate(known)) | {i: x.row(plan.properties.properties[i]) for i, x in properties}
+    return Seen(looked, said, asked, tuple(told[i] for i in sorted(told)), quiet["answer"] == "yes")
+
+
+def _open_properties(
+    partition: Partition, plan: Plan, known: Sequence[Mapping[str, Any]]
+) -> list[tuple[int, Stated]] | None:
+    """Those that a part of the whole space does not decide, by number; None: one is no condition on states."""
+    count = len(plan.properties.properties)
+    over = Running.of(partition, loose=True).over
+    found: list[tuple[int, Stated]] = []
+    if len(known) < count:
+        return None
+    for i, p in enumerate(plan.properties.properties):
+        if known[i]["answer"] != "unknown":
+            continue
+        own = stated(p, over, plan.properties, partition)
+        if own is None:
+            return None
+        found.append((i, own))
+    return found
 
 
 CONFLUENCE = 2
@@ -187,11 +228,13 @@ def is_decided(order: Sequence[Mapping[str, Any]]) -> bool:
 
 
 def questions(made: Abstract, plan: Plan, rising: frozenset[int]) -> str:
-    """All but the first have to be answered with "yes"; in front are those that `_said` leaves out."""
+    """All but the first have to be answered with "yes"; in front are those that `_said` leaves out, and properties."""
     running, partition = made.running, made.running.partition
     lines = [x for x in running.lines(first=True) if not x.startswith("instant ")]
     asked = Questions()
     asked.asked.append(f"? invariant {nothing_left(asked, running)}")
+    for x in made.properties:
+        x.ask(asked)
     if rising:
         lines += chunks("instant 0", sorted(rising))
         asked.asked.append(f"? restless 0 {ENDLESS}")

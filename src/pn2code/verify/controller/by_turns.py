@@ -28,7 +28,7 @@ Unless all of these come out well (the order of firing may matter), nothing is s
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -69,11 +69,18 @@ class Looked:
     orders: Exploration | None
 
 
-def loosened(partition: Partition) -> tuple[Running, Turns] | None:
-    """The net, and the table of its turns; None: it is not possible."""
+def loosened(
+    partition: Partition, groups: Iterable[Collection[int]] = ()
+) -> tuple[Running, Turns] | None:
+    """The net, and the table of its turns; None: it is not possible.
+
+    Args:
+        partition: the cell.
+        groups: more places of which it matters what they hold at the same time.
+    """
     running = Running.of(partition, loose=True)
     try:
-        return running, table_of(running, [*map(group, running.silences)])
+        return running, table_of(running, [*map(group, running.silences), *groups])
     except NotPossibleError:
         return None
 

@@ -23,6 +23,7 @@ from pn2code.verify.answers.reasons import clause
 from pn2code.verify.controller.control_answers import can_more, has_own_priorities
 from pn2code.verify.controller.control_types import Control
 from pn2code.verify.controller.overtaking import is_in_order
+from pn2code.verify.controller.premises import COUNTED, IN_TURNS
 from pn2code.verify.exploring import nondeterminism
 
 _PRIORITIES = (
@@ -148,6 +149,9 @@ def of_cell(
         certain = _projected(certain, control)
         found_one = _one(of_net, certain, partition)
         assumes = control.premises.of_property(asked, found_one.answer, kept=found_one.kept)
+        is_from_states = found_one.answer != "inconclusive" and found_one.evidence is None
+        if control.reduced and is_from_states:
+            assumes = (*assumes, IN_TURNS, *([COUNTED] if control.is_counted else []))
         yield replace(found_one, assumes=assumes)
 
 

@@ -65,6 +65,7 @@ from pn2code.verify.controller.kept_silence import kept_silence
 from pn2code.verify.controller.poses import Bad, Poses
 from pn2code.verify.controller.reach_check import reach, suspects, told_poses
 from pn2code.verify.controller.running import NotModelledError, Running
+from pn2code.verify.controller.stated import all_stated
 from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import Limits, Reduction
@@ -321,7 +322,7 @@ def examine(
             checks,
             found,
             running,
-            answers=found.answers[:count],
+            answers=found.answers[:count] if in_counts is None else in_counts.answers,
             closed=closed,
             reduced=in_turns is not None or in_counts is not None,
             quiet=in_counts is not None and in_counts.is_quiet,
@@ -343,7 +344,8 @@ def _may_count(partition: Partition, plan: Plan, limits: Limits) -> bool:
     if first is None or limits.turns_from is None or first > limits.turns_from:
         return False
     is_enough = most is None or most >= first
-    return is_enough and not plan.properties.properties and not partition.net.timed
+    is_of_states = all_stated(plan.properties, partition)
+    return is_enough and is_of_states and not partition.net.timed
 
 
 def _part_of_orders(

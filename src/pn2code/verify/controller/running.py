@@ -320,7 +320,7 @@ class _Composer:
         self.looked = looked
         self.seen = {c.place: b.place(f"cell.{c.name}.seen", b.unit) for c in looked}
         written = [c for c in partition.channels if c.writer == SUPERVISOR]
-        self.staged = list(_staged(partition))
+        self.staged = list(staged(partition))
         self.out = {
             c.place: b.place(f"cell.{c.name}.out", b.unit) for c in (*written, *self.staged)
         }
@@ -614,7 +614,7 @@ class _Composer:
             self.clock.append(self._step(clock, f"clock.{name}", self.after, quiet, *news))
 
 
-def _staged(partition: Partition) -> Iterator[Channel]:
+def staged(partition: Partition) -> Iterator[Channel]:
     """Channels of robots whose messages come out in an order that somebody could notice, in that order."""
     channels = {c.place: c for c in partition.channels}
     found: set[int] = set()

@@ -36,10 +36,9 @@ _STAMPS_UNSEEN = frozenset(
     }
 )
 """Functions that have to do with timed tokens and do not look at their stamps."""
-_OUTSIDE = frozenset({"TextIO.print", "Ref.ref"})
+_OUTSIDE = frozenset({"TextIO.print"})
 """Functions that look impure and decide nothing."""
 _OUTSIDE_PREFIXES = (
-    "Ref.",
     "Random.",
     "TextIO.",
     "OS.",
@@ -172,8 +171,6 @@ def _builtin_reads(name: str, t: Type) -> str | None:
         return None
     if name.startswith("Random.") or name in _RANDOM:
         return "draws random numbers"
-    if name.startswith("Ref."):
-        return "uses a reference, which is no part of a marking"
     if name.startswith(_OUTSIDE_PREFIXES):
         return "uses files, which are no part of a marking"
     return None

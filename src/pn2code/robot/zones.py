@@ -1,0 +1,203 @@
+"""What of arms and devices is in a zone, and how fast it is there.
+
+    watch = ZoneWatch(cell)
+    watch.occupied("front", {"arm": q}, parts)          # whether an arm, or what it carries, is in it
+    watch.too_fast({"arm": q}, {"arm": qd}, parts)      # TooFast, or None
+
+Each link counts as the box around its shapes, so it may be a little larger than it is. No collision library is asked:
+every backend knows the same.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Iterator, Mapping
+
+import numpy as np
+from lxml import etree
+
+from pn2code.base.frozen import frozen
+from pn2code.robot.hulls import Hull
+from pn2code.robot.parts import Part
+from pn2code.robot.placed_links import placed_links
+from pn2code.robot.robot_cell import CellRobot, RobotCell
+from pn2code.robot.transforms import Array, inverse, matrix_of, rotation_xyz
+from pn2code.robot.urdf import Urdf
+from pn2code.robot.zones_table import Zone
+
+_STEP = 1e-6
+"""s: over which places are compared to know how fast they change."""
+
+
+@frozen(eq=False)
+class _Box:
+    """A link: the axis that moves it (0: none; one more than there are: the flange), its corners in that frame."""
+
+    name: str
+    axis: int
+    corners: Array
+
+
+@frozen(eq=False)
+class TooFast:
+    """A link that is faster in a zone than may be; `point`: of it, in the world."""
+
+    zone: Zone
+    robot: str
+    link: str
+    speed: float
+    point: tuple[float, float, float]
+
+    def words(self) -> str:
+        """For people."""
+        at = ", ".join(f"{1000.0 * v:.0f}" for v in self.point)
+        return (
+            f"`{self.link}` is {1000.0 * self.speed:.1f} mm/s fast at {at} mm, in zone `{self.zone.name}`, where "
+            f"{1000.0 * (self.zone.max_speed or 0.0):.1f} mm/s are allowed"
+        )
+
+
+class ZoneWatch:
+    """Boxes around all links, and the zones."""
+
+    def __init__(self, cell: RobotCell) -> None:
+        self.cell = cell
+        self._boxes = {r.name: tuple(_boxes(r)) for r in cell.moving} if cell.zones else {}
+        self._kinds = {k.name: _corners([Hull.of(k.shape)]) for k in cell.parts.values()}
+        self._frames = {name: inverse(matrix_of(z.pose)) for name, z in cell.zones.items()}
+        self.limited = tuple(z for z in cell.zones.values() if z.max_speed is not None)
+
+    def placed(self, robot: str, q: Array, parts: Iterable[Part]) -> Iterator[tuple[str, Array]]:
+        """Each link, and each part that goes with the robot: its name and its corners in the world, (8, 3)."""
+        own = self.cell.robot(robot)
+        frames = [np.eye(4), *(f[0] for f in own.kinematics.link_frames(np.asarray(q)[None]))]
+        base = own.T_world_base
+        for box in self._boxes[robot]:
+            frame = base @ frames[box.axis]
+            yield box.name, box.corners @ frame[:3, :3].T + frame[:3, 3]
+        plates = {f"{robot}/{a.name}": a for a in own.carrying}
+        for part in parts:
+            corners = self._kinds[part.kind.name]
+            if part.carrier != robot or corners is None:
+                continue
+            if part.plate:
+                frame = own.T_world_plate(plates[part.plate], q) @ part.frame
+            else:
+                frame = base @ own.kinematics.forward(q) @ part.frame
+            yield f"{robot}/{part.name}", corners @ frame[:3, :3].T + frame[:3, 3]
+
+    def off(self, zone: str, corners: Array) -> float:
+        """m: how far a box is from a zone at least; negative: it is in it."""
+        frame = self._frames[zone]
+        own = corners @ frame[:3, :3].T + frame[:3, 3]
+        return _off(own, np.array(self.cell.zones[zone].size) / 2.0)
+
+    def occupied(self, zone: str, joints: Mapping[str, Array], parts: Iterable[Part]) -> bool:
+        """Whether an arm, or what it carries, is in a zone."""
+        parts = tuple(parts)
+        return any(
+            self.off(zone, corners) <= 0.0
+            for robot in self.cell.robots
+            if robot.name in joints
+            for _, corners in self.placed(robot.name, joints[robot.name], parts)
+        )
+
+    def too_fast(
+        self, joints: Mapping[str, Array], speeds: Mapping[str, Array], parts: Iterable[Part]
+    ) -> TooFast | None:
+        """What is faster in a zone than may be there: the fastest point of it. `speeds`: rad/s, m/s."""
+        parts = tuple(parts)
+        for name, q in joints.items():
+            qd = speeds.get(name)
+            if qd is None or not np.any(qd):
+                continue
+            now = list(self.placed(name, q, parts))
+            before, after = (
+                [c for _, c in self.placed(name, q + s * _STEP * qd, parts)] for s in (-1.0, 1.0)
+            )
+            for i, (link, corners) in enumerate(now):
+                fast = np.linalg.norm(after[i] - before[i], axis=1) / (2.0 * _STEP)
+                for zone in self.limited:
+                    assert zone.max_speed is not None
+                    if fast.max() > zone.max_speed and self.off(zone.name, corners) <= 0.0:
+                        x, y, z = corners[int(fast.argmax())].tolist()
+                        return TooFast(zone, name, link, float(fast.max()), (x, y, z))
+        return None
+
+
+def _boxes(robot: CellRobot) -> Iterator[_Box]:
+    trees: dict[str, tuple[Urdf, str]] = {x: (robot.arm.urdf, x) for x in robot.arm.urdf.links}
+    if robot.tool is not None:
+        trees |= {f"tool_{x}": (robot.tool.urdf, x) for x in robot.tool.urdf.links}
+    for link, axis, frame in placed_links(robot):
+        corners = _corners(list(_shapes(*trees[link])))
+        if corners is not None:
+            own = corners @ frame[:3, :3].T + frame[:3, 3]
+            yield _Box(f"{robot.name}/{link}", axis, own)
+
+
+def _shapes(tree: Urdf, link: str) -> Iterator[Hull | None]:
+    """The collision shapes of a link, in its frame."""
+    element = next(e for e in tree.xml.findall("link") if e.get("name") == link)
+    for collision in element.findall("collision"):
+        hull = _shape(collision.find("geometry"), tree)
+        origin = collision.find("origin")
+        frame = np.eye(4)
+        if origin is not None:
+            frame[:3, 3] = _numbers(origin.get("xyz", "0 0 0"))
+            frame[:3, :3] = rotation_xyz(*_numbers(origin.get("rpy", "0 0 0")))
+        yield hull.at(frame) if hull is not None else None
+
+
+def _shape(geometry: etree._Element | None, tree: Urdf) -> Hull | None:
+    for shape in geometry if geometry is not None else ():
+        match shape.tag:
+            case "box":
+                x, y, z = _numbers(shape.get("size", ""))
+                return Hull.box((x, y, z))
+            case "cylinder":
+                return Hull.cylinder(
+                    float(shape.get("radius", "0")), float(shape.get("length", "0"))
+                )
+            case "sphere":
+                across = 2.0 * float(shape.get("radius", "0"))
+                return Hull.box((across, across, across))
+            case "mesh":
+                name = shape.get("filename", "").removeprefix("package://").removeprefix("file://")
+                hull = Hull.around(tree.path.parent / name, 1.0)
+                if hull is None:
+                    return None
+                scale = np.array(_numbers(shape.get("scale", "1 1 1")))
+                return Hull(hull.corners * scale, hull.normals, hull.middle * scale)
+    return None
+
+
+def _numbers(text: str) -> tuple[float, float, float]:
+    x, y, z = (float(w) for w in text.split())
+    return x, y, z
+
+
+def _corners(hulls: list[Hull | None]) -> Array | None:
+    """Of the box around some shapes, (8, 3), in the order of `product`; None: there are none."""
+    points = [h.corners for h in hulls if h is not None]
+    if not points:
+        return None
+    found = np.vstack(points)
+    return np.array(
+        list(itertools.product(*zip(found.min(axis=0), found.max(axis=0), strict=True)))
+    )
+
+
+def _off(corners: Array, half: Array) -> float:
+    """How far a box is at least from one around the origin with these half lengths."""
+    edges = np.stack([corners[4] - corners[0], corners[2] - corners[0], corners[1] - corners[0]])
+    axes = [*np.eye(3), *edges, *(np.cross(a, b) for a in np.eye(3) for b in edges)]
+    best = -np.inf
+    for axis in axes:
+        long = float(np.linalg.norm(axis))
+        if long < 1e-9:
+            continue
+        along = corners @ (axis / long)
+        reach = float(np.abs(axis / long) @ half)
+        best = max(best, float(along.min()) - reach, -float(along.max()) - reach)
+    return best

@@ -1,0 +1,224 @@
+"""Properties of a cell that follow from what holds in each state, so that reduced states tell (`by_counts`).
+
+    made = stated(property, running.over, partition)      # None: it is not of that kind
+    made.places, made.exact                               # what it looks at together; and of which all tokens count
+    made.ask(questions)                                   # one question about all states; its "yes" is enough
+
+Let all states be those of the net of turns, which does all that the cell does (docs/reductions.md). A condition that
+holds in all of them holds in all states of the cell, as far as it says what places hold. Of the rest it is asked for
+more than has to be so:
+
+    dead          in a dead state of the cell the supervisor has finished, if no state of it is blocked, which has to be
+                  known for everything that is said; so what is demanded of dead states is demanded wherever it has
+                  finished
+    enabled(T)    where T is what its program does next, the places that T takes tokens from, or tests, are marked; a
+                  limit is no smaller than what T demands, so this is seen in a state, too
+    ctl AF p, ctl AG EF p, ctl AG AF p, ltl F p, ltl G F p, with or without fairness
+                  no run goes on for ever, so each path ends in a dead state: p is demanded there
+
+    every fires(T) is followed by p, within any number of firings
+                  p holds in each state that T leads to. A place that T changes is looked at together with what p looks
+                  at, so these states are those that T leads to in any order
+
+Such atoms may stand only where more of them demands more: on the left of an implication, under one negation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from pn2code.base.frozen import frozen
+from pn2code.cell.partition import Partition
+from pn2code.net.flat import ArcKind, Form
+from pn2code.properties import meaning as m
+from pn2code.properties.questions import Questions, expanded
+
+
+class _NotStatedError(Exception):
+    """A formula says something of paths, or of programs."""
+
+
+@frozen
+class Stated:
+    """A property as a condition on all states.
+
+    Args:
+        asked: what it asks: `Bound`, or a condition that has to hold in all states.
+        is_of_ends: whether it has to hold in dead states only.
+        steps: transitions; if there are any, it has to hold only where one of them leads to.
+        places: what it looks at; `exact`: of these, those whose numbers of tokens have to be known.
+    """
+
+    asked: m.Bound | m.Formula
+    is_of_ends: bool
+    steps: tuple[int, ...]
+    places: frozenset[int]
+    exact: frozenset[int]
+    over: int
+    inputs: tuple[tuple[int, ...], ...]
+    """by transition, places that hold a token where it is enabled"""
+
+    def ask(self, asked: Questions) -> None:
+        """Adds one question."""
+        if isinstance(self.asked, m.Bound):
+            asked.ask(self.asked)
+            return
+        found = self._item(asked, self.asked)
+        if self.steps:
+            wrong = asked.line(f"not {found}")
+            after = [asked.line(f"exa {t} {wrong}") for t in self.steps]
+            some = after[0]
+            for item in after[1:]:
+                some = asked.line(f"or {some} {item}")
+            never = asked.line(f"not {asked.line(f'ef {some}')}")
+            asked.asked.append(f"? initially {never}")
+            return
+        if self.is_of_ends:
+            found = asked.line(
+                f"or {asked.line(f'not {self._marked(asked, [self.over])}')} {found}"
+            )
+        asked.asked.append(f"? invariant {found}")
+
+    @staticmethod
+    def row(p: m.Property) -> Mapping[str, Any]:
+        """What the explorer would say where it holds in all states."""
+        answer = "no" if isinstance(p.asked, m.Linear) else "yes"  # a path that violates it
+        return {"answer": answer, "value": None, "trace": None, "loop": None, "why": None}
+
+    def _item(self, asked: Questions, f: m.Formula) -> int:
+        if isinstance(f, m.Atom):
+            if f.kind == "dead":
+                return self._marked(asked, [self.over])
+            if f.kind == "enabled":
+                return self._marked(asked, self.inputs[f.number])
+            return asked.item(f)
+        if f.operator in ("implies", "iff"):
+            return self._item(asked, expanded(f))
+        parts = " ".join(str(self._item(asked, x)) for x in f.parts)
+        return asked.line(f"{f.operator} {parts}")
+
+    @staticmethod
+    def _marked(asked: Questions, places: Sequence[int]) -> int:
+        found = asked.item(m.TRUE)
+        for place in places:
+            found = asked.line(f"and {found} {asked.line(f'within {place} 1 -')}")
+        return found
+
+
+def stated(
+    p: m.Property, over: int, properties: m.Properties, partition: Partition
+) -> Stated | None:
+    """What a property asks of all states; None: it asks something else.
+
+    Args:
+        p: the property.
+        over: the place of the supervisor's end.
+        properties: those that it belongs to.
+        partition: the cell.
+    """
+    inputs = tuple(_inputs(partition))
+    if isinstance(p.asked, m.Bound):
+        place = frozenset({p.asked.place})
+        return Stated(p.asked, False, (), place, place, over, inputs)
+    found = _condition(p.asked)
+    if found is None:
+        return None
+    condition, is_of_ends, steps = found
+    changed = [_changed(partition, t) for t in steps]
+    if not all(changed):
+        return None
+    try:
+        atoms = list(_atoms(condition, True))
+    except _NotStatedError:
+        return None
+    is_at_end = is_of_ends or any(a.kind == "dead" for a in atoms)
+    exact = {
+        place
+        for a in atoms
+        if a.kind == "pred"
+        for _, place in properties.predicates[a.number].places
+    }
+    places = exact | {place for a in atoms if a.kind == "enabled" for place in inputs[a.number]}
+    places |= {over} if is_at_end else set()
+    places |= {own[0] for own in changed}
+    return Stated(condition, is_of_ends, steps, frozenset(places), frozenset(exact), over, inputs)
+
+
+def all_stated(properties: m.Properties, partition: Partition) -> bool:
+    """Whether all properties of a cell are of that kind, and none is about its closed net alone."""
+    return all(
+        not p.of_net and stated(p, 0, properties, partition) is not None
+        for p in properties.properties
+    )
+
+
+def _condition(asked: m.Asked) -> tuple[m.Formula, bool, tuple[int, ...]] | None:
+    """What has to hold in all states, or in all ends, or after some transitions."""
+    match asked:
+        case m.Invariant(condition):
+            return condition, False, ()
+        case m.Branching(
+            m.Op("AF", (p,)) | m.Op("AG", (m.Op("EF", (p,)),)) | m.Op("AG", (m.Op("AF", (p,)),))
+        ) | m.Linear(m.Op("F", (p,)) | m.Op("G", (m.Op("F", (p,)),))) if m.is_of_nodes(p):
+            return p, True, ()
+        case m.Response(first, second, _, None, False) if m.is_of_nodes(second):
+            steps = [a for a in m.atoms(first) if a.kind == "fires"]
+            is_of_steps = m.looks_at_steps(first) and len(steps) == len([*m.atoms(first)])
+            return (second, False, tuple(a.number for a in steps)) if is_of_steps else None
+        case _:
+            return None
+
+
+def _changed(partition: Partition, transition: int) -> list[int]:
+    """Places whose number of tokens a transition surely changes, its own ones first."""
+    channels = {c.place for c in partition.channels}
+    arcs = partition.net.transitions[transition].arcs
+    alone = [a for a in arcs if sum(b.place == a.place for b in arcs) == 1]
+    found = {
+        a.place
+        for a in alone
+        if a.kind in (ArcKind.INPUT, ArcKind.OUTPUT)
+        and a.inscription is not None
+        and a.inscription.form is Form.TOKEN
+    }
+    return sorted(found, key=lambda place: (place in channels, place))
+
+
+def _atoms(f: m.Formula, is_positive: bool) -> Iterable[m.Atom]:
+    """Those of a condition.
+
+    Raises:
+        _NotStatedError: something in it is not known of states.
+    """
+    if isinstance(f, m.Atom):
+        if f.kind not in ("true", "pred") and (is_positive or f.kind not in ("dead", "enabled")):
+            raise _NotStatedError
+        return [f]
+    match f.operator:
+        case "not":
+            return _atoms(f.parts[0], not is_positive)
+        case "and" | "or":
+            return [a for part in f.parts for a in _atoms(part, is_positive)]
+        case "implies" | "iff":
+            return _atoms(expanded(f), is_positive)
+        case _:
+            raise _NotStatedError
+
+
+def _inputs(partition: Partition) -> Iterable[tuple[int, ...]]:
+    """By transition, those of its own places that hold a token where it is enabled."""
+    channels = {c.place for c in partition.channels}
+    for t in partition.net.transitions:
+        yield tuple(
+            sorted(
+                {
+                    a.place
+                    for a in t.arcs
+                    if a.kind in (ArcKind.INPUT, ArcKind.BOTH)
+                    and a.place not in channels
+                    and a.inscription is not None
+                    and a.inscription.form is Form.TOKEN
+                }
+            )
+        )

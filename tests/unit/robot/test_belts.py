@@ -1,0 +1,181 @@
+"""Belts: how far they run, what goes with them, what they take off their ends."""
+
+from __future__ import annotations
+
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from helpers.belt_cell import TOML
+from helpers.robot_cells import nowhere, pose_mm
+from pn2code.diagnostics import Diagnostics
+from pn2code.geometry.activities import Doing
+from pn2code.geometry.legs import Planner
+from pn2code.replay.cell import at_start, describe
+from pn2code.robot.belts import until_stop
+from pn2code.robot.commands import Along, Handling, MoveExternal, ToolAction
+from pn2code.robot.executor import RobotExecutor
+from pn2code.robot.parts import Part, PartFault, Parts
+from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.scene import load
+from pn2code.robot.transforms import matrix_of
+
+DATA: dict[str, Any] = tomllib.loads(TOML)
+FEED = ToolAction("feed", 2.0, Handling("creates", "box", "entry"))
+
+
+def cell_of(at: tuple[float, ...] = (), **belt: Any) -> tuple[RobotCell | None, list[str]]:
+    """The cell with boxes on the belt at the start, so far along, and keys of the belt replaced; what is said."""
+    data = tomllib.loads(TOML)
+    own = data["devices"]["feeder"]["axes"]["belt"]
+    for key, value in belt.items():
+        own.pop(key, None)
+        own |= {} if value is None else {key: value}
+    data["parts"]["box"]["at"] = [{"x": 1.5, "y": -1.7 + x, "z": 0.575} for x in at]
+    d = Diagnostics()
+    return load(data, Path(), nowhere, d), [e.message for e in d.errors]
+
+
+def right(at: tuple[float, ...] = (), **belt: Any) -> RobotCell:
+    cell, said = cell_of(at, **belt)
+    assert cell is not None, said
+    return cell
+
+
+def run(distance: float) -> MoveExternal:
+    return MoveExternal((Along("belt", distance, True),))
+
+
+def place(cell: RobotCell, parts: Parts, name: str) -> float:
+    """How far along the belt a part is, m."""
+    return round(float(parts.world(parts.present[name])[1, 3]) + 1.7, 6)
+
+
+def test_a_belt_runs_until_the_first_part_is_at_its_stop() -> None:
+    feeder = right((0.2, 0.7)).robot("feeder")
+    for at, told, stops in (
+        ((0.2, 0.7), 1.2, 0.4),
+        ((0.2, 0.7), 0.3, 0.3),
+        ((0.2,), 1.2, 0.9),
+        ((), 1.2, 1.2),
+        ((0.2, 1.1), 1.2, 0.0),  # one waits there
+        ((0.2, 1.103), 1.2, 0.0),
+        ((0.2, 1.2), 1.2, 0.9),  # one has gone past it
+    ):
+        command = until_stop(feeder, Parts(right(at)), run(told))
+        assert isinstance(command, MoveExternal)
+        assert command.along[0].position == pytest.approx(stops), at
+    free = right((0.2,), stop=None)
+    assert until_stop(free.robot("feeder"), Parts(free), run(1.2)) == run(1.2)
+
+
+def test_a_belt_runs_on_and_on() -> None:
+    cell = right()
+    executor = RobotExecutor(cell.robot("feeder"), cell.motion)
+    for count in (1, 2):
+        motion = executor.begin(run(1.0), 0.0)
+        assert motion.duration == pytest.approx(1.0 / 0.25 + 0.25 / 1.0 + 1.0 / 10.0)
+        executor.finish()
+        assert executor.q.tolist() == [float(count)]
+
+
+def test_what_stands_on_a_belt_goes_with_it_and_what_comes_off_its_end_is_a_fault() -> None:
+    cell = right((0.2, 0.7), stop=None)
+    parts = Parts(cell)
+    assert [p.plate for p in parts.present.values()] == ["feeder/belt"] * 2
+    parts.stand("feeder", np.array([0.4]))
+    assert (place(cell, parts, "box.1"), place(cell, parts, "box.2")) == (0.6, 1.1)
+    parts.run_out("feeder/belt")
+    assert parts.settled == ()
+    parts.stand("feeder", np.array([0.7]))
+    with pytest.raises(PartFault, match="`feeder/belt` takes `box.2` along until it is"):
+        parts.run_out("feeder/belt")
+
+
+def test_nothing_is_handled_on_a_belt_that_runs() -> None:
+    cell = right((0.7,))
+    parts = Parts(cell)
+    parts.turning = frozenset({"feeder/belt"})
+    with pytest.raises(PartFault, match="on `feeder/belt` while that runs"):
+        parts.handle("feeder", Handling("creates", "box", "entry"), None)
+    tcp = matrix_of(pose_mm(1500, -1000, 650, 180, 0, 0))
+    with pytest.raises(PartFault, match="from `feeder/belt` while that runs"):
+        parts.handle("robot", Handling("takes", "box"), tcp)
+
+
+def test_over_all_states_parts_are_where_the_belt_has_taken_them() -> None:
+    """The belt is as at its beginning again, so that there are no more states than places of parts."""
+    cell = right()
+    doing = Doing(Planner(cell), cell)
+    home = doing.planner.home("feeder")
+    first = doing.of("feeder", (FEED, run(1.2)), home, doing.start, (home,))
+    assert not first.fault and not first.doubt and first.end is home
+    assert first.turns == {"feeder/belt"} and first.kinds == {"box"}
+    assert place(cell, first.after.parts, "box.1") == 1.1
+    leg, contents = first.legs[-1]
+    assert leg.is_moving and [p.name for p in contents.load("feeder")] == ["box.1"]
+    # The next one comes to the beginning, and stays there.
+    second = doing.of("feeder", (FEED, run(1.2)), home, first.after, (home,))
+    assert place(cell, second.after.parts, "box.2") == 0.2
+    assert not second.turns and second.legs[-1][0].path is not None
+    assert second.legs[-1][0].path.duration == 0.0
+    off = right((), stop=None)
+    doing = Doing(Planner(off), off)
+    fallen = doing.of("feeder", (FEED, run(1.2)), doing.planner.home("feeder"), doing.start)
+    assert fallen.is_part and "takes `box.1` along until it is in the air" in fallen.fault
+
+
+def test_a_belt_does_not_pull_parts_out_of_a_clamp() -> None:
+    data = tomllib.loads(TOML)
+    data["devices"]["feeder"]["axes"]["side"] = {
+        "kind": "clamp", "pose": {"x": 1.5, "y": -1.5, "z": 0.58}, "from": 0.199, "to": 0.3,
+        "home": 0.199, "jaw": [0.02, 0.1, 0.1], "holds": "entry",
+    }  # fmt: skip
+    cell = load(data, Path(), nowhere, Diagnostics())
+    assert cell is not None
+    doing = Doing(Planner(cell), cell)
+    feeder = cell.robot("feeder")
+    home = doing.planner.home("feeder")
+    held = doing.of("feeder", (FEED, run(1.2)), home, doing.start, (home,))
+    assert held.is_part and "`feeder` pulls `box.1` out of `feeder/side`" in held.fault
+    wide = MoveExternal((Along("side", 0.3, True),))
+    free = doing.of("feeder", (FEED, wide, run(1.2)), home, doing.start, (home,))
+    assert not free.fault, free.fault
+    assert [a.name for a in feeder.carrying] == ["belt"]
+
+
+def test_whoever_handles_parts_near_a_belt_that_runs_is_seen() -> None:
+    cell = right((0.2,))
+    doing = Doing(Planner(cell), cell)
+    for (x, y), near in (
+        ((1.5, -1.0), True),
+        ((1.9, -1.0), True),
+        ((2.6, -1.0), False),
+        ((1.5, 0.4), False),
+        ((1.5, -2.4), False),
+    ):
+        where = np.array([x, y, 0.6]), 0.3
+        assert doing.within("feeder/belt", where, [doing.start]) is near, (x, y)
+
+
+def test_what_is_wrong_with_a_belt_is_said() -> None:
+    for changed, words in (
+        ({"stop": "infed"}, "names `infed`, which is no place of `[places]`"),
+        ({"pose": {"z": 0.5, "roll": 5.0}}, "belt `belt` is not level"),
+        ({"length": None}, "is missing"),
+    ):
+        cell, said = cell_of(**changed)
+        assert cell is None and any(words in e for e in said), (changed, said)
+
+
+def test_the_page_is_told_with_what_parts_go() -> None:
+    cell = right((0.2,))
+    shown = describe(cell)
+    assert "feeder/belt" in [b["name"] for b in shown["bodies"]]
+    state = at_start(cell)["box.1"]
+    assert state["holder"] == "feeder"
+    assert shown["robots"][1]["links"][state["link"]]["name"] == "belt"
+    assert isinstance(Parts(cell).present["box.1"], Part)
