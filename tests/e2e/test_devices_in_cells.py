@@ -13,9 +13,12 @@ from helpers.door_cell import NET, TOML, door_cell
 from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
 from pn2code.geometry.activities import Doing
+from pn2code.geometry.answers import STOPPED
 from pn2code.geometry.check import cells_of
 from pn2code.geometry.graph import explore_cell
 from pn2code.geometry.legs import Planner
+from pn2code.geometry.reach_look import Wanted
+from pn2code.geometry.reach_look import look as reach
 from pn2code.geometry.situations import Situations
 from pn2code.pipeline import generate
 from pn2code.run.cell import RunOptions, RunResult, run_cell
@@ -135,3 +138,16 @@ def test_a_belt_may_begin_to_run_when_a_part_is_half_way_out(tmp_path: Path) -> 
     assert (
         situations(belt_cell(tmp_path, net.replace("parts = 2", "parts = 1"), toml)).why == "order"
     )
+
+
+def test_reach_knows_what_belts_bring(tmp_path: Path) -> None:
+    """The arm grips a box that the belt has brought, and goes on with it; else that is said."""
+    for stop, moves, why in (("infeed", 6, ""), ("entry", 2, STOPPED)):
+        d = Diagnostics()
+        toml = belts.TOML.replace('stop = "infeed"', f'stop = "{stop}"')
+        net = belts.NET.replace("parts = 2", "parts = 1")
+        opened = read(belt_cell(tmp_path / stop, net, toml), {}, d)
+        assert opened is not None
+        found = reach(opened, Wanted(around=0.1, steps=2), Limits(), d)
+        assert found is not None
+        assert [(len(x.task.groups), x.open) for x in found] == [(moves, why)]
