@@ -69,7 +69,7 @@ def test_bounds_of_linear_time() -> None:
 def test_answers_that_only_help(kind: str) -> None:
     """All of them put in, a formula says the same, and some are decided without having been asked."""
     decided = made = 0
-    for draw, tables, graph, f in drawn(kind, range(1000, 1250)):
+    for draw, tables, graph, f in drawn(kind, range(1000, 1400)):
         t = Temporal(tables, kind, f)
         wanted = truth(graph, kind, f)
         was_open = t.value is None

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ import pytest
 from helpers.coloured_families import FAMILIES
 from helpers.random_linear import holds, random_linear, temporal_parts
 from helpers.random_tables import Graph, random_branching, random_condition
+from pn2code.contest import portfolio
 from pn2code.contest.engine import engine
 from pn2code.contest.examinations import GLOBAL, Asked, Part, asked
 from pn2code.contest.formulas import Fireable, Formula, Op, Tokens
@@ -117,3 +119,24 @@ def test_a_coloured_net(program: Path, family: str, tmp_path: Path) -> None:
 def bound(tables: Tables, place: str) -> Asked:
     """The question for the most tokens of a place."""
     return Asked(place, (Part("bound", tables.bound(0, Tokens((place,))).split(" ", 1)[1]),))
+
+
+def test_what_structural_methods_have_no_time_for_is_left_to_the_engine(
+    program: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    tables = FAMILIES["resources"]().tables()
+    made: list[int] = []
+    monkeypatch.setattr(portfolio, "_MAKING", 0.0)
+    monkeypatch.setattr(portfolio, "question", lambda *_: made.append(1))
+    lines = [asked(tables, "ReachabilityDeadlock", tmp_path)[0], bound(tables, "Has")]
+    found = {a.name: a.value for a in answers(program, tables, lines, seconds=SECONDS)}
+    assert found == {"ReachabilityDeadlock": False, "Has": 2}
+    assert not made
+
+
+def test_the_text_of_a_net_follows_its_arcs() -> None:
+    tables = Tables((1,), ({0: 1},), ({},), {"p": (0,)}, {"t": (0,)})
+    assert tables.text(["x"]) == "1 1\n1\n1 0 1 0\n1\nx\n"
+    other = replace(tables, post=({0: 2},))
+    assert other.text([]) == "1 1\n1\n1 0 1 1 0 2\n0\n"
+    assert tables.text([]) == "1 1\n1\n1 0 1 0\n0\n"

@@ -103,6 +103,8 @@ class _Reader:
         self.words = iter(words)
         self.pre = pre
         self.made = 0
+        self.needs: dict[tuple[int, int, bool], Condition] = {}
+        """By place, tokens and what is wanted: bindings of one transition need the same again and again."""
 
     def number(self) -> int:
         return int(next(self.words))
@@ -127,13 +129,24 @@ class _Reader:
         raise ValueError(f"`{word}` begins no formula about one marking")
 
     def enabled(self, t: int, wanted: bool) -> Condition:
-        parts = [self.comparison({p: 1}, n - 1, not wanted) for p, n in self.pre[t].items()]
-        return junction(wanted, parts)
+        return junction(wanted, [self.need(p, n, wanted) for p, n in self.pre[t].items()])
 
-    def comparison(self, factors: Mapping[int, int], limit: int, wanted: bool) -> Condition:
+    def need(self, place: int, tokens: int, wanted: bool) -> Condition:
+        key = place, tokens, wanted
+        found = self.needs.get(key)
+        if found is None:
+            found = self.needs[key] = self.comparison({place: 1}, tokens - 1, not wanted)
+        else:
+            self.count()
+        return found
+
+    def count(self) -> None:
         self.made += 1
         if self.made > MOST_PARTS:
             raise TooLargeError
+
+    def comparison(self, factors: Mapping[int, int], limit: int, wanted: bool) -> Condition:
+        self.count()
         if wanted:
             return at_most(factors, limit)
         return at_most({p: -n for p, n in factors.items()}, -limit - 1)

@@ -35,7 +35,9 @@ _SMALL = 1e-9
 LONGEST_S = 5.0
 """For one linear program, so that the one who ends the search need not wait longer."""
 _solving = threading.Lock()
-"""Held while HiGHS runs: the program must not end meanwhile (its threads would end it with an error)."""
+"""Held while HiGHS runs: an interpreter must not end meanwhile (its threads would end it with an error)."""
+LONGEST_WAIT_S = 0.5
+"""For the end of a linear program; HiGHS may go on for seconds after its time limit."""
 MOST_STEPS = 1_000_000
 """Of a transition in a solution that is followed."""
 MOST_SPLITS = 40
@@ -43,9 +45,12 @@ MOST_SPLITS = 40
 
 
 def wait_for_solver() -> None:
-    """Until no linear program is being solved. Those who search must have been told before that it is over."""
-    with _solving:
-        return
+    """Until no linear program is being solved, but not for long: a command leaves without the end of the interpreter.
+
+    Those who search must have been told before that it is over.
+    """
+    if _solving.acquire(timeout=LONGEST_WAIT_S):
+        _solving.release()
 
 
 class _UnknownError(Exception):

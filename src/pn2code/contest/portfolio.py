@@ -45,6 +45,8 @@ REWRITING = "REWRITING"
 """What the initial marking and the formula alone decide."""
 _LEAST_S = 0.2
 """With less time left nothing is begun."""
+_MAKING = 0.1
+"""Of the time, for making questions for the structural methods: before that nothing else begins."""
 _POLL_S = 0.05
 _WEIGHT = 4.0
 """So much more time have questions that are asked for themselves than those that only help."""
@@ -225,8 +227,11 @@ class _Portfolio:
         return question(number, place.part, self.tables)
 
     def _start_structural(self) -> None:
+        now = time.monotonic()
+        until = now + _MAKING * (self.ends - now)
         for number, place in enumerate(self.places):
-            place.question = self._question(number)
+            if time.monotonic() < until:  # what comes later is left to the engine
+                place.question = self._question(number)
         found = [p.question for p in self.places if p.question is not None]
         if found:
             goes_on = any(line.temporal is not None for line in self.lines)

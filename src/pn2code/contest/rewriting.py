@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 
+from pn2code.contest.evident import evident
 from pn2code.contest.formulas import Formula, Op, Truth
 
 TRUE, FALSE = Truth(True), Truth(False)
@@ -111,6 +112,7 @@ def _plain(f: Formula, known: Known, wanted: bool) -> Formula:
         case Op("not", (Op("not", (inner,)),)):
             return _plain(inner, known, wanted)
     value = known(f)
+    value = evident(f) if value is None else value
     plain = f if value is None else Truth(value)
     return plain if wanted else negation(plain)
 

@@ -43,6 +43,7 @@ class Tables:
         places: id of a place in the file -> its places here.
         transitions: id of a transition in the file -> its transitions here.
         enabled: that one of some transitions is enabled, in the engine's own words, once it was asked for.
+        written: "arcs" -> the arcs, and the same in the engine's own words, once they were asked for.
     """
 
     initial: tuple[int, ...]
@@ -51,6 +52,7 @@ class Tables:
     places: Mapping[str, tuple[int, ...]]
     transitions: Mapping[str, tuple[int, ...]]
     enabled: dict[tuple[str, ...], str] = field(default_factory=dict, compare=False, repr=False)
+    written: dict[str, tuple[object, str]] = field(default_factory=dict, compare=False, repr=False)
 
     def fits(self) -> bool:
         """Whether the engine can read it: reductions multiply weights, and put the tokens of places together."""
@@ -93,12 +95,21 @@ class Tables:
 
     def text(self, questions: Sequence[str], order: Sequence[int] = ()) -> str:
         """The net with questions in the engine's own words, for diagrams with an order of all places."""
-        lines = [f"{len(self.initial)} {len(self.pre)}", " ".join(map(str, self.initial))]
-        for pre, post in zip(self.pre, self.post, strict=True):
-            lines.append(f"{_arcs(pre)} {_arcs(post)}")
-        lines.append(str(len(questions)))
-        levels = [f"order {' '.join(map(str, order))}"] if order else []
-        return "\n".join([*lines, *questions, *levels]) + "\n"
+        initial = " ".join(map(str, self.initial))
+        lines = [f"{len(self.initial)} {len(self.pre)}", initial, *self._all_arcs()]
+        lines += [str(len(questions)), *questions]
+        lines += [f"order {' '.join(map(str, order))}"] if order else []
+        return "\n".join(lines) + "\n"
+
+    def _all_arcs(self) -> list[str]:
+        """A line for each transition, all as one text: it is wanted for each task anew, and may be long."""
+        key = (self.pre, self.post)
+        made, text = self.written.get("arcs", (None, ""))
+        if made != key:
+            arcs = zip(self.pre, self.post, strict=True)
+            text = "\n".join(f"{_arcs(pre)} {_arcs(post)}" for pre, post in arcs)
+            self.written["arcs"] = key, text
+        return [text] if self.pre else []
 
     def reach(self, number: int, formula: Formula) -> str:
         """The question whether a marking is reachable in which a formula without operators of time is true."""

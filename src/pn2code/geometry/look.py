@@ -111,6 +111,7 @@ class Look:
             tuple(zones or ()),
             self.comparison.nearest() if is_apart else None,
             found.stopped,
+            tuple(r.name for r in self.cell.devices),
         )
 
     # --- moves -----------------------------------------------------------------------------------
@@ -236,12 +237,12 @@ class Look:
         meetings = list(meetings)
         touching = [m for m in meetings if m.apart.outcome == "touch"]
         touching.sort(key=lambda m: m.apart.nearest)
-        firsts = list({m.robots: m for m in reversed(touching)}.values())
+        deepest = set({m.robots: m for m in reversed(touching)}.values())
         depths: dict[_Meeting, Apart] = {}
         begun = self.comparison.sweeper.queries
-        for m in [*firsts, *touching]:
+        for m in sorted(touching, key=lambda m: m not in deepest):
             asked = self.comparison.sweeper.queries - begun
-            if m not in depths and (m in firsts or asked < MOST_DEPTHS):
+            if m in deepest or asked < MOST_DEPTHS:
                 depths[m] = self.comparison.deepest(m.apart)
         return [
             _met(m.robots, m.transitions, m.doing, depths.get(m, m.apart), self._run(found, m.met))
