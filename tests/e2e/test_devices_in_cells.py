@@ -15,13 +15,15 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.geometry.activities import Doing
 from pn2code.geometry.answers import STOPPED
 from pn2code.geometry.check import cells_of
-from pn2code.geometry.graph import explore_cell
+from pn2code.geometry.graph import CellGraph, explore_cell
 from pn2code.geometry.legs import Planner
 from pn2code.geometry.reach_look import Wanted
 from pn2code.geometry.reach_look import look as reach
 from pn2code.geometry.situations import Situations
 from pn2code.pipeline import generate
+from pn2code.robot.robot_cell import RobotCell
 from pn2code.run.cell import RunOptions, RunResult, run_cell
+from pn2code.timing.doings import NS, Doings
 from pn2code.verdict.opened import read
 from pn2code.verify.exploring.limits import Limits
 
@@ -114,8 +116,8 @@ def test_a_run_stops_where_an_arm_is_too_fast_in_a_zone(tmp_path: Path) -> None:
     assert "mm/s fast at" in record.reason and "in zone `front`, where 200.0" in record.reason
 
 
-def situations(folder: Path) -> Situations:
-    """All situations of a cell, of which nothing is swept."""
+def graph_of(folder: Path) -> tuple[CellGraph, RobotCell]:
+    """A cell as its programs run, and what stands in it."""
     d = Diagnostics()
     opened = read(folder, {}, d)
     assert opened is not None and opened.config is not None, [e.message for e in d.errors]
@@ -124,6 +126,12 @@ def situations(folder: Path) -> Situations:
     ((_, arms),) = cells
     graph = explore_cell(partition, opened.storage, Limits(), d)
     assert graph is not None and not graph.why
+    return graph, arms
+
+
+def situations(folder: Path) -> Situations:
+    """All situations of a cell, of which nothing is swept."""
+    graph, arms = graph_of(folder)
     found = Situations(graph, Doing(Planner(arms), arms), tuple(r.name for r in arms.moving))
     found.explore()
     return found
@@ -151,3 +159,17 @@ def test_reach_knows_what_belts_bring(tmp_path: Path) -> None:
         found = reach(opened, Wanted(around=0.1, steps=2), Limits(), d)
         assert found is not None
         assert [(len(x.task.groups), x.open) for x in found] == [(moves, why)]
+
+
+def test_a_belt_with_a_stop_may_run_for_less_than_it_is_told(tmp_path: Path) -> None:
+    graph, cell = graph_of(belt_cell(tmp_path))
+    doings = Doings(graph, cell)
+    home = doings.planner.home("feeder")
+    feeding = next(
+        i for i in range(len(graph.elements)) if len(graph.commands(i)) == 2 and doings.is_told(i)
+    )
+    done = doings.of(feeding, home)
+    assert done is not None and doings.why == "belt"
+    feed, belt = done.parts
+    assert (feed.ns, feed.least) == (2 * NS, None)
+    assert belt.ns > 4 * NS and belt.least == 0

@@ -120,6 +120,11 @@ class Ground:
         hull = self._kinds[kind]
         return 0.0 if hull is None else hull.radius
 
+    def middle(self, kind: PartKind, frame: Array) -> Array:
+        """Where the middle of a part is, in the world."""
+        hull = self._kinds[kind.name]
+        return frame[:3, 3] if hull is None else hull.at(frame).middle
+
     def rest(
         self,
         kind: PartKind,

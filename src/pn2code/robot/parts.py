@@ -221,11 +221,14 @@ class Parts:
         return {x for x in on if x in self._plates} | set(goes.values()) - {""}
 
     def run_out(self, plate: str) -> None:
-        """A belt has come to rest. Raises PartFault if something on it has come off its end.
+        """A belt has come to rest. Raises PartFault if the middle of something on it has come off its end.
+
+        Up to there the belt takes it along, and it does not tip over on the way; beyond, nobody knows how far it goes.
 
         What stands on something else now is in `settled`.
         """
         self.settled = ()
+        own = {p.name for p in self.riders(plate)}
         for part in self.riders(plate):
             rest = self.rest(part)
             trouble = rest.trouble(self.slack) if rest is not None else ""
@@ -234,7 +237,23 @@ class Parts:
                 raise PartFault(
                     f"`{plate}` takes `{part.name}` along until it is {trouble}, part at {where}"
                 )
+            off = self._beyond(plate, part)
+            if off > self.slack and rest is not None and not own.intersection(rest.on):
+                where = describe(pose_of(self.world(part)))
+                raise PartFault(
+                    f"`{plate}` takes `{part.name}` along until its middle is {1000.0 * off:.1f} mm beyond the end, "
+                    f"where nothing takes it further, part at {where}"
+                )
         self._settle_again()
+
+    def _beyond(self, plate: str, part: Part) -> float:
+        """How far (m) the middle of a part is beyond the end of a belt, negative: before it."""
+        own = self._ground.plates[plate]
+        device = self.cell.robot(own.robot)
+        belt = next(a for a in device.belts if device.index(a.name) == own.index)
+        middle = self._ground.middle(part.kind, self.world(part))
+        frame = inverse(device.T_world_base @ belt.T_base_axis)
+        return float((frame @ np.append(middle, 1.0))[0] - belt.upper)
 
     def rewind(self, plate: str, frame: Array) -> None:
         """The same belt with its beginning counted from where it is now: `T_world_plate` of that."""

@@ -191,6 +191,7 @@ class Layout:
         name: "" if the cell has none.
         states: of the cell.
         open: why there may be more commands; "": there are not.
+        devices: their names.
     """
 
     name: str
@@ -199,6 +200,7 @@ class Layout:
     cycle: Cycle
     states: int
     open: str
+    devices: tuple[str, ...] = ()
 
     def row(self) -> dict[str, Any]:
         """For programs."""

@@ -25,12 +25,17 @@ FOREVER = 10**18
 
 @frozen(eq=False)
 class Part:
-    """One command: from where, and how long it takes (ns)."""
+    """One command: from where, and how long it takes (ns).
+
+    Args:
+        least: ns: it may be over so soon; None: it always takes `ns`.
+    """
 
     command: Command
     kind: str
     start: Stand | None
     ns: int
+    least: int | None = None
 
 
 @frozen(eq=False)
@@ -92,13 +97,15 @@ class Doings:
         parts: list[Part] = []
         for command in commands:
             if stand is not None:
-                if self._stops(stand.robot, command):
+                stops = self._stops(stand.robot, command)
+                if stops:
                     self.why = self.why or "belt"
                 leg = self.planner.leg(stand, command)
                 if leg.fault is not None or leg.path is None:
                     message = leg.fault.message if leg.fault is not None else ""
                     return Doing(FOREVER, stand, tuple(parts), message)
-                parts.append(Part(command, leg.kind, stand, _ns(leg.path.duration)))
+                least = 0 if stops else None
+                parts.append(Part(command, leg.kind, stand, _ns(leg.path.duration), least))
                 stand = leg.end
                 continue
             fault = self._without_arm(e.owner, command)

@@ -13,6 +13,7 @@ from typing import Any
 
 from pn2code.base.frozen import frozen
 from pn2code.cell.config import CellConfig
+from pn2code.cell.partition import OwnerKind
 from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.geometry.check import cells_of
 from pn2code.geometry.graph import CellGraph, explore_cell
@@ -155,6 +156,7 @@ class _Look:
             self._cycle(),
             len(self.graph.arcs),
             _clause(self.anyhow.why),
+            tuple(o.name for o in self.graph.partition.owners if o.kind is OwnerKind.DEVICE),
         )
 
     def _transition(self, element: int) -> str:
@@ -167,7 +169,8 @@ class _Look:
             robot = self.owner[self.graph.elements[element].owner]
             for part in doing.parts if doing is not None else ():
                 key = (robot, self._transition(element), words(part.command), part.kind)
-                found.setdefault(key, []).append((part.ns, self._pose(robot, part.start)))
+                for ns in {part.ns, part.ns if part.least is None else part.least}:
+                    found.setdefault(key, []).append((ns, self._pose(robot, part.start)))
         order = {name: i for i, name in enumerate(self.owner.values())}
         for key in sorted(found, key=lambda k: order[k[0]]):
             times = sorted(set(found[key]))
@@ -176,7 +179,7 @@ class _Look:
             yield Command(*key, least, most, least_from, most_from, places)
 
     def _pose(self, robot: str, stand: Stand | None) -> str:
-        if stand is None:
+        if stand is None or self.cell.robot(robot).is_device:
             return ""
         return numbers(pose_of(self.cell.robot(robot).T_world_base @ stand.T_base_tcp))
 

@@ -9,7 +9,7 @@ from pn2code.timing.doings import NS
 
 MOST_COMMANDS = 25
 """Commands of a table that is not full: those that take longest."""
-HEAD = ("robot", "transition", "command", "least", "most", "slowest from")
+HEAD = ("transition", "command", "least", "most", "slowest from")
 
 
 def text(layouts: Sequence[Layout], timeout: float, *, full: bool) -> str:
@@ -26,7 +26,7 @@ def _lines(layout: Layout, timeout: float, full: bool) -> Iterator[str]:
     if layout.open:
         yield f"  there may be more commands: {layout.open}"
     yield ""
-    yield from _table(layout.commands, full)
+    yield from _table(layout, full)
     yield ""
     for fault in layout.faults:
         yield f"`{fault.transition}` cannot be done from everywhere: {fault.why}"
@@ -34,12 +34,14 @@ def _lines(layout: Layout, timeout: float, full: bool) -> Iterator[str]:
     yield ""
 
 
-def _table(commands: Sequence[Command], full: bool) -> Iterator[str]:
-    shown = commands
+def _table(layout: Layout, full: bool) -> Iterator[str]:
+    commands = layout.commands
+    shown: Sequence[Command] = commands
+    who = "robot or device" if layout.devices else "robot"
     if not full and len(commands) > MOST_COMMANDS:
         shown = sorted(commands, key=lambda c: -c.most)[:MOST_COMMANDS]
-    rows: list[tuple[str, ...]] = [HEAD, *map(_cells, shown)]
-    widths = [max(len(row[i]) for row in rows) for i in range(len(HEAD))]
+    rows: list[tuple[str, ...]] = [(who, *HEAD), *map(_cells, shown)]
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     for row in rows:
         yield "  ".join(c.ljust(w) for c, w in zip(row, widths, strict=True)).rstrip()
     if len(shown) < len(commands):

@@ -231,7 +231,19 @@ def test_what_a_belt_takes_onto_another_one_is_handled_there() -> None:
     cell = two_belts(0.6)
     doing = Doing(Planner(cell), cell)
     home = doing.planner.home("feeder")
-    for way, there in ((0.5, []), (0.7, [1.3]), (0.9, [1.5])):
+    for way, there in ((0.5, []), (0.69, [1.29])):
         found = doing.of("feeder", (run(way),), home, doing.start, (home,))
         assert not found.fault
         assert [round(float(at[1]) + 1.7, 6) for at, _ in found.handled] == there
+
+
+@pytest.mark.parametrize("way", [0.71, 0.9])
+def test_a_belt_takes_nothing_along_that_has_left_it(way: float) -> None:
+    """Half on another belt, or on that alone, it goes nobody knows how far."""
+    cell = two_belts(0.6)
+    doing = Doing(Planner(cell), cell)
+    home = doing.planner.home("feeder")
+    found = doing.of("feeder", (run(way),), home, doing.start, (home,))
+    off = f"{1000.0 * way - 700.0:.1f} mm beyond the end, where nothing takes it further"
+    assert found.is_part and f"takes `box.1` along until its middle is {off}" in found.fault
+    assert doing.of("feeder", (run(0.7),), home, doing.start, (home,)).doubt
