@@ -7,11 +7,23 @@ from pathlib import Path
 import pytest
 
 from e2e.test_check_geometry import looked
+from helpers import belt_cell as belts
 from helpers.belt_cell import belt_cell
 from helpers.door_cell import NET, TOML, door_cell
+from pn2code.cell.divide import divide
 from pn2code.diagnostics import Diagnostics
+from pn2code.geometry.activities import Doing
+from pn2code.geometry.answers import STOPPED
+from pn2code.geometry.check import cells_of
+from pn2code.geometry.graph import explore_cell
+from pn2code.geometry.legs import Planner
+from pn2code.geometry.reach_look import Wanted
+from pn2code.geometry.reach_look import look as reach
+from pn2code.geometry.situations import Situations
 from pn2code.pipeline import generate
 from pn2code.run.cell import RunOptions, RunResult, run_cell
+from pn2code.verdict.opened import read
+from pn2code.verify.exploring.limits import Limits
 
 pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
 SHUT = NET.replace("(openVice (); openDoor ())", "openVice ()")
@@ -100,3 +112,42 @@ def test_a_run_stops_where_an_arm_is_too_fast_in_a_zone(tmp_path: Path) -> None:
     record = found.record
     assert record.verdict == "failed" and record.time > 0.0
     assert "mm/s fast at" in record.reason and "in zone `front`, where 200.0" in record.reason
+
+
+def situations(folder: Path) -> Situations:
+    """All situations of a cell, of which nothing is swept."""
+    d = Diagnostics()
+    opened = read(folder, {}, d)
+    assert opened is not None and opened.config is not None, [e.message for e in d.errors]
+    partition, cells = divide(opened.flat, opened.config, d), cells_of(opened.config, None, d)
+    assert partition is not None and cells is not None, [e.message for e in d.errors]
+    ((_, arms),) = cells
+    graph = explore_cell(partition, opened.storage, Limits(), d)
+    assert graph is not None and not graph.why
+    found = Situations(graph, Doing(Planner(arms), arms), tuple(r.name for r in arms.moving))
+    found.explore()
+    return found
+
+
+def test_a_belt_may_begin_to_run_when_a_part_is_half_way_out(tmp_path: Path) -> None:
+    """It waits as long as a part is at its stop, and the robot takes that one meanwhile, and lifts it."""
+    net = belts.NET.replace("(feed (); run ())", "(run ())").replace("      in fed : n\n", "", 1)
+    net = net.replace("      in placed : n\n", "      in placed : n\n      in fed : n\n", 1)
+    at = "at = [{ x = 1.5, y = -0.6, z = 0.575 }, { x = 1.5, y = -0.9, z = 0.575 }]\n"
+    toml = belts.TOML.replace("[parts.box]\n", f"[parts.box]\n{at}")
+    assert (
+        situations(belt_cell(tmp_path, net.replace("parts = 2", "parts = 1"), toml)).why == "order"
+    )
+
+
+def test_reach_knows_what_belts_bring(tmp_path: Path) -> None:
+    """The arm grips a box that the belt has brought, and goes on with it; else that is said."""
+    for stop, moves, why in (("infeed", 6, ""), ("entry", 2, STOPPED)):
+        d = Diagnostics()
+        toml = belts.TOML.replace('stop = "infeed"', f'stop = "{stop}"')
+        net = belts.NET.replace("parts = 2", "parts = 1")
+        opened = read(belt_cell(tmp_path / stop, net, toml), {}, d)
+        assert opened is not None
+        found = reach(opened, Wanted(around=0.1, steps=2), Limits(), d)
+        assert found is not None
+        assert [(len(x.task.groups), x.open) for x in found] == [(moves, why)]

@@ -2,9 +2,11 @@
 
 ./dev geometry                       a table of all examples (docs/benchmarks.md)
 ./dev geometry --pictures DIR        the pictures of docs/geometry.md
-./dev geometry --cells 40            random cells of two arms, two thirds of them with tracks and a turntable: what
-                                     collides in PyBullet is never said to keep apart; in each fourth of them an arm is
-                                     placed anew, and what is proved of its new place is run as well
+./dev geometry --cells 40            random cells: two arms, half of them with tracks and a turntable, and an arm with
+                                     a belt, a machine with door and clamp, and a table that turns; parts are
+                                     stacked: what collides in PyBullet, or cannot be done with a part, is never said to
+                                     be right; in each fourth of them an arm is placed anew, and what is proved of its
+                                     new place is run as well
 """
 
 from __future__ import annotations
@@ -21,6 +23,7 @@ sys.path.insert(0, str(Path(__file__).parents[2] / "tests"))
 from tools.geometry.unguarded import unguarded
 from tools.geometry.wander import wander
 
+from helpers.machine_cells import machine_cell
 from helpers.netbuilder import cpn
 from helpers.two_arm_cells import two_arm_cell
 from helpers.welding_cell import varied
@@ -149,17 +152,21 @@ def placed(cell: Path, robot: str, out: Path, seed: int, walks: int) -> tuple[st
 
 
 def random_cell(number: int) -> tuple[str, str]:
-    """In turns two arms, two arms with tracks and a turntable, and a welding pair."""
-    if number % 3 == 2:
+    """In turns two arms, two arms with tracks and a turntable, a welding pair, and an arm between devices that move."""
+    if number % 4 == 3:
+        return machine_cell(Random(number))
+    if number % 4 == 2:
         return varied(Random(number))
-    return two_arm_cell(Random(number), Random(f"axes {number}") if number % 3 else None)
+    return two_arm_cell(Random(number), Random(f"axes {number}") if number % 4 else None)
 
 
-def random_cells(folder: Path, count: int, seed: int, walks: int, *, is_run: bool) -> int:
+def random_cells(
+    folder: Path, count: int, seed: int, walks: int, *, is_run: bool, step: int = 1
+) -> int:
     """Random cells next to runs of them in PyBullet, and random walks with moving arms."""
     said: dict[tuple[str, str], int] = {}
     wrong = 0
-    for number in range(seed, seed + count):
+    for number in range(seed, seed + step * count, step):
         net, toml = random_cell(number)
         cell = folder / str(number)
         cell.mkdir()
@@ -192,6 +199,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="./dev geometry", description=__doc__.split("\n")[0])
     parser.add_argument("--cells", type=int, default=0, metavar="N")
     parser.add_argument("--seed", type=int, default=1, metavar="K")
+    parser.add_argument("--step", type=int, default=1, metavar="N", help="each Nth cell alone")
     parser.add_argument("--no-runs", dest="runs", action="store_false", help="random walks alone")
     parser.add_argument("--walks", type=int, default=5, metavar="N", help="of each random cell")
     parser.add_argument("--pictures", type=Path, metavar="DIR")
@@ -199,7 +207,12 @@ def main() -> int:
     with tempfile.TemporaryDirectory(prefix="pn2code-") as name:
         if options.cells:
             return random_cells(
-                Path(name), options.cells, options.seed, options.walks, is_run=options.runs
+                Path(name),
+                options.cells,
+                options.seed,
+                options.walks,
+                is_run=options.runs,
+                step=options.step,
             )
         if options.pictures:
             return pictures(Path(name), options.pictures)

@@ -14,9 +14,11 @@ from random import Random
 import numpy as np
 
 from pn2code.geometry.graph import CellGraph
+from pn2code.robot.belts import until_stop
 from pn2code.robot.bullet import BulletBackend
-from pn2code.robot.commands import Command, ToolAction
-from pn2code.robot.executor import MotionKind, RobotExecutor, turned
+from pn2code.robot.clamps import holding, taken_along
+from pn2code.robot.commands import Command, Move, ToolAction
+from pn2code.robot.executor import Motion, MotionKind, RobotExecutor, turned, turned_by
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion import MotionFault
 from pn2code.robot.parts import PartFault
@@ -49,26 +51,34 @@ class _Arm:
         self.part = 0.0
         robot = self.executor.robot
         parts.parts.stand(robot.name, self.executor.q)
-        for plate in turned(robot, self.executor.begin(self.left.pop(0), 0.0)):
+        command = until_stop(robot, parts.parts, self.left.pop(0))
+        for plate in turned(robot, self.executor.begin(command, 0.0)):
             parts.parts.turn(plate)
+
+    def pulls(self, cell: RobotCell, parts: PartKeeper, joints: dict[str, np.ndarray]) -> str:
+        """What it takes out of a clamp that holds it, as it begins to move; "": nothing."""
+        motion, robot = self.executor.motion, self.executor.robot
+        if motion is None or not isinstance(motion.command, Move):
+            return ""
+        present = parts.parts.present.values()
+        for part, frame in taken_along(robot, self.executor.q, present, turned(robot, motion)):
+            for held in holding(cell, part.kind, frame):
+                if held.holds(joints[held.device.name]):
+                    return held.words(robot.name, part.name, joints[held.device.name])
+        return ""
 
     def turning(self) -> frozenset[str]:
         motion = self.executor.motion
         return frozenset() if motion is None else turned(self.executor.robot, motion)
 
-    def advance(self, most: float, parts: PartKeeper) -> bool:
-        """Goes on; whether all of its commands are done."""
+    def advance(self, most: float) -> Motion | None:
+        """Goes on; the motion that is done then."""
         motion = self.executor.motion
         self.part = min(1.0, self.part + most)
         if self.part < 1.0 or motion is None:
-            return False
+            return None
         self.executor.finish()
-        parts.parts.stand(self.executor.robot.name, self.executor.q)
-        handle(self.executor.robot.name, motion.command, self.executor, parts)
-        if self.left:
-            self.begin(parts)
-            return False
-        return True
+        return motion
 
 
 def handle(name: str, command: Command, executor: RobotExecutor | None, parts: PartKeeper) -> None:
@@ -97,45 +107,67 @@ def _walk(
     monitor = Monitor(cell, backend, searched=0.05)
     parts = PartKeeper(cell, backend)
     parts.begin()
-    names = {r.name for r in cell.robots}
+    names = {r.name for r in cell.moving}
     arms = {
         o.index: _Arm(RobotExecutor(cell.robot(o.name), cell.motion, cell.frames))
         for o in graph.partition.owners
         if o.name in names
     }
+
+    def look() -> dict[str, np.ndarray]:
+        """Where everything is now."""
+        parts.parts.turning = frozenset().union(*(a.turning() for a in arms.values()))
+        joints = {a.executor.robot.name: a.joints() for a in arms.values()}
+        for name, q in joints.items():
+            parts.parts.stand(name, q)
+        return joints
+
     state = 0
     pace = {owner: choice.choice([0.02, 0.1, 0.4]) for owner in arms}
     for step in range(steps):
-        parts.parts.turning = frozenset().union(*(a.turning() for a in arms.values()))
-        for arm in arms.values():
-            parts.parts.stand(arm.executor.robot.name, arm.joints())
+        look()
         busy = {owner: arm for owner, arm in arms.items() if arm.element >= 0}
         free = [
             (element, target)
             for element, target in graph.arcs[state]
             if graph.elements[element].owner not in busy
         ]
+        begun: _Arm | None = None
         if free and (not busy or choice.random() < 0.5):
             element, target = choice.choice(free)
             owner = graph.elements[element].owner
             commands = graph.commands(element)
             if owner in arms and commands:
-                arms[owner].element, arms[owner].left = element, list(commands)
-                arms[owner].begin(parts)
+                begun = arms[owner]
+                begun.element, begun.left = element, list(commands)
             else:
-                for command in commands:  # of a device
+                for command in commands:  # of a device of which nothing moves
                     handle(graph.partition.owners[owner].name, command, None, parts)
                 state = target
         elif busy:
             owner = choice.choice(sorted(busy))
-            if busy[owner].advance(choice.random() * pace[owner], parts):
-                state = dict(graph.arcs[state])[busy[owner].element]
-                busy[owner].element = -1
+            arm = busy[owner]
+            done = arm.advance(choice.random() * pace[owner])
+            if done is not None:
+                look()
+                robot = arm.executor.robot
+                for plate in turned_by(robot, done.trajectory, robot.belts):
+                    parts.run_out(plate)
+                handle(robot.name, done.command, arm.executor, parts)
+                if arm.left:
+                    begun = arm
+                else:
+                    state = dict(graph.arcs[state])[arm.element]
+                    arm.element = -1
         else:
             return None
+        if begun is not None:
+            begun.begin(parts)
+            if pulled := begun.pulls(cell, parts, look()):
+                return pulled
         found = monitor.check(
             float(step),
-            {a.executor.robot.name: a.joints() for a in arms.values()},
+            look(),
             kinds={a.executor.robot.name: a.kind for a in arms.values() if a.kind is not None},
         )
         if found.fault is not None:

@@ -164,7 +164,8 @@ void tb_go_to(tb_cursor_t *c, const tb_count_t *marking);
 /* False: a place would hold more than TB_MOST_TOKENS; nothing has changed. */
 bool tb_fire(tb_cursor_t *c, uint32_t transition);
 void tb_unfire(tb_cursor_t *c, uint32_t transition);
-/* The same of the marking alone: what is enabled stays as it was, so that it costs little where a place has many takers. */
+/* The same of the marking alone: what is enabled stays as it was, so that it costs little where a place has many
+   takers. */
 bool tb_move(tb_cursor_t *c, uint32_t transition);
 void tb_unmove(tb_cursor_t *c, uint32_t transition);
 

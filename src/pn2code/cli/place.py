@@ -31,6 +31,7 @@ from pn2code.cli.options import (
     stop,
 )
 from pn2code.diagnostics import Diagnostics
+from pn2code.geometry.claims import kept_apart
 from pn2code.verify.exploring.limits import Limits, cores
 
 if TYPE_CHECKING:
@@ -280,7 +281,7 @@ def _text(
         if tried.proof.meets:
             yield f"  proved for {where}:"
             yield "    each move can be done from wherever the arm can be then, without touching what stands or itself"
-            yield "    no two arms collide, nor an arm and a part, in any interleaving that the net permits"
+            yield f"    {kept_apart(devices=bool(found.cell.devices))}"
             yield f"    on the whole way: {_whole(tried.proof)}"
             continue
         holds = "not known" if tried.proof.answer == "unknown" else "does not hold"

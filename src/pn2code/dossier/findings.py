@@ -124,6 +124,7 @@ def _geometry(said: Json) -> tuple[str, list[Finding]]:
         nearest = (
             f"; they keep apart by at least {1000 * near['at_least_m']:.0f} mm" if near else ""
         )
+        whole = row["pairs_says"]
         if row.get("pairs_open"):
             nearest = f"; {row['pairs_open']}"
         found += [
@@ -134,10 +135,10 @@ def _geometry(said: Json) -> tuple[str, list[Finding]]:
                 f": {len(row['moves'])} moves{part}",
             ),
             Finding(
-                f"{where}arms keep apart",
+                f"{where}{'arms and devices' if row['devices'] else 'arms'} keep apart",
                 answered(row["pairs_answer"]),
-                "No two arms collide, nor an arm and a part, in any interleaving that the net permits: "
-                f"{row['pairs_compared']:,} pairs of moves, {row['distances_measured']:,} distances{nearest}{part}",
+                f"{whole[:1].upper()}{whole[1:]}: {row['pairs_compared']:,} pairs of moves, "
+                f"{row['distances_measured']:,} distances{nearest}{part}",
             ),
         ]
     states = max(row["states"] for row in said["layouts"])

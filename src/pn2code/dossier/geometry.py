@@ -15,11 +15,11 @@ from pn2code.base.frozen import frozen
 
 Json = Mapping[str, Any]
 _HEAD = (
-    "Robot", "Transition", "Move", "Possible", "To the limit of an axis", "Conditioning", "To what stands, at least",
+    "Transition", "Move", "Possible", "To the limit of an axis", "Conditioning", "To what stands, at least",
     "To itself, at least",
     "Nearest",
 )  # fmt: skip
-_PAIRS = ("Robots", "Under way at once", "Keep apart", "Distance", "What is met", "Run")
+_PAIRS = ("Under way at once", "Keep apart", "Distance", "What is met", "Run")
 _SCALES = {"clearance_m": 0.1, "own_clearance_m": 0.1, "limit_deg": 20.0}
 _CONDITION = 50.0
 
@@ -42,10 +42,13 @@ def tables(layout: Json) -> list[Table]:
     """The moves, and the pairs that do not surely keep apart."""
     name = f", layout {layout['layout']}" if layout["layout"] else ""
     moves = sorted(layout["moves"], key=_badness)
-    found = [Table(f"Moves and their least margins{name}", _HEAD, [_move(m) for m in moves])]
+    who = "Robot or device" if layout["devices"] else "Robot"
+    found = [
+        Table(f"Moves and their least margins{name}", (who, *_HEAD), [_move(m) for m in moves])
+    ]
     if layout["pairs"]:
         rows = [_pair(p) for p in layout["pairs"]]
-        found.append(Table(f"What does not surely keep apart{name}", _PAIRS, rows))
+        found.append(Table(f"What does not surely keep apart{name}", ("Between", *_PAIRS), rows))
     return found
 
 

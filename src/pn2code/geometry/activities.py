@@ -17,7 +17,7 @@ from pn2code.base.frozen import frozen
 from pn2code.geometry.legs import Leg, Planner, Stand
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.sweeps import ROUNDING
-from pn2code.robot.belts import until_stop
+from pn2code.robot.belts import told_to_run, until_stop
 from pn2code.robot.clamps import holding, taken_along
 from pn2code.robot.commands import Command, Handling, ToolAction
 from pn2code.robot.executor import turned_by
@@ -85,6 +85,8 @@ class Activity:
         is_part: the fault is about a part; command: what cannot be done then.
         doubt: why it is not known whether an action can be done; "": it is.
         turns: the turntables that turn in it.
+        may_run: belts that are told to run in it, also those that do not because a part waits at their stop: once that
+            is taken away, they do.
         handled: where parts are handled in it (a place in the world, m), and how far around that (m).
     """
 
@@ -98,6 +100,7 @@ class Activity:
     command: Command | None = None
     doubt: str = ""
     turns: frozenset[str] = frozenset()
+    may_run: frozenset[str] = frozenset()
     handled: tuple[tuple[Array, float], ...] = ()
 
     @property
@@ -184,13 +187,17 @@ class Doing:
             if isinstance(c, ToolAction) and c.handling is not None
         )
         turns: frozenset[str] = frozenset()
+        may_run: frozenset[str] = frozenset()
         handled: list[tuple[Array, float]] = []
         done = Activity(0, (), stand, contents, kinds=kinds)
         for command in commands:
             standing = (*(s for s in others if s.robot != owner), *((stand,) if stand else ()))
             if stand is not None:
                 own = self._cell.robot(owner)
-                if own.belts:
+                if told := told_to_run(own, command):
+                    may_run |= told
+                    kinds |= frozenset(self._cell.parts)
+                    done = replace(done, kinds=kinds)
                     command = until_stop(own, _parts(contents, standing, 0.0), command)
                 leg = self.planner.leg(stand, command)
                 if leg.path is not None and leg.is_moving:
@@ -209,8 +216,6 @@ class Doing:
                 stand = leg.end
                 ran = turned_by(own, leg.path, own.belts) if leg.path is not None else None
                 if ran:
-                    kinds |= frozenset(self._cell.parts)
-                    done = replace(done, kinds=kinds)
                     try:
                         contents, doubt = self._run_out(leg, ran, standing, contents)
                     except PartFault as fault:
@@ -220,6 +225,8 @@ class Doing:
                         break
                     if doubt and not done.doubt:
                         done = replace(done, doubt=doubt, command=command)
+                    now = (*(s for s in others if s.robot != owner), stand)
+                    handled += self._handed_on(ran, now, contents)
             if isinstance(command, ToolAction) and command.handling is not None:
                 tcp = None
                 if stand is not None:
@@ -239,6 +246,7 @@ class Doing:
             end=stand,
             after=contents,
             turns=turns,
+            may_run=may_run,
             handled=tuple(handled),
         )
 
@@ -269,6 +277,18 @@ class Doing:
             return found[0], _nearly(str(faults[0]))
         same = len({after.number for after in found}) == 1
         return found[0], "" if same else _nearly(f"`{min(ran)}` takes parts along")
+
+    def _handed_on(
+        self, ran: frozenset[str], standing: tuple[Stand, ...], contents: Contents
+    ) -> list[tuple[Array, float]]:
+        """Where belts have taken parts onto other belts or turntables, as if they had been put there."""
+        parts = _parts(contents, standing, 0.0)
+        ground = Ground.of(self._cell)
+        out = []
+        for part in parts.present.values():
+            if part.plate and parts.plates_under(part) - ran:
+                out.append((parts.world(part)[:3, 3], ground.radius(part.kind.name)))
+        return out
 
     def _around(self, handling: Handling, tcp: Array | None) -> tuple[Array, float]:
         """Where a part is handled, and how far around that it reaches, whichever it is and however it lies."""

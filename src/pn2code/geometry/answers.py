@@ -6,6 +6,7 @@ import math
 from typing import Any, Literal
 
 from pn2code.base.frozen import frozen
+from pn2code.geometry.claims import kept_apart
 from pn2code.geometry.runs import Run
 from pn2code.robot.backend import Clearance
 
@@ -168,6 +169,7 @@ class Layout:
         open: why not all situations are known; "": they are.
         nearest: the pair of arms that comes nearest, if all keep apart.
         stopped: whether runs stop at a move that is impossible, so that nobody looked at what would come after it.
+        devices: those of which something moves.
     """
 
     name: str
@@ -182,6 +184,7 @@ class Layout:
     proposals: tuple[Proposal, ...] = ()
     nearest: Nearest | None = None
     stopped: bool = False
+    devices: tuple[str, ...] = ()
 
     @property
     def of_moves(self) -> Verdict:
@@ -209,6 +212,8 @@ class Layout:
         """For programs (docs/geometry.md)."""
         return {
             "layout": self.name or None,
+            "devices": list(self.devices),
+            "pairs_says": kept_apart(devices=bool(self.devices)),
             "answer": self.answer,
             "moves_answer": self.of_moves,
             "pairs_answer": self.of_pairs,

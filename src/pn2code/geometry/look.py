@@ -97,6 +97,7 @@ class Look:
             tuple(zones or ()),
             self.comparison.nearest() if is_apart else None,
             found.stopped,
+            tuple(r.name for r in self.cell.devices),
         )
 
     # --- moves -----------------------------------------------------------------------------------

@@ -15,6 +15,7 @@ from pn2code.diagnostics import Diagnostics, Origin
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.geometry import codes
 from pn2code.geometry.activities import Doing
+from pn2code.geometry.answers import STOPPED
 from pn2code.geometry.check import cell_of, cells_of
 from pn2code.geometry.graph import CellGraph, explore_cell
 from pn2code.geometry.legs import Planner
@@ -86,8 +87,9 @@ def look(
     if graph is None:
         return None
     stage("looking where arms can be ...")
-    situations = Situations(graph, Doing(Planner(cell), cell), tuple(r.name for r in cell.robots))
+    situations = Situations(graph, Doing(Planner(cell), cell), tuple(r.name for r in cell.moving))
     situations.explore()
+    why = reason(situations.why) or (STOPPED if situations.stopped else "")
     found = []
     for robot in robots:
         task = Task.of(situations, robot)
@@ -97,7 +99,7 @@ def look(
         bases = grid(robot, wanted.around, wanted.steps)
         here = reach_map(robot, task, grid(robot, 0.0, 1))
         made = reach_map(robot, task, bases)
-        found.append(Found(robot, cell, task, made, here, reason(situations.why)))
+        found.append(Found(robot, cell, task, made, here, why))
     return found
 
 

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 
 from pn2code.geometry.answers import Layout, Move, Pair, Proposal
+from pn2code.geometry.claims import kept_apart
 from pn2code.geometry.runs import Run
 from pn2code.geometry.sweeps import RESOLUTION
 
@@ -28,7 +29,7 @@ def _lines(layout: Layout, full: bool) -> Iterator[str]:
     if layout.open:
         yield f"  not all is known: {layout.open}"
     yield ""
-    yield from _table(layout.moves, full)
+    yield from _table(layout, full)
     yield ""
     yield from _verdicts(layout)
     for move in layout.moves:
@@ -48,8 +49,7 @@ def _verdicts(layout: Layout) -> Iterator[str]:
     )
     resolution = f"resolution {1000.0 * RESOLUTION:g} mm"
     yield (
-        f"{_ANSWERS[layout.of_pairs]:>9}  no two arms collide, nor an arm and a part, in any interleaving that the net "
-        f"permits ({resolution})"
+        f"{_ANSWERS[layout.of_pairs]:>9}  {kept_apart(devices=bool(layout.devices))} ({resolution})"
     )
     if layout.pairs_open:
         yield f"           {layout.pairs_open}"
@@ -60,14 +60,16 @@ def _verdicts(layout: Layout) -> Iterator[str]:
             if near
             else ""
         )
-        yield f"           two arms keep at least {_millimetres(layout.nearest.least)} apart{seen}"
+        who = "arms or devices" if layout.devices else "arms"
+        yield f"           two {who} keep at least {_millimetres(layout.nearest.least)} apart{seen}"
 
 
-def _table(moves: Sequence[Move], full: bool) -> Iterator[str]:
-    shown = sorted(moves, key=_badness)
+def _table(layout: Layout, full: bool) -> Iterator[str]:
+    shown = sorted(layout.moves, key=_badness)
+    who = "robot or device" if layout.devices else "robot"
     left = 0 if full else max(0, len(shown) - MOST_MOVES)
     rows: list[tuple[str, ...]] = [
-        ("robot", "transition", "move", "limit", "condition", "scene >=", "itself >=", "")
+        (who, "transition", "move", "limit", "condition", "scene >=", "itself >=", "")
     ]
     rows += [_cells(m) for m in (shown[:MOST_MOVES] if left else shown)]
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]

@@ -310,12 +310,13 @@ class Situations:
     def _expect_still(self, under_way: dict[int, Activity]) -> None:
         """Nobody handles a part on a turntable, or where that could take one, while another arm turns it."""
         for (e, a), (f, b) in itertools.permutations(under_way.items(), 2):
-            if not a.turns or not b.handled:
+            moved = a.turns | a.may_run
+            if not moved or not b.handled:
                 continue
             if self.graph.elements[e].owner == self.graph.elements[f].owner:
                 continue
             contents = (*a.between, *b.between)
-            for plate in a.turns:
+            for plate in moved:
                 if any(self.doing.within(plate, x, contents) for x in b.handled):
                     self.why = self.why or "turning"
 

@@ -32,7 +32,8 @@ _OPEN = {
     "overtaken": "a transition of a robot that is under way may be overtaken by another one, and what the robot does "
     "then is not followed",
     "order": "what becomes of a part depends on how far two programs are that handle it at the same time",
-    "turning": "what becomes of a part depends on how far a turntable is that another program turns",
+    "turning": "what becomes of a part depends on how far a turntable, a belt or another axis is that another program "
+    "moves",
     "file": "the graph of the cell could not be written into a temporary file; is the disk full?",
     "outside": "what a robot is told depends on more than tokens: random numbers, files, the time, or the number of "
     "steps",

@@ -30,6 +30,14 @@ def until_stop(device: CellRobot, parts: Parts, command: Command) -> Command:
     return replace(command, along=along)
 
 
+def told_to_run(device: CellRobot, command: Command) -> frozenset[str]:
+    """The belts that a command tells to run, as `feeder/belt`, whether they do or a part waits at their stop."""
+    if not isinstance(command, MoveExternal):
+        return frozenset()
+    belts = {a.name for a in device.belts}
+    return frozenset(f"{device.name}/{a.axis}" for a in command.along if a.axis in belts)
+
+
 def _stopped(device: CellRobot, parts: Parts, told: Along, axis: ExternalAxis) -> Along:
     assert axis.belt is not None
     frame = inverse(device.T_world_base @ axis.T_base_axis)

@@ -112,15 +112,19 @@ class Parts:
         while found:
             found = False
             for part in list(self.present.values()):
-                if not part.carrier and (plate := self._plate_under(part)):
+                plate = "" if part.carrier else self._plate_under(part)
+                if plate and plate not in self.turning:
                     self._keep(part, self.world(part), plate)
                     found = True
 
     def _settle_again(self) -> None:
-        """The same when something was taken away, on which parts stood."""
+        """The same when something was taken away, on which parts stood.
+
+        What turns just now keeps what is on it, and gets no more.
+        """
         before = dict(self.present)
         for part in before.values():
-            if part.plate:
+            if part.plate and part.plate not in self.turning:
                 self._keep(part, self.world(part), "")
         self._settle()
         for name, old in before.items():
@@ -178,6 +182,7 @@ class Parts:
     def turn(self, plate: str) -> None:
         """A turntable or belt begins to move. Raises PartFault if something on it would not go with it."""
         riders = self.riders(plate)
+        self._expect_alone(plate, riders)
         if not riders:
             return
         if not self._ground.plates[plate].upright:
@@ -193,6 +198,27 @@ class Parts:
                     f"`{plate}` {self._ground.plates[plate].does}, but `{part.name}` on it also stands on `{off[0]}`, "
                     "which does not"
                 )
+
+    def _expect_alone(self, plate: str, riders: list[Part]) -> None:
+        """Nothing that goes with another turntable or belt stands on this one as well."""
+        own = {plate, *(p.name for p in riders)}
+        for part in self.present.values():
+            if part.plate in ("", plate):
+                continue
+            rest = self.rest(part)
+            on = sorted(own.intersection(rest.on)) if rest is not None else []
+            if on:
+                raise PartFault(
+                    f"`{plate}` {self._ground.plates[plate].does}, but `{part.name}` on `{part.plate}` also stands on "
+                    f"`{on[0]}`"
+                )
+
+    def plates_under(self, part: Part) -> set[str]:
+        """The turntables and belts on which a part stands, also by parts that do."""
+        rest = self.rest(part)
+        on = rest.on if rest is not None else ()
+        goes = {x: self.present[x].plate for x in on if x in self.present}
+        return {x for x in on if x in self._plates} | set(goes.values()) - {""}
 
     def run_out(self, plate: str) -> None:
         """A belt has come to rest. Raises PartFault if something on it has come off its end.

@@ -102,7 +102,8 @@ PAIR = {
     "distance_m": -0.0021, "run": {"trace": "geometry/touch.trace.jsonl"},
 }  # fmt: skip
 LAYOUT = {
-    "layout": "good", "moves_answer": "yes", "pairs_answer": "yes", "open": None, "states": 1234, "pairs_compared": 20,
+    "layout": "good", "devices": [], "pairs_says": "no two arms collide",
+    "moves_answer": "yes", "pairs_answer": "yes", "open": None, "states": 1234, "pairs_compared": 20,
     "distances_measured": 5000, "nearest": {"links": None, "distance_m": None, "at_least_m": 0.021},
     "moves": [MOVE], "pairs": [],
 }  # fmt: skip
@@ -139,6 +140,18 @@ def test_pairs_that_do_not_keep_apart(tmp_path: Path) -> None:
     rows = [list(row) for row in c.tables[1].rows]
     assert rows[0][2:] == ["no", "-2.1 mm", "r/a and s/b", "geometry/touch.trace.jsonl"]
     assert rows[1][2:] == ["not known", "-2.1 mm", "too close to tell", "-"]
+
+
+def test_devices_that_move_are_no_arms(tmp_path: Path) -> None:
+    said = geometry(
+        tmp_path, 0, {**LAYOUT, "devices": ["mill"], "pairs_says": "no two arms or devices collide"}
+    )
+    assert [f.about for f in said.findings] == [
+        "layout good: moves",
+        "layout good: arms and devices keep apart",
+    ]
+    assert said.findings[1].says.startswith("No two arms or devices collide: 20 pairs of moves")
+    assert said.tables[0].head[0] == "Robot or device"
 
 
 def test_a_geometry_that_is_not_known(tmp_path: Path) -> None:

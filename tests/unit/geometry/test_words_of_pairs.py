@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from pn2code.geometry.answers import Layout, Pair
+from pn2code.geometry.answers import Layout, Nearest, Pair
 from pn2code.geometry.look import certain, touch_in_words
 from pn2code.geometry.report import text
 from pn2code.geometry.runs import Run
@@ -35,6 +35,15 @@ def test_what_rests_is_not_under_way(
     assert f"NO: {says}\n" in said
     assert ("it is so at the start: x.trace.jsonl" in said) == (not steps)
     assert ("a run of" in said) == bool(steps)
+
+
+@pytest.mark.parametrize(("devices", "who"), [((), "two arms"), (("mill",), "two arms or devices")])
+def test_what_devices_move_is_no_arm(devices: tuple[str, ...], who: str) -> None:
+    layout = Layout("", 3, 3, (), (), 1, 1, 0.0, nearest=Nearest(None, 0.046), devices=devices)
+    said = text([layout], full=True)
+    assert f" yes  no {who} collide, nor " in said and f"{who} keep at least 46 mm apart" in said
+    assert ("\nrobot or device  transition" in said) == bool(devices)
+    assert layout.row()["pairs_says"] in said and layout.row()["devices"] == list(devices)
 
 
 @pytest.mark.parametrize(

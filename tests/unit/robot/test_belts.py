@@ -179,3 +179,59 @@ def test_the_page_is_told_with_what_parts_go() -> None:
     assert state["holder"] == "feeder"
     assert shown["robots"][1]["links"][state["link"]]["name"] == "belt"
     assert isinstance(Parts(cell).present["box.1"], Part)
+
+
+def two_belts(at: float, height: float = 0.0) -> RobotCell:
+    """A second belt goes on where the first one ends, beside it a table; a box has come so far along."""
+    data = tomllib.loads(TOML)
+    axes = data["devices"]["feeder"]["axes"]
+    axes["belt"].pop("stop")
+    axes["away"] = {**axes["belt"], "pose": {"x": 1.5, "y": -0.39, "z": 0.5 + height, "yaw": 90.0}}
+    data["parts"]["box"]["at"] = [{"x": 1.5, "y": -1.7 + at, "z": 0.575}]
+    cell = load(data, Path(), nowhere, Diagnostics())
+    assert cell is not None
+    return cell
+
+
+def test_a_belt_does_not_run_under_what_stands_on_another_belt_as_well() -> None:
+    """It goes with one of them, whichever; neither can run alone."""
+    for at, stopped in ((1.3, {"belt", "away"}), (0.6, set[str]())):
+        cell = two_belts(at)
+        for name in ("belt", "away"):
+            parts = Parts(cell)
+            if name not in stopped:
+                parts.turn(f"feeder/{name}")
+                continue
+            with pytest.raises(
+                PartFault, match=f"`feeder/{name}` runs, but `box.1` on .* also stands on `feeder/"
+            ):
+                parts.turn(f"feeder/{name}")
+
+
+def test_what_is_on_a_belt_that_runs_stays_on_it_when_something_else_is_taken_away() -> None:
+    """Half way over to another belt it does not stay there."""
+    cell = two_belts(0.6)
+    parts = Parts(cell)
+    parts.stand("feeder", np.array([0.7, 0.0]))
+    parts.turning = frozenset({"feeder/belt"})
+    parts._settle_again()
+    assert [p.plate for p in parts.present.values()] == ["feeder/belt"] and not parts.settled
+
+
+def test_a_belt_that_is_held_up_by_a_part_at_its_stop_may_run_as_soon_as_that_is_taken() -> None:
+    cell = right((0.2, 1.1))
+    doing = Doing(Planner(cell), cell)
+    home = doing.planner.home("feeder")
+    waits = doing.of("feeder", (run(1.2),), home, doing.start, (home,))
+    assert not waits.turns and waits.after is doing.start
+    assert waits.may_run == {"feeder/belt"} and waits.kinds == {"box"}
+
+
+def test_what_a_belt_takes_onto_another_one_is_handled_there() -> None:
+    cell = two_belts(0.6)
+    doing = Doing(Planner(cell), cell)
+    home = doing.planner.home("feeder")
+    for way, there in ((0.5, []), (0.7, [1.3]), (0.9, [1.5])):
+        found = doing.of("feeder", (run(way),), home, doing.start, (home,))
+        assert not found.fault
+        assert [round(float(at[1]) + 1.7, 6) for at, _ in found.handled] == there

@@ -206,8 +206,8 @@ class _Placing:
     def _tasks(self, cell: RobotCell) -> tuple[dict[str, Task], dict[str, Plan], bool]:
         """What the arms have to reach and to do, and whether they get everywhere, so that this is all of it."""
         self.options.stage("looking where arms can be ...")
-        robots = tuple(r.name for r in cell.robots)
-        situations = Situations(self.graph, Doing(Planner(cell), cell), robots)
+        moving = tuple(r.name for r in cell.moving)
+        situations = Situations(self.graph, Doing(Planner(cell), cell), moving)
         situations.explore()
         self.open = reason(situations.why)
         legs = situations.doing.planner.legs
