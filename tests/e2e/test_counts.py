@@ -250,3 +250,21 @@ def test_a_random_shop_has_the_same_verdicts(tmp_path: Path) -> None:
     assert verdict.wrong == ()
     reached = ("checks with limits", "properties that hold with limits", "closed nets counted")
     assert all(verdict.counts[name] > 0 for name in reached)
+
+
+def test_a_property_that_is_not_so_leaves_the_other_answers_as_they_are(tmp_path: Path) -> None:
+    """All states are explored for it; if they are too many, all else is known nevertheless."""
+    wrong = ("--property", "ctl AG EF tokens(Busy) = 1")
+    right = ("--property", "mutex Free, Busy")
+    alone = verified(tmp_path / "alone", NET, *right, parts=40)
+    assert alone["cell"]["reduced"] is True
+    few = ("--max-states", "150")
+    both = verified(tmp_path / "both", NET, *wrong, *right, *few, parts=40)
+    assert [row["answer"] for row in both["properties"]] == ["inconclusive", "yes"]
+    assert "states" in both["properties"][0]["why"]
+    assert both["cell"]["reduced"] is True and both["cell"]["complete"] is True
+    assert answers(both) == answers(alone)
+    all_of_it = verified(tmp_path / "all", NET, *wrong, *right)
+    assert [row["answer"] for row in all_of_it["properties"]] == ["no", "yes"]
+    assert all_of_it["cell"]["reduced"] is False
+    assert answers(all_of_it) == answers(alone)

@@ -22,9 +22,9 @@ weights of places (`verify.exploring.ranking`):
                        known
     properties         conditions on all states (`stated`): the places of each are a group, and have no limits, so each
                        marking has a state with the same tokens there. What is not so in a state has to be known from
-                       the part of the whole space
+                       the part of the whole space; else it is left open (`Seen.has_open`)
 
-All of it has to come out so; else nothing is said.
+All else has to come out so; if it does not nothing is said.
 """
 
 from __future__ import annotations
@@ -52,6 +52,8 @@ from pn2code.verify.exploring.ranking import Ranking
 from pn2code.verify.exploring.result import Bounds, Exploration
 from pn2code.verify.exploring.turns import Turns
 
+_LIMITS = ("states", "seconds", "memory", "processor")
+"""Why not all states of a cell were explored, but as many as could be."""
 WITNESSES = 60_000
 """States among which transitions are looked for that occur."""
 YES: Mapping[str, Any] = {"answer": "yes", "value": None, "trace": None, "loop": None, "why": None}
@@ -75,6 +77,29 @@ class Seen:
     asked: tuple[Mapping[str, Any], ...]
     answers: tuple[Mapping[str, Any], ...]
     is_quiet: bool
+
+    @property
+    def has_open(self) -> bool:
+        """Whether all states have to be explored for a property."""
+        return any(row["answer"] == "unknown" for row in self.answers)
+
+    def with_more(self, whole: Exploration) -> Seen | None:
+        """With what a larger part of the whole space says of open properties; None: that is all that is asked.
+
+        Args:
+            whole: of the cell, as much as could be explored.
+        """
+        told = whole.answers[: len(self.answers)]
+        if whole.why not in _LIMITS or len(told) < len(self.answers):
+            return None
+        if self.looked.running.meek and any(row.get("trace") for row in told):
+            return None  # whether scripts can do so is looked for in the whole net
+        # What the part said that was seen before is said again, and runs have been written again.
+        rows = zip(self.answers, told, strict=True)
+        merged = tuple(
+            a if b["answer"] == "unknown" and a["answer"] != "unknown" else b for a, b in rows
+        )
+        return replace(self, answers=merged)
 
 
 @frozen
@@ -182,7 +207,7 @@ def look(
         return None
     rows = [*(found.answers if is_certain else found.answers[: count - in_order.count("? ")])]
     quiet, *rows = rows
-    if any(row["answer"] != "yes" for row in rows):
+    if any(row["answer"] != "yes" for row in rows[len(properties) :]):
         return None
     if not is_certain:
         is_choiceless = found.seen.arcs and found.answers[len(rows) + 1]["answer"] != "unknown"
@@ -195,7 +220,10 @@ def look(
     asked = (YES, {**YES, "value": firings}, *confluence)
     said = _said(partition, plan, made, found, rows, longest)
     looked = Looked(running, _bounded(found, made, plan), None)
-    told = dict(enumerate(known)) | {i: x.row(plan.properties.properties[i]) for i, x in properties}
+    told = dict(enumerate(known))
+    for (i, x), row in zip(properties, rows, strict=False):
+        if row["answer"] == "yes":
+            told[i] = x.row(plan.properties.properties[i])
     return Seen(looked, said, asked, tuple(told[i] for i in sorted(told)), quiet["answer"] == "yes")
 
 

@@ -225,8 +225,10 @@ def examine(
             )
             if in_counts is not None and _has_suspects(poses, in_counts.looked.found, limits):
                 in_counts = None
-            if in_counts is None:
+            if in_counts is None or in_counts.has_open:
                 found = explore(running.net, plan.storage, first_part, d, options)
+                if in_counts is not None and found is not None:
+                    in_counts = in_counts.with_more(found)
         if in_counts is None and may_turn and found is not None and found.why == "states":
             try:
                 in_turns = _looked_in_turns(partition, plan, part, options, at_once, poses)
