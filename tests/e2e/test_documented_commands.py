@@ -48,6 +48,7 @@ LONG = {
     "pn2code time examples/handover --run run": "needs the line before",
     "pn2code time examples/tending": "test_time_bounds asks about it",
     "./dev geometry": "two minutes; test_geometry looks at smaller cells",
+    "./dev geometry --pairs 400": "half a minute; test_pairs_of_moves has fewer",
     "pn2code conform examples/riveting": "10 seconds; test_riveting_net compares it",
     "pn2code conform examples/sorting": "all states of a larger cell: a minute",
     "pn2code conform examples/shared-zone --most 1500": "the same",
