@@ -189,12 +189,12 @@ class Tables:
 def _bounds(key: Key) -> str:
     """The bounds of a number, in words."""
     words: list[str] = []
-    if math.isfinite(key.low) and key.low:
-        words.append(f"{'above' if key.above else 'at least'} {key.low:.10g}")
-    elif math.isfinite(key.low):
+    if math.isfinite(key.least) and key.least:
+        words.append(f"{'above' if key.above else 'at least'} {key.least:.10g}")
+    elif math.isfinite(key.least):
         words.append("above zero" if key.above else "zero or more")
-    if math.isfinite(key.high):
-        words.append(f"at most {key.high:.10g}")
+    if math.isfinite(key.most):
+        words.append(f"at most {key.most:.10g}")
     return ", ".join([*words, "and "]) if words else ""
 
 

@@ -124,10 +124,10 @@ def _counts(key: Key) -> dict[str, int]:
 
 def _bounds(key: Key) -> dict[str, float]:
     out: dict[str, float] = {}
-    if key.low > -math.inf:
-        out["exclusiveMinimum" if key.above else "minimum"] = key.low
-    if key.high < math.inf:
-        out["maximum"] = key.high
+    if key.least > -math.inf:
+        out["exclusiveMinimum" if key.above else "minimum"] = key.least
+    if key.most < math.inf:
+        out["maximum"] = key.most
     return out
 
 

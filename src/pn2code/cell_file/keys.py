@@ -28,6 +28,9 @@ Kind = Literal[
 """What a value is. scalar: a text, number or truth value; named: tables, each with a name that is chosen; entries:
 a value for each of some names."""
 
+FARTHEST = 1000.0
+"""m: the greatest length and the farthest coordinate. Greater numbers would leave no digits for what is near."""
+
 Value = str | int | float | bool | tuple[float, ...] | tuple[str, ...]
 
 
@@ -73,8 +76,18 @@ class Key:
 
     def within(self, number: float) -> bool:
         """Whether a number may be its value."""
-        low = self.low < number if self.above else self.low <= number
-        return math.isfinite(number) and low and number <= self.high
+        low = self.least < number if self.above else self.least <= number
+        return math.isfinite(number) and low and number <= self.most
+
+    @property
+    def least(self) -> float:
+        """The least number that may be its value, or the one above which it must be."""
+        return max(self.low, -FARTHEST) if self.unit == "m" else self.low
+
+    @property
+    def most(self) -> float:
+        """The greatest number that may be its value."""
+        return min(self.high, FARTHEST) if self.unit == "m" else self.high
 
 
 @frozen

@@ -224,8 +224,8 @@ _COUNTS = {3: "three", 4: "four", 6: "six", 7: "seven"}
 
 
 def _bounds(key: Key) -> str:
-    low = f" {'above' if key.above else 'from'} {key.low:g}" if key.low > -math.inf else ""
-    return low + (f" to {key.high:g}" if key.high < math.inf else "")
+    low = f" {'above' if key.above else 'from'} {key.least:g}" if key.least > -math.inf else ""
+    return low + (f" to {key.most:g}" if key.most < math.inf else "")
 
 
 def is_number(value: object) -> bool:

@@ -49,6 +49,14 @@ def run(distance: float) -> MoveExternal:
     return MoveExternal((Along("belt", distance, True),))
 
 
+@pytest.mark.parametrize("key", ["length", "width", "height"])
+def test_no_belt_is_so_large_that_where_it_is_is_lost(key: str) -> None:
+    """A belt of 1e300 m, of which the middle and half of the length cancel, would touch nothing."""
+    cell, said = cell_of(**{key: 1e300})
+    assert cell is None and f".{key}` is `1e+300`" in said[0] and "to 1000" in said[0], said
+    assert right(**{key: 999.0}) is not None
+
+
 def place(cell: RobotCell, parts: Parts, name: str) -> float:
     """How far along the belt a part is, m."""
     return round(float(parts.world(parts.present[name])[1, 3]) + 1.7, 6)

@@ -87,7 +87,11 @@ MISTAKES = [
         "robot-value",
         "`robots.robot1.base.x` is `6`",
     ),
-    (put("robots", "robot1", "base", "x", value=math.nan), "robot-value", "a number is expected"),
+    (
+        put("robots", "robot1", "base", "x", value=math.nan),
+        "robot-value",
+        "a number from -1000 to 1000 is expected",
+    ),
     (
         put("robots", "robot1", "base", value=3),
         "robot-value",
@@ -112,7 +116,11 @@ MISTAKES = [
         "a number above `x_from` is expected",
     ),
     (put("scene", "panel", "x_to", value="5.0"), "robot-value", "`scene.panel.x_to` is `5.0`"),
-    (put("scene", "panel", "ribs", value=["a"]), "robot-value", "a list of numbers is expected"),
+    (
+        put("scene", "panel", "ribs", value=["a"]),
+        "robot-value",
+        "a list of numbers from -1000 to 1000 is expected",
+    ),
     (put("scene", "floor", value=1), "robot-value", "`true` or `false` is expected"),
     (remove("scene", "panel", "axis_y"), "robot-key", "`scene.panel.axis_y` is missing"),
     (put("scene", "objects", value=3), "robot-value", "a list of tables is expected"),
