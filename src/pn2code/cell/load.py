@@ -528,13 +528,17 @@ def _robots(r: Tables, data: dict[str, Any]) -> Iterable[RobotConfig]:
         yield RobotConfig(name, instance, r.at(*at, "instance"))
 
 
+_TAKEN = ("supervisor", "scene", "self", "floor")
+"""What is called so already: a side of channels, and with what an arm is compared."""
+
+
 def _name(r: Tables, name: str, at: KeyPath, what: str) -> None:
-    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or name == "supervisor":
+    if not re.fullmatch(r"[A-Za-z][A-Za-z0-9_]*", name) or name in _TAKEN:
         r.d.error(
             codes.CELL_VALUE,
             f"`{name}` is not {what}",
             r.at(*at),
-            hint="a letter, then letters, digits and `_`; not `supervisor`",
+            hint="a letter, then letters, digits and `_`; not `supervisor`, `scene`, `self` or `floor`",
         )
 
 

@@ -23,7 +23,7 @@ _PLACED = (
     Key(
         "robots",
         "named",
-        "A robot, by its name: a letter, then letters, digits and `_`; not `supervisor`.",
+        "A robot, by its name: a letter, then letters, digits and `_`; not `supervisor`, `scene`, `self` or `floor`.",
         inner=ROBOT,
         entry="NAME",
         is_word=True,

@@ -140,6 +140,14 @@ def test_what_is_wrong_with_axes_is_said() -> None:
         assert cell is None and any(words in e for e in said), (changed, said)
 
 
+@pytest.mark.parametrize("name", ["scene", "self", "floor"])
+def test_no_device_has_the_name_of_what_arms_are_compared_with(name: str, tmp_path: Path) -> None:
+    d = Diagnostics()
+    toml = TOML.replace("devices.mill", f"devices.{name}")
+    load_cell(door_cell(tmp_path / "cell", toml=toml) / "cell.toml", d)
+    assert [e.message for e in d.errors] == [f"`{name}` is not a device name"]
+
+
 def test_primitives_name_axes_that_are_there(tmp_path: Path) -> None:
     for old, new, words in (
         (
