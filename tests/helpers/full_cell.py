@@ -162,7 +162,7 @@ acceleration = 0.5
 jerk = 5.0
 jaw = [0.04, 0.1, 0.05]
 colour = [0.2, 0.2, 0.2]
-holds = "here"
+holds = "jaws"
 
 [devices.belt.axes.conveyor]
 kind = "belt"
@@ -174,7 +174,7 @@ speed = 0.25
 acceleration = 0.4
 jerk = 4.0
 colour = [0.1, 0.1, 0.1]
-stop = "here"
+stop = "end"
 
 [sensors.gauge]
 variable = "v"
@@ -244,6 +244,13 @@ kind = "mesh"
 file = "stone.obj"
 scale = 0.5
 
+[places.jaws]
+x = 5.01
+z = 0.5
+[places.end]
+x = 7.0
+y = 0.5
+z = 0.5
 [places.here]
 x = 1.0
 y = 2.0

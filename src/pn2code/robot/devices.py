@@ -30,10 +30,12 @@ from pn2code.robot.robot_cell import CellRobot
 from pn2code.robot.scene_objects import SceneObject, read_colour, read_object
 from pn2code.robot.table import Table
 from pn2code.robot.table_poses import NO_POSE, read_pose
-from pn2code.robot.transforms import matrix_of, pose_of
+from pn2code.robot.transforms import Array, inverse, matrix_of, pose_of
 
 _ENDLESS = 1e6
 """m: so far a belt can run."""
+_SAME = 1e-6
+"""m: so near is the same."""
 _PACE = ("speed", "acceleration", "jerk")
 
 
@@ -125,6 +127,8 @@ def _axis(t: Table, name: str, folder: Path, places: Mapping[str, Pose]) -> _Rea
     t.done()
     if len(t.d.errors) == before:
         _expect_order(t, name, kind, numbers)
+        if holds and len(t.d.errors) == before:
+            _expect_between(t, name, frame, numbers["to"], (holds, places[holds]))
     if len(t.d.errors) != before:
         return None
     factor = 1.0 if slides else math.radians(1.0)
@@ -164,6 +168,16 @@ def _belt(t: Table, name: str, places: Mapping[str, Pose]) -> _Read | None:
             t.at("pose"),
             hint="leave `roll` and `pitch` of its pose out",
         )
+    if len(t.d.errors) == before and stop:
+        along = _along(frame, places[stop])
+        if not -_SAME <= along <= length + _SAME:
+            t.d.error(
+                codes.ROBOT_VALUE,
+                f"belt `{name}` is {length:g} m long, but its stop `{stop}` is at {along:g} m: "
+                "no part on it comes there",
+                t.at("stop"),
+                hint=f"it runs from its `pose` along the x of that; correct this or `[places.{stop}]`",
+            )
     if len(t.d.errors) != before:
         return None
     middle = pose_of(frame @ matrix_of(Pose(length / 2.0, 0.0, -height / 2.0, 0.0, 0.0, 0.0)))
@@ -176,6 +190,27 @@ def _belt(t: Table, name: str, places: Mapping[str, Pose]) -> _Read | None:
             ),
         )
     )  # fmt: skip
+
+
+def _along(frame: Array, place: Pose) -> float:
+    """Where a place is along the x of a frame, m."""
+    return float((inverse(frame) @ matrix_of(place))[0, 3])
+
+
+def _expect_between(
+    t: Table, name: str, frame: Array, widest: float, place: tuple[str, Pose]
+) -> None:
+    """What a clamp holds must be between its jaws."""
+    called, pose = place
+    along = _along(frame, pose)
+    if abs(along) > widest / 2.0 + _SAME:
+        t.d.error(
+            codes.ROBOT_VALUE,
+            f"clamp `{name}` opens to {widest:g} m, but what it holds, at `{called}`, is {abs(along):g} m beside the "
+            "middle between its jaws",
+            t.at("holds"),
+            hint=f"the jaws close along the x of its `pose`; correct it or `[places.{called}]`",
+        )
 
 
 def _expect_order(t: Table, name: str, kind: str, numbers: Mapping[str, float]) -> None:

@@ -174,6 +174,8 @@ def test_what_is_wrong_with_a_belt_is_said() -> None:
         ({"stop": "infed"}, "names `infed`, which is no place of `[places]`"),
         ({"pose": {"z": 0.5, "roll": 5.0}}, "belt `belt` is not level"),
         ({"length": None}, "is missing"),
+        ({"length": 1.0}, "is 1 m long, but its stop `infeed` is at 1.1 m"),
+        ({"pose": {"x": 2.5, "y": -0.6, "z": 0.5}}, "its stop `infeed` is at -1 m"),
     ):
         cell, said = cell_of(**changed)
         assert cell is None and any(words in e for e in said), (changed, said)

@@ -132,6 +132,10 @@ def test_what_is_wrong_with_axes_is_said() -> None:
         ({"vice__home": None}, "`vice` begins at 0 m, outside 0.02 .. 0.12"),
         ({"vice__from": -0.01}, "a gap from 0 is expected"),
         ({"vice__holds": "inVise"}, "names `inVise`, which is no place of `[places]`"),
+        (
+            {"vice__pose": {"x": 3.0, "z": 0.62}},
+            "opens to 0.12 m, but what it holds, at `inVice`, is 2 m beside",
+        ),
         ({"door__direction": [0.0, 0.0, 0.0]}, "three numbers, not all of them 0"),
         ({"stand": DATA["devices"]["mill"]["axes"]["door"]}, "are called `stand`"),
         ({"vice_1": DATA["devices"]["mill"]["axes"]["door"]}, "are called `vice_1`"),
