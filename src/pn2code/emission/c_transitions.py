@@ -15,7 +15,7 @@ from pn2code.emission.needs import SIDE
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
 from pn2code.ir.nodes import PlaceTable, Shared
-from pn2code.lowering.passes.counting import FEW
+from pn2code.lowering.passes.counting import is_large
 
 
 class Transitions(Frame):
@@ -121,8 +121,7 @@ class Transitions(Frame):
         """
         draws = t.effects.search_draws and t.effects.fire_draws
         is_packed = all(self._net.places[i].packed for i in t.effects.touched)
-        is_large = self._net.has_successors and len(self._net.transitions) > FEW
-        return is_large and is_packed and not draws and t.counts is None
+        return is_large(self._net) and is_packed and not draws and t.counts is None
 
     def _is_others(self, t: ir.Transition) -> bool:
         """Whether it is played by another program than the supervisor of the cell."""
