@@ -131,6 +131,11 @@ class RobotRunner:
         inside = [b for b in self.blocks if b.kind == "transition" and b.first <= line <= b.last]
         return min(inside, key=lambda b: b.last - b.first).element if inside else ""
 
+    def at(self, line: int) -> str:
+        """A line of its script, for messages, with the net transition that it implements."""
+        where = self.element_at(line)
+        return f"{self.script}:{line}" + (f" (net transition {where})" if where else "")
+
     def tool_action(self) -> str:
         """The tool action under way, "" if none."""
         command = self.motion.command if self.motion else None
@@ -451,9 +456,7 @@ class Engine:
         try:
             motion = robot.executor.begin(self._stopped(robot, command), self.now)
         except MotionFault as fault:
-            where = robot.element_at(line)
-            at = f" (net transition {where})" if where else ""
-            raise CellStoppedError(f"{robot.script}:{line}{at}: {fault}") from None
+            raise CellStoppedError(f"{robot.at(line)}: {fault}") from None
         self._expect_let_go(robot, motion, line)
         self._expect_riders_stay(robot, motion, line)
         if self.stops is not None:
@@ -487,9 +490,7 @@ class Engine:
             try:
                 settled = self.parts.run_out(plate)
             except PartFault as fault:
-                where = robot.element_at(robot.line)
-                at = f" (net transition {where})" if where else ""
-                raise CellStoppedError(f"{robot.script}:{robot.line}{at}: {fault}") from None
+                raise CellStoppedError(f"{robot.at(robot.line)}: {fault}") from None
             for change in settled:
                 self.record.parts.append(PartRecord(self.now, robot.name, change))
 
@@ -504,11 +505,9 @@ class Engine:
             for held in holding(self.cell, part.kind, frame):
                 own = stands[held.device.name].joints(self.now)
                 if held.holds(own):
-                    where = robot.element_at(line)
-                    at = f" (net transition {where})" if where else ""
                     words = held.words(robot.name, part.name, own)
                     raise CellStoppedError(
-                        f"{robot.script}:{line}{at}: {words}, part at {describe(pose_of(frame))}"
+                        f"{robot.at(line)}: {words}, part at {describe(pose_of(frame))}"
                     )
 
     def _expect_riders_stay(self, robot: RobotRunner, motion: Motion, line: int) -> None:
@@ -520,9 +519,7 @@ class Engine:
             try:
                 self.parts.parts.turn(plate)
             except PartFault as fault:
-                where = robot.element_at(line)
-                at = f" (net transition {where})" if where else ""
-                raise CellStoppedError(f"{robot.script}:{line}{at}: {fault}") from None
+                raise CellStoppedError(f"{robot.at(line)}: {fault}") from None
 
     def _look_at_turntables(self) -> None:
         """Where they are now, and which of them turn, counts for what is handled."""
@@ -618,9 +615,7 @@ class Engine:
         try:
             change = self.parts.handle(robot.name, handling, tcp)
         except PartFault as fault:
-            where = robot.element_at(robot.line)
-            at = f" (net transition {where})" if where else ""
-            raise CellStoppedError(f"{robot.script}:{robot.line}{at}: {fault}") from None
+            raise CellStoppedError(f"{robot.at(robot.line)}: {fault}") from None
         for one in (change, *self.parts.parts.settled):
             self.record.parts.append(PartRecord(self.now, robot.name, one))
         self.record.events.append(
@@ -709,11 +704,7 @@ class Engine:
             if r.motion is None:
                 parts.append(f"{r.name} at rest")
                 continue
-            where = r.element_at(r.line)
-            at = f" (net transition {where})" if where else ""
-            parts.append(
-                f"{r.script}:{r.line}{at}: {r.name}: {_words(r.motion.command, _slides(r))}"
-            )
+            parts.append(f"{r.at(r.line)}: {r.name}: {_words(r.motion.command, _slides(r))}")
         return "under way: " + "; ".join(parts)
 
     def _stop(self, problem: CellStoppedError) -> None:

@@ -212,11 +212,9 @@ class RealtimeEngine(Engine):
         else:
             doing = kind_and_label(robot.motion.command)[1] if robot.motion else "its program"
             line = robot.waiting.line if robot.waiting else robot.line
-        where = robot.element_at(line)
-        at = f" (net transition {where})" if where else ""
         self._interfered(party, f"{doing} was made to fail")
         raise CellStoppedError(
-            f"{robot.script}:{line}{at}: {party}: {doing} fails, as a person at the live page wanted"
+            f"{robot.at(line)}: {party}: {doing} fails, as a person at the live page wanted"
         )
 
     def promise(self, party: str, channel: str, fate: Fate | None) -> None:
