@@ -17,7 +17,8 @@ from pn2code.channels import LOOK_S, PeerState
 from pn2code.robot.commands import Command
 from pn2code.robot.executor import Motion
 from pn2code.run.choices import permitted
-from pn2code.run.engine import CellStoppedError, Engine, RobotRunner, kind_and_label
+from pn2code.run.command_words import kind_and_label
+from pn2code.run.engine import CellStoppedError, Engine, RobotRunner
 from pn2code.run.hand import BY, Hand, Said
 from pn2code.run.late_files import Fate, LateFiles
 from pn2code.run.punctuality import Punctuality
