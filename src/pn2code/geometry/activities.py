@@ -292,9 +292,8 @@ class Doing:
 
     def _around(self, handling: Handling, tcp: Array | None) -> tuple[Array, float]:
         """Where a part is handled, and how far around that it reaches, whichever it is and however it lies."""
-        frame = matrix_of(self._cell.places[handling.place]) if tcp is None else tcp
-        if handling.place:
-            frame = matrix_of(self._cell.places[handling.place])
+        frame = matrix_of(self._cell.places[handling.place]) if handling.place else tcp
+        assert frame is not None, "only a tool handles parts where it is"
         kind = self._cell.parts[handling.part]
         return frame[:3, 3], 2.0 * Ground.of(self._cell).radius(kind.name) + kind.tolerance
 
@@ -302,35 +301,27 @@ class Doing:
         """Whether a place is so near to a turntable that it, or what stands on it, can come there when it turns."""
         ground = Ground.of(self._cell)
         own = ground.plates[plate]
-        robot = self._cell.robot(own.robot)
-        axis = next(a for a in robot.carrying if robot.index(a.name) == own.index)
-        frame = robot.T_world_base @ axis.T_base_axis
+        axis = own.axis
+        riders = [p for inside in contents for p in inside.parts.riders(plate)]
         point, around = where
-        off = inverse(frame) @ np.append(point, 1.0)
+        off = inverse(own.T_world_axis) @ np.append(point, 1.0)
         if axis.belt is not None:
             # What stands on it is above it, before and after.
             beside = (
                 max(-off[0], off[0] - axis.upper, 0.0),
                 max(abs(off[1]) - axis.belt.width / 2.0, 0.0),
             )
-            riders = [p for inside in contents for p in inside.parts.riders(plate)]
             wide = max((ground.radius(p.kind.name) for p in riders), default=0.0)
             return float(np.hypot(*beside)) <= wide + around
         if axis.is_track:
             # Wherever it is on its way.
             along = float(np.clip(off[:3] @ axis.direction, axis.lower, axis.upper))
             apart = float(np.linalg.norm(off[:3] - along * axis.direction))
-            lying = [p for inside in contents for p in inside.parts.riders(plate)]
-            far = [
-                float(np.linalg.norm(p.frame[:3, 3])) + ground.radius(p.kind.name) for p in lying
-            ]
-            return bool(apart <= max([own.reach, *far]) + around)
-        reach = own.reach
-        for inside in contents:
-            for part in inside.parts.riders(plate):
-                off_axis = float(np.hypot(*part.frame[:2, 3]))
-                reach = max(reach, off_axis + ground.radius(part.kind.name))
-        return float(np.hypot(*off[:2])) <= reach + around
+            far = [np.linalg.norm(p.frame[:3, 3]) + ground.radius(p.kind.name) for p in riders]
+        else:
+            apart = float(np.hypot(*off[:2]))
+            far = [np.hypot(*p.frame[:2, 3]) + ground.radius(p.kind.name) for p in riders]
+        return apart <= max([own.reach, *map(float, far)]) + around
 
     def _pulled(self, own: CellRobot, leg: Leg, plates: frozenset[str], contents: Contents) -> str:
         """That a device takes a part along which a clamp of its own holds then; "": it does not."""

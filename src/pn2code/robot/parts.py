@@ -249,11 +249,8 @@ class Parts:
     def _beyond(self, plate: str, part: Part) -> float:
         """How far (m) the middle of a part is beyond the end of a belt, negative: before it."""
         own = self._ground.plates[plate]
-        device = self.cell.robot(own.robot)
-        belt = next(a for a in device.belts if device.index(a.name) == own.index)
         middle = self._ground.middle(part.kind, self.world(part))
-        frame = inverse(device.T_world_base @ belt.T_base_axis)
-        return float((frame @ np.append(middle, 1.0))[0] - belt.upper)
+        return float((inverse(own.T_world_axis) @ np.append(middle, 1.0))[0] - own.axis.upper)
 
     def rewind(self, plate: str, frame: Array) -> None:
         """The same belt with its beginning counted from where it is now: `T_world_plate` of that."""
