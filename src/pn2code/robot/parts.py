@@ -24,7 +24,7 @@ from pn2code.base.frozen import frozen
 from pn2code.robot.commands import Handling, Pose
 from pn2code.robot.ground import REST_GAP, Ground, Rest
 from pn2code.robot.parts_table import PartKind
-from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, describe, difference, inverse, matrix_of, pose_of
 
 
@@ -431,6 +431,13 @@ class Parts:
         part = Part(f"{kind.name}.{next(self._numbers[kind.name])}", kind, np.asarray(frame))
         self.present[part.name] = part
         return part
+
+
+def carried_to(robot: CellRobot, q: Array, part: Part) -> Array:
+    """`T_world_part` of a part that a robot at `q` carries, in its tool or on a turntable."""
+    if part.plate:
+        return robot.T_world_plate(robot.plate(part.plate), q) @ part.frame
+    return robot.T_world_base @ robot.kinematics.forward(q) @ part.frame
 
 
 def _off(kind: PartKind, frame: Array, tcp: Array) -> tuple[float, float]:

@@ -18,7 +18,7 @@ from lxml import etree
 
 from pn2code.base.frozen import frozen
 from pn2code.robot.hulls import Hull
-from pn2code.robot.parts import Part
+from pn2code.robot.parts import Part, carried_to
 from pn2code.robot.placed_links import placed_links
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, inverse, matrix_of, rotation_xyz
@@ -75,15 +75,11 @@ class ZoneWatch:
         for box in self._boxes[robot]:
             frame = base @ frames[box.axis]
             yield box.name, box.corners @ frame[:3, :3].T + frame[:3, 3]
-        plates = {f"{robot}/{a.name}": a for a in own.carrying}
         for part in parts:
             corners = self._kinds[part.kind.name]
             if part.carrier != robot or corners is None:
                 continue
-            if part.plate:
-                frame = own.T_world_plate(plates[part.plate], q) @ part.frame
-            else:
-                frame = base @ own.kinematics.forward(q) @ part.frame
+            frame = carried_to(own, q, part)
             yield f"{robot}/{part.name}", corners @ frame[:3, :3].T + frame[:3, 3]
 
     def off(self, zone: str, corners: Array) -> float:
