@@ -62,8 +62,10 @@ class ZoneWatch:
 
     def __init__(self, cell: RobotCell) -> None:
         self.cell = cell
-        self._boxes = {r.name: tuple(_boxes(r)) for r in cell.moving} if cell.zones else {}
-        self._kinds = {k.name: _corners([Hull.of(k.shape)]) for k in cell.parts.values()}
+        # Without zones nothing is asked, and meshes need not be read.
+        moving, kinds = (cell.moving, cell.parts.values()) if cell.zones else ((), ())
+        self._boxes = {r.name: tuple(_boxes(r)) for r in moving}
+        self._kinds = {k.name: _corners([Hull.of(k.shape)]) for k in kinds}
         self._frames = {name: inverse(matrix_of(z.pose)) for name, z in cell.zones.items()}
         self.limited = tuple(z for z in cell.zones.values() if z.max_speed is not None)
 
