@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from helpers.cell_texts import head
 from helpers.netbuilder import cpn
 
 NET = """
@@ -90,24 +91,9 @@ net carrying
       out Idle : ()
 """
 
-TOML = """
-[net]
-file = "cell.cpn"
-[supervisor]
-instance = "Supervisor"
-final = ["Finished"]
-[[channel]]
-place = "order"
-file = "order.robcad"
-[[channel]]
-place = "placed"
-file = "placed.robcad"
-[[channel]]
-place = "wanted"
-file = "wanted.robcad"
-[[channel]]
-place = "fed"
-file = "fed.robcad"
+TOML = (
+    head("order", "placed", "wanted", "fed")
+    + """\
 [primitives]
 moveJoint = { command = "move_joint" }
 moveLinear = { command = "move_linear", frame = "world" }
@@ -137,6 +123,7 @@ z = 0.575
 [scene]
 objects = [{ name = "table", size = [0.4, 0.4, 0.5], pose = { x = 1.5, y = -0.6, z = 0.25 } }]
 """
+)
 
 
 def write(folder: Path, net: str = NET, toml: str = TOML) -> Path:

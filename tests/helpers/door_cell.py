@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from helpers.cell_texts import ARM, GOING, head
 from helpers.netbuilder import cpn
 
 
@@ -166,62 +167,18 @@ NET = (
     .replace("(MILL)", f"({_ports(*_MILL)})")
     .replace("(ARM)", f"({_ports(*_ARM)})")
 )
-TOML = """
-[net]
-file = "cell.cpn"
-[supervisor]
-instance = "Supervisor"
-final = ["Finished"]
-[[channel]]
-place = "open"
-file = "open.robcad"
-[[channel]]
-place = "opened"
-file = "opened.robcad"
-[[channel]]
-place = "load"
-file = "load.robcad"
-[[channel]]
-place = "loaded"
-file = "loaded.robcad"
-[[channel]]
-place = "leave"
-file = "leave.robcad"
-[[channel]]
-place = "left"
-file = "left.robcad"
-[[channel]]
-place = "work"
-file = "work.robcad"
-[[channel]]
-place = "worked"
-file = "worked.robcad"
-[[channel]]
-place = "clamp"
-file = "clamp.robcad"
-[[channel]]
-place = "clamped"
-file = "clamped.robcad"
-
+TOML = (
+    head("open", "opened", "load", "loaded", "leave", "left", "work", "worked", "clamp", "clamped")
+    + """
 [primitives]
 openDoor = { command = "move_external", axis = "door", to = 0.9 }
 closeDoor = { command = "move_external", axis = "door", to = 0.0, speed = 0.5 }
 openVice = { command = "move_external", axis = "vice", to = 0.12 }
 clampTo = { command = "move_external", axis = "vice" }
 mill = { command = "tool", action = "mill", duration_s = 2.0 }
-goTo = { command = "move_joint" }
-line = { command = "move_linear", frame = "world", speed = 0.25 }
-home = { command = "move_home" }
-grip = { command = "tool", action = "grip", duration_s = 0.5, takes = "blank" }
-release = { command = "tool", action = "release", duration_s = 0.3, releases = "blank" }
-
-[robots.arm]
-instance = "Arm"
-model = "gp25"
-tool = "vacuum_gripper"
-base = { z = 0.3 }
-home = [0.0, 0.0, 0.0, 0.0, -90.0, 0.0]
-
+"""
+    + f"{GOING}\n{ARM}"
+    + """
 [devices.mill]
 instance = "Mill"
 
@@ -261,6 +218,7 @@ objects = [
     { name = "block", size = [0.06, 0.03, 0.02], pose = { x = 1.0, z = 0.59 } },
 ]
 """
+)
 
 
 def door_cell(folder: Path, net: str = NET, toml: str = TOML) -> Path:

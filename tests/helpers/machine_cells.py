@@ -10,6 +10,8 @@ from __future__ import annotations
 
 from random import Random
 
+from helpers.cell_texts import ARM, GOING, head
+
 _PARTIES = {"F": "Feeder", "M": "Mill", "A": "Arm", "T": "Table"}
 _TASKS = (
     ("T", "rotate FIRST", ()),
@@ -45,31 +47,17 @@ net machine
   fun over (p : POSE) = at (#x p, #y p, 900.0);
   page Top
 """
-_TOML = """
-[net]
-file = "cell.cpn"
-[supervisor]
-instance = "Supervisor"
-final = ["Finished"]
-order = "documented"
-CHANNELS
-[primitives]
+_TOML = (
+    head(*(f"{c}{p}" for p in _PARTIES for c in "fd"), page="Top.", order="documented")
+    + """[primitives]
 bring = { command = "move_external", axis = "belt", to = 0.9 }
 door = { command = "move_external", axis = "door" }
 vice = { command = "move_external", axis = "vice" }
 rotate = { command = "move_external", axis = "plate" }
-goTo = { command = "move_joint" }
-line = { command = "move_linear", frame = "world", speed = 0.25 }
-home = { command = "move_home" }
-grip = { command = "tool", action = "grip", duration_s = 0.5, takes = "blank" }
-release = { command = "tool", action = "release", duration_s = 0.3, releases = "blank" }
-[robots.arm]
-instance = "Arm"
-model = "gp25"
-tool = "vacuum_gripper"
-base = { z = 0.3 }
-home = [0.0, 0.0, 0.0, 0.0, -90.0, 0.0]
-[devices.feeder]
+"""
+    + GOING
+    + ARM
+    + """[devices.feeder]
 instance = "Feeder"
 [devices.feeder.axes.belt]
 kind = "belt"
@@ -121,6 +109,7 @@ objects = [
     { name = "block", size = [0.06, 0.03, 0.02], pose = { x = 1.0, z = 0.59 } },
 ]
 """
+)
 
 
 def machine_cell(random: Random) -> tuple[str, str]:
@@ -162,12 +151,7 @@ def machine_cell(random: Random) -> tuple[str, str]:
     parts = [f"{{ x = {x:.3f}, y = -0.9, z = 0.575 }}" for x in _on_belt(random)]
     if is_stacked:
         parts.append("{ x = 0.0, y = 0.85, z = 0.475 }")
-    channels = "".join(
-        f'[[channel]]\nplace = "Top.{c}{p}"\nfile = "{c}{p}.robcad"\n'
-        for p in _PARTIES
-        for c in "fd"
-    )
-    toml = _TOML.replace("CHANNELS", channels).replace("PARTS", ", ".join(parts))
+    toml = _TOML.replace("PARTS", ", ".join(parts))
     return "\n".join(lines) + "\n", toml.replace("LEAF", f"{random.uniform(0.6, 0.8):.3f}")
 
 

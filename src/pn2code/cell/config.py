@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from pn2code.base.frozen import frozen
+from pn2code.cell.named_elsewhere import axes_of_all
 from pn2code.cell.partition import ChannelKind
 from pn2code.cell.toml_file import Locator
 from pn2code.cell_file.logic import LED, PRIMITIVE
@@ -231,14 +232,7 @@ class CellConfig:
 
         What is wrong in these tables, `robot.scene` reports.
         """
-        out: dict[str, str] = {}
-        for section, default in (("robots", "track"), ("devices", "slide")):
-            tables = self.geometry.get(section)
-            table = tables.get(owner) if isinstance(tables, dict) else None
-            axes = table.get("axes") if isinstance(table, dict) else None
-            named = axes.items() if isinstance(axes, dict) else ()
-            out |= {name: str(x.get("kind", default)) for name, x in named if isinstance(x, dict)}
-        return out
+        return axes_of_all(self.geometry).get(owner, {})
 
     def tcps(self, robot: str) -> tuple[str, ...]:
         """The names of the further tool frames of a robot."""

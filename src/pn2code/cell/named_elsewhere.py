@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from pn2code.cell import codes
@@ -12,6 +12,8 @@ from pn2code.diagnostics.suggestions import did_you_mean
 
 AlongAxes = tuple[tuple[str, bool], ...]
 """External axes of a move, each with whether it slides."""
+TURNING = ("turntable", "swing")
+"""Kinds of axes that turn; all others slide."""
 
 
 def table_of(value: object) -> dict[str, Any]:
@@ -35,13 +37,13 @@ def along_of(
         if kind not in table or kind not in PRIMITIVE.names(command):
             continue
         name = r.get(table, at, PRIMITIVE.key(kind, command), "")
-        robots = [table_of(x) for x in table_of(data.get("robots")).values()]
-        known = {
-            axis: table_of(x).get("kind", "track")
-            for robot in robots
-            for axis, x in table_of(robot.get("axes")).items()
-        }
-        own = [axis for axis, x in known.items() if x == kind]
+        all_axes = axes_of_all(data)
+        own = [
+            axis
+            for robot in table_of(data.get("robots"))
+            for axis, x in all_axes[robot].items()
+            if x == kind
+        ]
         if name and name not in own:
             r.d.error(
                 codes.CELL_VALUE,
@@ -73,11 +75,7 @@ def along_of(
         yield name, sliding != {False}
 
 
-TURNING = ("turntable", "swing")
-"""Kinds of axes that turn; all others slide."""
-
-
-def axes_of_all(data: dict[str, Any]) -> dict[str, dict[str, str]]:
+def axes_of_all(data: Mapping[str, Any]) -> dict[str, dict[str, str]]:
     """Of each robot and device its external axes, each with its kind; what is wrong with them is reported elsewhere."""
     out: dict[str, dict[str, str]] = {}
     for section, default in (("robots", "track"), ("devices", "slide")):

@@ -20,6 +20,7 @@ from dataclasses import dataclass, field
 from pn2code.cell import codes
 from pn2code.cell.axes_types import is_axes
 from pn2code.cell.config import GOING, CellConfig, CommandName, Primitive
+from pn2code.cell.named_elsewhere import TURNING
 from pn2code.cell.partition import Owner, OwnerKind, Partition
 from pn2code.cell.pose_types import is_pose, pose_types
 from pn2code.cell.reach import Reach, bound
@@ -274,7 +275,7 @@ class _Checker:
         own = self.config.external_axes(owner.name)
         section = "devices" if owner.kind is OwnerKind.DEVICE else "robots"
         for axis, slides in primitive.along:
-            if axis not in own or (own[axis] not in ("turntable", "swing")) is not slides:
+            if axis not in own or (own[axis] not in TURNING) is not slides:
                 kind = "track" if slides else "turntable"
                 if owner.kind is OwnerKind.DEVICE:
                     kind = "axis"

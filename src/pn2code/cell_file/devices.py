@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from pn2code.cell_file.geometry import OBJECT, POSE, POSE_WORDS, pace_of, travel
+from pn2code.cell_file.geometry import OBJECT, POSE, POSE_WORDS, lengths, pace_of, travel
 from pn2code.cell_file.keys import Key, Section
 
 _SLIDE, _SWING, _CLAMP, _BELT = ("slide",), ("swing",), ("clamp",), ("belt",)
-_METRES = ((1e-5, 100.0), (1e-4, 1e4), (1e-4, 1e6))
-_DEGREES = ((1e-3, 1e4), (0.1, 1e6), (0.1, 1e8))
 DEVICE_AXIS = Section(
     (
         Key(
@@ -36,9 +34,9 @@ DEVICE_AXIS = Section(
             counts=(3,),
             only=_SLIDE,
         ),
-        *travel(_SLIDE, "m", (0.5, 1.0, 10.0), _METRES),
-        *travel(_SWING, "degrees", (60.0, 120.0, 600.0), _DEGREES),
-        *travel(_CLAMP, "m", (0.1, 1.0, 10.0), _METRES, "The {} gap between its jaws."),
+        *travel(_SLIDE, "m", (0.5, 1.0, 10.0)),
+        *travel(_SWING, "degrees", (60.0, 120.0, 600.0)),
+        *travel(_CLAMP, "m", (0.1, 1.0, 10.0), "The {} gap between its jaws."),
         *(
             Key(name, "number", means, required=True, unit="m", low=0.0, above=True, only=_BELT)
             for name, means in (("length", "Its length."), ("width", "Its width."))
@@ -53,7 +51,7 @@ DEVICE_AXIS = Section(
             above=True,
             only=_BELT,
         ),
-        *pace_of(_BELT, "m", (0.3, 1.0, 10.0), _METRES),
+        *pace_of(_BELT, "m", (0.3, 1.0, 10.0)),
         Key(
             "objects",
             "tables",
@@ -62,17 +60,10 @@ DEVICE_AXIS = Section(
             inner=OBJECT,
             only=(*_SLIDE, *_SWING),
         ),
-        Key(
+        lengths(
             "jaw",
-            "numbers",
             "Full lengths of each of its two jaws, the first one along the way on which they close.",
-            "three numbers: full lengths, m",
-            required=True,
-            unit="m",
-            counts=(3,),
-            low=0.0,
-            above=True,
-            only=_CLAMP,
+            _CLAMP,
         ),
         Key(
             "colour",

@@ -136,6 +136,22 @@ MOTION = Section(
 )
 
 
+def lengths(name: str, means: str, only: tuple[str, ...] = ()) -> Key:
+    """The full lengths of a box."""
+    return Key(
+        name,
+        "numbers",
+        means,
+        "three numbers: full lengths, m",
+        required=True,
+        unit="m",
+        counts=(3,),
+        low=0.0,
+        above=True,
+        only=only,
+    )
+
+
 def _shape() -> tuple[Key, ...]:
     """The keys of what has a shape."""
     box, cylinder, mesh = ("box",), ("cylinder",), ("mesh",)
@@ -148,18 +164,7 @@ def _shape() -> tuple[Key, ...]:
             default="box",
             words=("box", "cylinder", "mesh"),
         ),
-        Key(
-            "size",
-            "numbers",
-            "Full lengths.",
-            "three numbers: full lengths, m",
-            required=True,
-            unit="m",
-            counts=(3,),
-            low=0.0,
-            above=True,
-            only=box,
-        ),
+        lengths("size", "Full lengths.", box),
         Key(
             "radius",
             "number",
@@ -314,28 +319,29 @@ OBJECT = Section(
 )
 
 
+_PACE = {
+    "m": ((1e-5, 100.0), (1e-4, 1e4), (1e-4, 1e6)),
+    _DEGREES: ((1e-3, 1e4), (0.1, 1e6), (0.1, 1e8)),
+}
+"""Between what speed, acceleration and jerk of an axis are, by its unit."""
+
+
 def travel(
     only: tuple[str, ...],
     unit: str,
     pace: tuple[float, float, float],
-    between: tuple[tuple[float, float], ...],
     means: str = "Its {} position.",
 ) -> tuple[Key, ...]:
-    """How far an external axis goes, and how fast; `between`: the least and greatest of each of these."""
+    """How far an external axis goes, and how fast."""
     return (
         Key("from", "number", means.format("least"), required=True, unit=unit, only=only),
         Key("to", "number", means.format("greatest"), required=True, unit=unit, only=only),
         Key("home", "number", "Where it is when a run begins.", default=0.0, unit=unit, only=only),
-        *pace_of(only, unit, pace, between),
+        *pace_of(only, unit, pace),
     )
 
 
-def pace_of(
-    only: tuple[str, ...],
-    unit: str,
-    pace: tuple[float, float, float],
-    between: tuple[tuple[float, float], ...],
-) -> tuple[Key, ...]:
+def pace_of(only: tuple[str, ...], unit: str, pace: tuple[float, float, float]) -> tuple[Key, ...]:
     """How fast it is."""
     words = ("speed", "acceleration", "jerk")
     units = (f"{unit}/s", f"{unit}/s\u00b2", f"{unit}/s\u00b3")
@@ -350,7 +356,7 @@ def pace_of(
             high=most,
             only=only,
         )
-        for word, value, own, (least, most) in zip(words, pace, units, between, strict=True)
+        for word, value, own, (least, most) in zip(words, pace, units, _PACE[unit], strict=True)
     )
 
 
@@ -373,7 +379,7 @@ AXIS = Section(
             counts=(3,),
             only=("track",),
         ),
-        *travel(("track",), "m", (0.5, 1.0, 10.0), ((1e-5, 100.0), (1e-4, 1e4), (1e-4, 1e6))),
+        *travel(("track",), "m", (0.5, 1.0, 10.0)),
         Key(
             "pose",
             "table",
@@ -383,9 +389,7 @@ AXIS = Section(
             inner=POSE,
             only=("turntable",),
         ),
-        *travel(
-            ("turntable",), _DEGREES, (60.0, 120.0, 600.0), ((1e-3, 1e4), (0.1, 1e6), (0.1, 1e8))
-        ),
+        *travel(("turntable",), _DEGREES, (60.0, 120.0, 600.0)),
         Key(
             "radius",
             "number",
@@ -419,17 +423,7 @@ AXIS = Section(
 ZONE = Section(
     (
         Key("pose", "table", "The middle of the box in the world.", POSE_WORDS, inner=POSE),
-        Key(
-            "size",
-            "numbers",
-            "Full lengths of the box.",
-            "three numbers: full lengths, m",
-            required=True,
-            unit="m",
-            counts=(3,),
-            low=0.0,
-            above=True,
-        ),
+        lengths("size", "Full lengths of the box."),
         Key(
             "max_speed",
             "number",

@@ -8,8 +8,10 @@ activity.end, activity.after    # where the arm stands afterwards, and the parts
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import replace
+from functools import partial
+from typing import TypeVar
 
 import numpy as np
 
@@ -29,6 +31,7 @@ from pn2code.robot.transforms import Array, describe, inverse, matrix_of
 
 _DIGITS = 6
 _SLACKS = (0.0, ROUNDING, -ROUNDING)
+_Done = TypeVar("_Done")
 
 
 @frozen(eq=False)
@@ -190,8 +193,9 @@ class Doing:
         may_run: frozenset[str] = frozenset()
         handled: list[tuple[Array, float]] = []
         done = Activity(0, (), stand, contents, kinds=kinds)
+        others = tuple(s for s in others if s.robot != owner)
         for command in commands:
-            standing = (*(s for s in others if s.robot != owner), *((stand,) if stand else ()))
+            standing = others if stand is None else (*others, stand)
             if stand is not None:
                 own = self._cell.robot(owner)
                 if told := told_to_run(own, command):
@@ -201,7 +205,7 @@ class Doing:
                     command = until_stop(own, _parts(contents, standing, 0.0), command)
                 leg = self.planner.leg(stand, command)
                 if leg.path is not None and leg.is_moving:
-                    plates = turned_by(self._cell.robot(owner), leg.path)
+                    plates = turned_by(own, leg.path)
                     turns |= plates
                     done = self._turning(done, command, plates, standing, contents)
                     if pulled := self._pulled(own, leg, plates, contents):
@@ -225,8 +229,7 @@ class Doing:
                         break
                     if doubt and not done.doubt:
                         done = replace(done, doubt=doubt, command=command)
-                    now = (*(s for s in others if s.robot != owner), stand)
-                    handled += self._handed_on(ran, now, contents)
+                    handled += self._handed_on(ran, (*others, stand), contents)
             if isinstance(command, ToolAction) and command.handling is not None:
                 tcp = None
                 if stand is not None:
@@ -256,27 +259,18 @@ class Doing:
         """What belts have taken along, and why that is not known ("": it is). Raises PartFault: off their ends."""
         assert leg.path is not None
         device = self._cell.robot(leg.robot)
-        found: list[Contents] = []
-        faults: list[PartFault] = []
-        for slack in _SLACKS:
-            parts = _parts(contents, standing, slack)
-            parts.stand(device.name, leg.path.q(leg.path.duration))
-            try:
-                for axis in device.belts:
-                    plate = f"{device.name}/{axis.name}"
-                    if plate in ran:
-                        parts.run_out(plate)
-                        parts.rewind(plate, device.T_world_plate(axis, leg.end.q))
-            except PartFault as fault:
-                faults.append(fault)
-                continue
-            found.append(self._kept(parts))
-        if not found:
-            raise faults[0]
-        if faults:
-            return found[0], _nearly(str(faults[0]))
-        same = len({after.number for after in found}) == 1
-        return found[0], "" if same else _nearly(f"`{min(ran)}` takes parts along")
+        stopped = leg.path.q(leg.path.duration)
+
+        def run_out(parts: Parts) -> None:
+            parts.stand(device.name, stopped)
+            for axis in device.belts:
+                plate = f"{device.name}/{axis.name}"
+                if plate in ran:
+                    parts.run_out(plate)
+                    parts.rewind(plate, device.T_world_plate(axis, leg.end.q))
+
+        found, faults = _tried(contents, standing, run_out)
+        return self._one_of(found, faults, f"`{min(ran)}` takes parts along")
 
     def _handed_on(
         self, ran: frozenset[str], standing: tuple[Stand, ...], contents: Contents
@@ -292,9 +286,8 @@ class Doing:
 
     def _around(self, handling: Handling, tcp: Array | None) -> tuple[Array, float]:
         """Where a part is handled, and how far around that it reaches, whichever it is and however it lies."""
-        frame = matrix_of(self._cell.places[handling.place]) if tcp is None else tcp
-        if handling.place:
-            frame = matrix_of(self._cell.places[handling.place])
+        frame = matrix_of(self._cell.places[handling.place]) if handling.place else tcp
+        assert frame is not None, "only a tool handles parts where it is"
         kind = self._cell.parts[handling.part]
         return frame[:3, 3], 2.0 * Ground.of(self._cell).radius(kind.name) + kind.tolerance
 
@@ -302,35 +295,27 @@ class Doing:
         """Whether a place is so near to a turntable that it, or what stands on it, can come there when it turns."""
         ground = Ground.of(self._cell)
         own = ground.plates[plate]
-        robot = self._cell.robot(own.robot)
-        axis = next(a for a in robot.carrying if robot.index(a.name) == own.index)
-        frame = robot.T_world_base @ axis.T_base_axis
+        axis = own.axis
+        riders = [p for inside in contents for p in inside.parts.riders(plate)]
         point, around = where
-        off = inverse(frame) @ np.append(point, 1.0)
+        off = inverse(own.T_world_axis) @ np.append(point, 1.0)
         if axis.belt is not None:
             # What stands on it is above it, before and after.
             beside = (
                 max(-off[0], off[0] - axis.upper, 0.0),
                 max(abs(off[1]) - axis.belt.width / 2.0, 0.0),
             )
-            riders = [p for inside in contents for p in inside.parts.riders(plate)]
             wide = max((ground.radius(p.kind.name) for p in riders), default=0.0)
             return float(np.hypot(*beside)) <= wide + around
         if axis.is_track:
             # Wherever it is on its way.
             along = float(np.clip(off[:3] @ axis.direction, axis.lower, axis.upper))
             apart = float(np.linalg.norm(off[:3] - along * axis.direction))
-            lying = [p for inside in contents for p in inside.parts.riders(plate)]
-            far = [
-                float(np.linalg.norm(p.frame[:3, 3])) + ground.radius(p.kind.name) for p in lying
-            ]
-            return bool(apart <= max([own.reach, *far]) + around)
-        reach = own.reach
-        for inside in contents:
-            for part in inside.parts.riders(plate):
-                off_axis = float(np.hypot(*part.frame[:2, 3]))
-                reach = max(reach, off_axis + ground.radius(part.kind.name))
-        return float(np.hypot(*off[:2])) <= reach + around
+            far = [np.linalg.norm(p.frame[:3, 3]) + ground.radius(p.kind.name) for p in riders]
+        else:
+            apart = float(np.hypot(*off[:2]))
+            far = [np.hypot(*p.frame[:2, 3]) + ground.radius(p.kind.name) for p in riders]
+        return apart <= max([own.reach, *map(float, far)]) + around
 
     def _pulled(self, own: CellRobot, leg: Leg, plates: frozenset[str], contents: Contents) -> str:
         """That a device takes a part along which a clamp of its own holds then; "": it does not."""
@@ -352,46 +337,37 @@ class Doing:
     ) -> Activity:
         """Whether what stands on turntables stays there when they begin to turn."""
         for plate in sorted(plates):
-            said = []
-            for slack in _SLACKS:
-                parts = _parts(contents, standing, slack)
-                try:
-                    parts.turn(plate)
-                    said.append("")
-                except PartFault as fault:
-                    said.append(str(fault))
-            if all(said):
-                return replace(done, fault=said[0], is_part=True, command=command, doubt="")
-            if any(said) and not done.doubt:
-                done = replace(done, doubt=_nearly(max(said)), command=command)
+            try:
+                _, faults = _tried(contents, standing, partial(Parts.turn, plate=plate))
+            except PartFault as fault:
+                return replace(done, fault=str(fault), is_part=True, command=command, doubt="")
+            if faults and not done.doubt:
+                done = replace(done, doubt=_nearly(max(map(str, faults))), command=command)
         return done
 
     def _handle(self, doing: _Handled, contents: Contents) -> tuple[Contents, str]:
         """What an action does to a part, and why it is not known that it can ("": it can).
 
-        Raises PartFault if it cannot. It is done again as if what it stands on were a little further away, and a
-        little nearer: where that comes to something else, it is not known.
+        Raises PartFault if it cannot.
         """
-        found: list[tuple[Contents, PartChange, Parts]] = []
-        faults: list[PartFault] = []
-        for slack in _SLACKS:
-            parts = _parts(contents, doing.standing, slack)
-            try:
-                change = parts.handle(doing.owner, doing.handling, doing.tcp)
-            except PartFault as fault:
-                faults.append(fault)
-                continue
-            found.append((self._kept(parts), change, parts))
-        if not found:
-            raise faults[0]
-        doubt = ""
-        if faults:
-            doubt = _nearly(str(faults[0]))
-        elif len({after.number for after, _, _ in found}) > 1:
-            part = found[0][1].part
-            doubt = _nearly(f"`{doing.owner}` {doing.handling.effect} `{part}` beside a turntable")
-        after, change, parts = found[0]
+
+        def handle(parts: Parts) -> PartChange:
+            return parts.handle(doing.owner, doing.handling, doing.tcp)
+
+        found, faults = _tried(contents, doing.standing, handle)
+        change, parts = found[0]
+        does = f"`{doing.owner}` {doing.handling.effect} `{change.part}` beside a turntable"
+        after, doubt = self._one_of(found, faults, does)
         return after, self._expect_apart(doing, change, parts) or doubt
+
+    def _one_of(
+        self, found: list[tuple[_Done, Parts]], faults: list[PartFault], does: str
+    ) -> tuple[Contents, str]:
+        """What was tried has come to, and why that is not known ("": it is)."""
+        kept = [self._kept(parts) for _, parts in found]
+        if faults:
+            return kept[0], _nearly(str(faults[0]))
+        return kept[0], "" if len({c.number for c in kept}) == 1 else _nearly(does)
 
     def _expect_apart(self, doing: _Handled, change: PartChange, parts: Parts) -> str:
         """Whether a part that is put down overlaps nothing, as a run looks at it.
@@ -422,6 +398,26 @@ class _Handled:
     handling: Handling
     tcp: Array | None
     standing: tuple[Stand, ...]
+
+
+def _tried(
+    contents: Contents, standing: tuple[Stand, ...], does: Callable[[Parts], _Done]
+) -> tuple[list[tuple[_Done, Parts]], list[PartFault]]:
+    """What is done to parts comes to, also as if what they stand on were a little further away, and a little nearer.
+
+    Where these come to something else, it is not known. Raises PartFault if it can be done in none of these ways.
+    """
+    found: list[tuple[_Done, Parts]] = []
+    faults: list[PartFault] = []
+    for slack in _SLACKS:
+        parts = _parts(contents, standing, slack)
+        try:
+            found.append((does(parts), parts))
+        except PartFault as fault:
+            faults.append(fault)
+    if not found:
+        raise faults[0]
+    return found, faults
 
 
 def _parts(contents: Contents, standing: tuple[Stand, ...], slack: float) -> Parts:

@@ -18,7 +18,8 @@ from pn2code.live.handing import Handing
 from pn2code.replay import cell as cells
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array, inverse, matrix_of
-from pn2code.run.engine import Engine, RobotRunner, kind_and_label
+from pn2code.run.command_words import kind_and_label
+from pn2code.run.engine import Engine, RobotRunner
 from pn2code.run.realtime import RealtimeEngine
 from pn2code.run.record import ActionRecord, PartRecord
 

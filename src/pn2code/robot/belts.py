@@ -19,15 +19,24 @@ from pn2code.robot.transforms import inverse, matrix_of
 
 def until_stop(device: CellRobot, parts: Parts, command: Command) -> Command:
     """A command with belts that run as far as the parts on them let them."""
-    if not isinstance(command, MoveExternal):
-        return command
-    belts = {a.name: a for a in device.belts if a.belt is not None and a.belt.stop}
+    belts = stopping(device, command)
     if not belts:
         return command
+    assert isinstance(command, MoveExternal)
     along = tuple(
         _stopped(device, parts, a, belts[a.axis]) if a.axis in belts else a for a in command.along
     )
     return replace(command, along=along)
+
+
+def stopping(device: CellRobot, command: Command) -> dict[str, ExternalAxis]:
+    """The belts with a stop that a command tells to run: how far they do depends on the parts on them."""
+    if not isinstance(command, MoveExternal):
+        return {}
+    told = {a.axis for a in command.along}
+    return {
+        a.name: a for a in device.belts if a.belt is not None and a.belt.stop and a.name in told
+    }
 
 
 def told_to_run(device: CellRobot, command: Command) -> frozenset[str]:

@@ -346,10 +346,9 @@ class BulletBackend:
 
     def _plate(self, plate: str) -> Array:
         """Where a turntable is, `T_world_plate`."""
-        name, _, axis = plate.partition("/")
+        name = plate.partition("/")[0]
         robot = self._robots[name].robot
-        own = next(a for a in robot.carrying if a.name == axis)
-        return robot.T_world_plate(own, self._q.get(name, robot.home))
+        return robot.T_world_plate(robot.plate(plate), self._q.get(name, robot.home))
 
     def remove_part(self, name: str) -> None:
         """The part has left the cell."""

@@ -14,7 +14,7 @@ from collections.abc import Collection, Iterable, Iterator
 
 from pn2code.base.frozen import frozen
 from pn2code.robot.external import Clamp
-from pn2code.robot.parts import Part
+from pn2code.robot.parts import Part, carried_to
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, difference, matrix_of
@@ -70,8 +70,5 @@ def taken_along(
     That is what its tool holds, and what stands on those of its turntables or belts (`plates`) that move.
     """
     for part in parts:
-        if part.holder == robot.name:
-            yield part, robot.T_world_base @ robot.kinematics.forward(q) @ part.frame
-        elif part.plate in plates:
-            axis = next(a for a in robot.carrying if part.plate == f"{robot.name}/{a.name}")
-            yield part, robot.T_world_plate(axis, q) @ part.frame
+        if part.holder == robot.name or part.plate in plates:
+            yield part, carried_to(robot, q, part)

@@ -45,19 +45,24 @@ class Plate:
     """What takes parts along that stand on it: a turntable, a belt, another axis of a device.
 
     Args:
-        robot: whose it is; index: of its axis, in joint positions.
+        robot: whose it is; axis: which of its axes.
         hulls: of it and what is on it, in its own frame.
         reach: m: nothing of it is further from its axis.
         upright: whether it turns about a line that is upright, so that what lies on it stays where it is.
         does: what it does when it moves, for messages.
     """
 
-    robot: str
-    index: int
+    robot: CellRobot
+    axis: ExternalAxis
     hulls: tuple[Hull, ...]
     reach: float
     upright: bool
     does: str = "turns"
+
+    @property
+    def T_world_axis(self) -> Array:  # noqa: N802
+        """Where the frame of its axis is, which stands."""
+        return self.robot.T_world_base @ self.axis.T_base_axis
 
 
 @frozen
@@ -244,11 +249,7 @@ def _plates(cell: RobotCell) -> Iterator[tuple[str, Plate]]:
             # Its body is a thing of the scene, which stands.
             width = belt.belt.width if belt.belt is not None else 0.0
             own_reach = float(np.hypot(belt.upper, width / 2.0))
-            index = device.index(belt.name)
-            yield (
-                f"{device.name}/{belt.name}",
-                Plate(device.name, index, (), own_reach, True, "runs"),
-            )
+            yield f"{device.name}/{belt.name}", Plate(device, belt, (), own_reach, True, "runs")
     for robot in cell.robots:
         for axis in robot.axes.tables:
             yield f"{robot.name}/{axis.name}", _plate(robot, axis, "turns", plate_of(axis))
@@ -265,4 +266,4 @@ def _plate(robot: CellRobot, axis: ExternalAxis, does: str, *more: SceneObject) 
     up = (robot.T_world_base @ axis.T_base_axis)[:3, :3] @ axis.direction
     # A line leads what stands on it along, however it is inclined.
     upright = axis.is_track or bool(abs(abs(float(up[2])) - 1.0) <= _UPRIGHT**2)
-    return Plate(robot.name, robot.index(axis.name), tuple(hulls), reach, upright, does)
+    return Plate(robot, axis, tuple(hulls), reach, upright, does)

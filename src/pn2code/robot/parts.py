@@ -24,7 +24,7 @@ from pn2code.base.frozen import frozen
 from pn2code.robot.commands import Handling, Pose
 from pn2code.robot.ground import REST_GAP, Ground, Rest
 from pn2code.robot.parts_table import PartKind
-from pn2code.robot.robot_cell import RobotCell
+from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, describe, difference, inverse, matrix_of, pose_of
 
 
@@ -249,11 +249,8 @@ class Parts:
     def _beyond(self, plate: str, part: Part) -> float:
         """How far (m) the middle of a part is beyond the end of a belt, negative: before it."""
         own = self._ground.plates[plate]
-        device = self.cell.robot(own.robot)
-        belt = next(a for a in device.belts if device.index(a.name) == own.index)
         middle = self._ground.middle(part.kind, self.world(part))
-        frame = inverse(device.T_world_base @ belt.T_base_axis)
-        return float((frame @ np.append(middle, 1.0))[0] - belt.upper)
+        return float((inverse(own.T_world_axis) @ np.append(middle, 1.0))[0] - own.axis.upper)
 
     def rewind(self, plate: str, frame: Array) -> None:
         """The same belt with its beginning counted from where it is now: `T_world_plate` of that."""
@@ -434,6 +431,13 @@ class Parts:
         part = Part(f"{kind.name}.{next(self._numbers[kind.name])}", kind, np.asarray(frame))
         self.present[part.name] = part
         return part
+
+
+def carried_to(robot: CellRobot, q: Array, part: Part) -> Array:
+    """`T_world_part` of a part that a robot at `q` carries, in its tool or on a turntable."""
+    if part.plate:
+        return robot.T_world_plate(robot.plate(part.plate), q) @ part.frame
+    return robot.T_world_base @ robot.kinematics.forward(q) @ part.frame
 
 
 def _off(kind: PartKind, frame: Array, tcp: Array) -> tuple[float, float]:

@@ -151,6 +151,10 @@ class CellRobot:
         """Those that are belts."""
         return tuple(a for a in self.axes.tables if a.belt is not None)
 
+    def plate(self, plate: str) -> ExternalAxis:
+        """That of a name as parts have it (`Part.plate`): "left/plate"."""
+        return next(a for a in self.carrying if plate == f"{self.name}/{a.name}")
+
     def T_world_plate(self, axis: ExternalAxis, q: Sequence[float] | Array) -> Array:  # noqa: N802
         """Where one of these is, with what goes with it."""
         position = float(q[self.index(axis.name)])

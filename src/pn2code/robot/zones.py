@@ -18,7 +18,7 @@ from lxml import etree
 
 from pn2code.base.frozen import frozen
 from pn2code.robot.hulls import Hull
-from pn2code.robot.parts import Part
+from pn2code.robot.parts import Part, carried_to
 from pn2code.robot.placed_links import placed_links
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, inverse, matrix_of, rotation_xyz
@@ -62,8 +62,10 @@ class ZoneWatch:
 
     def __init__(self, cell: RobotCell) -> None:
         self.cell = cell
-        self._boxes = {r.name: tuple(_boxes(r)) for r in cell.moving} if cell.zones else {}
-        self._kinds = {k.name: _corners([Hull.of(k.shape)]) for k in cell.parts.values()}
+        # Without zones nothing is asked, and meshes need not be read.
+        moving, kinds = (cell.moving, cell.parts.values()) if cell.zones else ((), ())
+        self._boxes = {r.name: tuple(_boxes(r)) for r in moving}
+        self._kinds = {k.name: _corners([Hull.of(k.shape)]) for k in kinds}
         self._frames = {name: inverse(matrix_of(z.pose)) for name, z in cell.zones.items()}
         self.limited = tuple(z for z in cell.zones.values() if z.max_speed is not None)
 
@@ -75,15 +77,11 @@ class ZoneWatch:
         for box in self._boxes[robot]:
             frame = base @ frames[box.axis]
             yield box.name, box.corners @ frame[:3, :3].T + frame[:3, 3]
-        plates = {f"{robot}/{a.name}": a for a in own.carrying}
         for part in parts:
             corners = self._kinds[part.kind.name]
             if part.carrier != robot or corners is None:
                 continue
-            if part.plate:
-                frame = own.T_world_plate(plates[part.plate], q) @ part.frame
-            else:
-                frame = base @ own.kinematics.forward(q) @ part.frame
+            frame = carried_to(own, q, part)
             yield f"{robot}/{part.name}", corners @ frame[:3, :3].T + frame[:3, 3]
 
     def off(self, zone: str, corners: Array) -> float:

@@ -26,35 +26,28 @@ import numpy as np
 from pn2code.base.frozen import record
 from pn2code.cell.partition import Partition
 from pn2code.emission.output import Block, OutputFile
-from pn2code.robot.along import AlongTrajectory
 from pn2code.robot.backend import Backend
 from pn2code.robot.belts import until_stop
 from pn2code.robot.clamps import holding, taken_along
 from pn2code.robot.commands import (
-    Along,
     Command,
     Handling,
-    Measure,
     Move,
-    MoveAxes,
     MoveCircular,
-    MoveExternal,
-    MoveHome,
     MoveJoint,
     MoveLinear,
     Pose,
     ToolAction,
-    Wait,
-    tcp_of,
 )
 from pn2code.robot.executor import Motion, RobotExecutor, turned, turned_by
-from pn2code.robot.monitor import Monitor, Sample
-from pn2code.robot.motion import LinearTrajectory, MotionFault
+from pn2code.robot.monitor import Monitor
+from pn2code.robot.motion import MotionFault
 from pn2code.robot.parts import PartFault
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array, describe, matrix_of, pose_of
 from pn2code.robot.zones import ZoneWatch
-from pn2code.run.accuracy import distance, distance_to_line
+from pn2code.run.accuracy import distance, off_line
+from pn2code.run.command_words import kind_and_label, words
 from pn2code.run.device import DeviceExecutor
 from pn2code.run.files import RobotFiles
 from pn2code.run.hand import Said
@@ -67,7 +60,7 @@ from pn2code.run.record import (
     RunRecord,
 )
 from pn2code.run.sensors import Sensors
-from pn2code.run.stops import Paused, Stops
+from pn2code.run.stops import Stops
 from pn2code.run.supervisor import SupervisorProcess
 from pn2code.tdl.check import CheckedProgram
 from pn2code.tdl.interpret import MOST_AT_ONCE, Interpreter
@@ -130,6 +123,11 @@ class RobotRunner:
         """The net transition that a script line implements, "" if none."""
         inside = [b for b in self.blocks if b.kind == "transition" and b.first <= line <= b.last]
         return min(inside, key=lambda b: b.last - b.first).element if inside else ""
+
+    def at(self, line: int) -> str:
+        """A line of its script, for messages, with the net transition that it implements."""
+        where = self.element_at(line)
+        return f"{self.script}:{line}" + (f" (net transition {where})" if where else "")
 
     def tool_action(self) -> str:
         """The tool action under way, "" if none."""
@@ -451,9 +449,7 @@ class Engine:
         try:
             motion = robot.executor.begin(self._stopped(robot, command), self.now)
         except MotionFault as fault:
-            where = robot.element_at(line)
-            at = f" (net transition {where})" if where else ""
-            raise CellStoppedError(f"{robot.script}:{line}{at}: {fault}") from None
+            raise CellStoppedError(f"{robot.at(line)}: {fault}") from None
         self._expect_let_go(robot, motion, line)
         self._expect_riders_stay(robot, motion, line)
         if self.stops is not None:
@@ -487,9 +483,7 @@ class Engine:
             try:
                 settled = self.parts.run_out(plate)
             except PartFault as fault:
-                where = robot.element_at(robot.line)
-                at = f" (net transition {where})" if where else ""
-                raise CellStoppedError(f"{robot.script}:{robot.line}{at}: {fault}") from None
+                raise CellStoppedError(f"{robot.at(robot.line)}: {fault}") from None
             for change in settled:
                 self.record.parts.append(PartRecord(self.now, robot.name, change))
 
@@ -504,11 +498,9 @@ class Engine:
             for held in holding(self.cell, part.kind, frame):
                 own = stands[held.device.name].joints(self.now)
                 if held.holds(own):
-                    where = robot.element_at(line)
-                    at = f" (net transition {where})" if where else ""
                     words = held.words(robot.name, part.name, own)
                     raise CellStoppedError(
-                        f"{robot.script}:{line}{at}: {words}, part at {describe(pose_of(frame))}"
+                        f"{robot.at(line)}: {words}, part at {describe(pose_of(frame))}"
                     )
 
     def _expect_riders_stay(self, robot: RobotRunner, motion: Motion, line: int) -> None:
@@ -520,9 +512,7 @@ class Engine:
             try:
                 self.parts.parts.turn(plate)
             except PartFault as fault:
-                where = robot.element_at(line)
-                at = f" (net transition {where})" if where else ""
-                raise CellStoppedError(f"{robot.script}:{line}{at}: {fault}") from None
+                raise CellStoppedError(f"{robot.at(line)}: {fault}") from None
 
     def _look_at_turntables(self) -> None:
         """Where they are now, and which of them turn, counts for what is handled."""
@@ -618,9 +608,7 @@ class Engine:
         try:
             change = self.parts.handle(robot.name, handling, tcp)
         except PartFault as fault:
-            where = robot.element_at(robot.line)
-            at = f" (net transition {where})" if where else ""
-            raise CellStoppedError(f"{robot.script}:{robot.line}{at}: {fault}") from None
+            raise CellStoppedError(f"{robot.at(robot.line)}: {fault}") from None
         for one in (change, *self.parts.parts.settled):
             self.record.parts.append(PartRecord(self.now, robot.name, one))
         self.record.events.append(
@@ -680,7 +668,7 @@ class Engine:
         self.record.sample(verdict)
         for robot, seen in zip(self._arms(), verdict.samples, strict=True):
             if robot.motion is not None and robot.motion.kind == "lin":
-                off = _off_line(robot.motion, seen)
+                off = off_line(robot.motion, seen)
                 self.record.note_error("off the line on linear moves", off)
         for observer in self.observers:
             observer.sampled(self, t, joints)
@@ -709,11 +697,7 @@ class Engine:
             if r.motion is None:
                 parts.append(f"{r.name} at rest")
                 continue
-            where = r.element_at(r.line)
-            at = f" (net transition {where})" if where else ""
-            parts.append(
-                f"{r.script}:{r.line}{at}: {r.name}: {_words(r.motion.command, _slides(r))}"
-            )
+            parts.append(f"{r.at(r.line)}: {r.name}: {words(r.motion.command, _slides(r))}")
         return "under way: " + "; ".join(parts)
 
     def _stop(self, problem: CellStoppedError) -> None:
@@ -730,87 +714,6 @@ class Engine:
         self.supervisor.stop(why)
 
 
-def kind_and_label(command: Command) -> tuple[str, str]:
-    """What a command is, and what a chart writes: the tool action, or the kind."""
-    match command:
-        case MoveJoint():
-            return "joint", "joint"
-        case MoveAxes():
-            return "joint", "axes"
-        case MoveExternal():
-            return "joint", "external"
-        case MoveHome():
-            return "home", "home"
-        case MoveLinear():
-            return "linear", "linear"
-        case MoveCircular():
-            return "linear", "circular"
-        case ToolAction(action=action):
-            return "tool", action
-        case Measure():
-            return "measure", "measure"
-        case Wait():
-            return "wait", "wait"
-
-
-def _off_line(motion: Motion, seen: Sample) -> float:
-    """How far the TCP is off its line, m; on a turntable off the line on its plate."""
-    path = motion.trajectory
-    if isinstance(path, Paused):
-        path = path.trajectory
-    if isinstance(path, LinearTrajectory) and tcp_of(motion.command):
-        ends = path.line.at(np.array([0.0, 1.0]))
-        return distance_to_line(pose_of(path.kinematics.forward(seen.q)), *map(pose_of, ends))
-    if not isinstance(path, AlongTrajectory):
-        return distance_to_line(seen.pose, motion.start, motion.target)
-    now = path.on_plate(seen.q)
-    first, last = (pose_of(x) for x in path.way.inner.at(np.array([0.0, 1.0])))
-    return distance_to_line(pose_of(now), first, last)
-
-
-def _with(along: tuple[Along, ...]) -> str:
-    """External axes, in the units of the scripts."""
-    shown = (
-        f"{a.axis} {a.position * 1000:.4f} mm"
-        if a.is_track
-        else f"{a.axis} {np.degrees(a.position):.4f} deg"
-        for a in along
-    )
-    text = ", ".join(shown)
-    return f" with {text}" if text else ""
-
-
 def _slides(robot: RobotRunner) -> tuple[bool, ...]:
     """Which axes of an arm slide."""
     return () if robot.arm is None else tuple(robot.arm.robot.kinematics.alone.slides.tolist())
-
-
-def _words(command: Command, slides: tuple[bool, ...] = ()) -> str:
-    """A command in the units of the scripts."""
-    match command:
-        case MoveJoint() | MoveLinear() | MoveCircular() | Measure():
-            p = command.nominal if isinstance(command, Measure) else command.target
-            mm = " ".join(f"{v * 1000:.4f}" for v in (p.x, p.y, p.z))
-            deg = " ".join(f"{np.degrees(v):.4f}" for v in (p.rx, p.ry, p.rz))
-            frame = "world" if isinstance(command, Measure) else command.frame
-            within = "" if frame in ("world", "tool") else f" in {frame}"
-            moved = () if isinstance(command, Measure) else command.along
-            tcp = "" if isinstance(command, Measure) else command.tcp
-            by = f" by {tcp}" if tcp else ""
-            elbow = None if isinstance(command, Measure) else command.arm_angle
-            arm = "" if elbow is None else f", arm angle {np.degrees(elbow):.4f} deg"
-            return f"{kind_and_label(command)[1]} {mm} mm, {deg} deg{within}{by}{_with(moved)}{arm}"
-        case MoveAxes(axes=axes):
-            shown = " ".join(f"{np.degrees(v):.4f}" for v in axes)
-            if any(slides):
-                slid = ", ".join(str(i) for i, slid in enumerate(slides, 1) if slid)
-                shown += f" (axes {slid}: mm)"
-            return f"axes {shown} deg{_with(command.along)}"
-        case MoveExternal(along=along):
-            return f"external{_with(along)}"
-        case MoveHome():
-            return "home"
-        case ToolAction(action=action):
-            return f"tool action {action}"
-        case Wait(duration=duration):
-            return f"wait {duration} s"

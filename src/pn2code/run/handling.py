@@ -34,8 +34,7 @@ class PartKeeper:
 
     def begin(self) -> None:
         """Shows the parts of the start. PartFault if one overlaps something."""
-        for part in self.parts.present.values():
-            self._show(part)
+        self._show_changed()
         for name in self.parts.present:
             self._expect_apart(name, f"part `{name}`, as `[parts.{name.split('.')[0]}]` places it,")
 
@@ -48,9 +47,7 @@ class PartKeeper:
         part = self.parts.present.get(change.part)
         if part is None:
             self.backend.remove_part(change.part)
-        for kept in self.parts.present.values():
-            if self._shown.get(kept.name) is not kept:
-                self._show(kept)
+        self._show_changed()
         if part is None:
             return change
         if change.effect == "releases":
@@ -64,14 +61,14 @@ class PartKeeper:
     def run_out(self, plate: str) -> tuple[PartChange, ...]:
         """A belt has come to rest: what stands on something else now. PartFault if something has come off its end."""
         self.parts.run_out(plate)
-        for kept in self.parts.present.values():
-            if self._shown.get(kept.name) is not kept:
-                self._show(kept)
+        self._show_changed()
         return self.parts.settled
 
-    def _show(self, part: Part) -> None:
-        self._shown[part.name] = part
-        self.backend.set_part(part)
+    def _show_changed(self) -> None:
+        for part in self.parts.present.values():
+            if self._shown.get(part.name) is not part:
+                self._shown[part.name] = part
+                self.backend.set_part(part)
 
     def _expect_apart(self, name: str, who: str) -> None:
         trouble = overlap(self.backend, name)

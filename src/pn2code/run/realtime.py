@@ -17,7 +17,8 @@ from pn2code.channels import LOOK_S, PeerState
 from pn2code.robot.commands import Command
 from pn2code.robot.executor import Motion
 from pn2code.run.choices import permitted
-from pn2code.run.engine import CellStoppedError, Engine, RobotRunner, kind_and_label
+from pn2code.run.command_words import kind_and_label
+from pn2code.run.engine import CellStoppedError, Engine, RobotRunner
 from pn2code.run.hand import BY, Hand, Said
 from pn2code.run.late_files import Fate, LateFiles
 from pn2code.run.punctuality import Punctuality
@@ -212,11 +213,9 @@ class RealtimeEngine(Engine):
         else:
             doing = kind_and_label(robot.motion.command)[1] if robot.motion else "its program"
             line = robot.waiting.line if robot.waiting else robot.line
-        where = robot.element_at(line)
-        at = f" (net transition {where})" if where else ""
         self._interfered(party, f"{doing} was made to fail")
         raise CellStoppedError(
-            f"{robot.script}:{line}{at}: {party}: {doing} fails, as a person at the live page wanted"
+            f"{robot.at(line)}: {party}: {doing} fails, as a person at the live page wanted"
         )
 
     def promise(self, party: str, channel: str, fate: Fate | None) -> None:

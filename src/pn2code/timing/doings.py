@@ -15,7 +15,8 @@ from pn2code.base.frozen import frozen
 from pn2code.cell.partition import OwnerKind
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import DIGITS_OF_TIME, Planner, Stand
-from pn2code.robot.commands import Command, MoveExternal, ToolAction, Wait
+from pn2code.robot.belts import stopping
+from pn2code.robot.commands import Command, ToolAction, Wait
 from pn2code.robot.robot_cell import RobotCell
 
 NS = 1_000_000_000
@@ -97,7 +98,8 @@ class Doings:
         parts: list[Part] = []
         for command in commands:
             if stand is not None:
-                stops = self._stops(stand.robot, command)
+                # Without parts nothing comes to a stop.
+                stops = self.cell.parts and stopping(self.cell.robot(stand.robot), command)
                 if stops:
                     self.why = self.why or "belt"
                 leg = self.planner.leg(stand, command)
@@ -115,14 +117,6 @@ class Doings:
             kind = "tool" if isinstance(command, ToolAction) else "wait"
             parts.append(Part(command, kind, None, _ns(command.duration)))
         return Doing(sum(p.ns for p in parts), stand, tuple(parts))
-
-    def _stops(self, name: str, command: Command) -> bool:
-        """Whether it depends on parts how far a belt runs."""
-        if not isinstance(command, MoveExternal) or not self.cell.parts:
-            return False
-        told = {a.axis for a in command.along}
-        own = self.cell.robot(name).carrying
-        return any(a.belt is not None and a.belt.stop and a.name in told for a in own)
 
     def _without_arm(self, owner: int, command: Command) -> str:
         """Why a device, or a robot without an arm in cell.toml, cannot do it; "": it can."""

@@ -172,3 +172,28 @@ holds = '''always {
         (10, "capacity of `Hold #1`"),
         (11, "capacity of `Tray.a`"),
     ]
+
+
+def test_axes_of_two_robots_may_have_one_name(tmp_path: Path) -> None:
+    """A track of one and a turntable of another; each primitive says which it means."""
+    text = GOOD.replace(
+        "[robots.r1]",
+        'ride = { command = "move_external", track = "own" }\n'
+        'turn = { command = "move_external", turntable = "own" }\n[robots.r1]',
+    )
+    text += """
+[robots.r1.axes.own]
+from = 0.0
+to = 1.0
+[robots.r2]
+instance = "Robot2"
+[robots.r2.axes.own]
+kind = "turntable"
+from = -90.0
+to = 90.0
+"""
+    config, d = read(tmp_path, text)
+    assert config is not None, d
+    assert config.primitives["ride"].along == (("own", True),)
+    assert config.primitives["turn"].along == (("own", False),)
+    assert config.external_axes("r2") == {"own": "turntable"}

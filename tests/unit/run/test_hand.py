@@ -20,7 +20,7 @@ from pn2code.robot.commands import Pose, Wait
 from pn2code.robot.executor import Motion
 from pn2code.robot.motion import Still
 from pn2code.run.choices import Choice, permitted
-from pn2code.run.engine import CellStoppedError
+from pn2code.run.engine import CellStoppedError, RobotRunner
 from pn2code.run.hand import Hand, Said
 from pn2code.run.late_files import Fate, LateFiles
 from pn2code.run.realtime import RealtimeEngine
@@ -330,10 +330,8 @@ def test_a_question_has_the_words_of_the_sensor_and_what_it_may_be_told() -> Non
 )
 def test_what_is_made_to_fail(asking: Sense | None, says: str) -> None:
     """A question that is open, and not the command before it."""
-    robot = SimpleNamespace(
-        name="robot1", script="r.tdl", asking=asking, motion=None, waiting=None, line=7,
-        element_at=lambda _line: "",
-    )  # fmt: skip
+    nothing: Any = None
+    robot = RobotRunner("robot1", "r.tdl", nothing, nothing, nothing, line=7, asking=asking)
     noted: list[str] = []
     engine = SimpleNamespace(
         _named=lambda _party: robot, _interfered=lambda _party, text: noted.append(text)
