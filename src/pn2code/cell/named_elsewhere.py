@@ -171,6 +171,20 @@ def seen_by(
             if is_axis
             else "remove `at`, or let `sees` name an axis, DEVICE.AXIS",
         )
+    if is_axis and "at" in table:
+        moves = table_of(table_of(table_of(table_of(data["devices"])[device])["axes"])[axis])
+        least, most = moves.get("from"), moves.get("to")
+        if (
+            isinstance(least, int | float)
+            and isinstance(most, int | float)
+            and not least - 1e-9 <= where <= most + 1e-9
+        ):
+            r.d.error(
+                codes.CELL_VALUE,
+                f"`at` is {where:g}, where axis `{sees}` never is: it goes from {least:g} to {most:g}",
+                r.at(*at, "at"),
+                hint="the sensor would always say `false`",
+            )
     if part and (is_axis or sees in zones):
         r.d.error(
             codes.CELL_KEY,

@@ -152,6 +152,14 @@ def test_no_device_has_the_name_of_what_arms_are_compared_with(name: str, tmp_pa
     assert [e.message for e in d.errors] == [f"`{name}` is not a device name"]
 
 
+def test_a_sensor_sees_an_axis_where_it_can_be(tmp_path: Path) -> None:
+    for at, says in (("0.9", False), ("5.0", True), ("-0.1", True)):
+        d = Diagnostics()
+        eye = f'[sensors.eye]\nvariable = "there"\nsees = "mill.door"\nat = {at}\n'
+        load_cell(door_cell(tmp_path / at, toml=TOML + eye) / "cell.toml", d)
+        assert any("where axis `mill.door` never is" in e.message for e in d.errors) is says, at
+
+
 def test_primitives_name_axes_that_are_there(tmp_path: Path) -> None:
     for old, new, words in (
         (
