@@ -97,6 +97,15 @@ def games_are_closed() -> Iterator[None]:
 
 
 @pytest.fixture
+def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """The current folder, for commands that write into it where no other one is named (`NET.traces`)."""
+    folder = tmp_path / "here"
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    return folder
+
+
+@pytest.fixture
 def as_delivered(monkeypatch: pytest.MonkeyPatch) -> None:
     """Explorers and simulators are compiled as users have them."""
     monkeypatch.setattr(programs, "FLAGS", DELIVERED)

@@ -68,6 +68,7 @@ def test_reports_and_pictures(tmp_path: Path) -> None:
     assert pn2code("replay", run, file).returncode == 0
 
 
+@pytest.mark.usefixtures("here")
 def test_messages(tmp_path: Path) -> None:
     text = NET.replace('(s ^ "GREET"', '(if s = "" then s else raise Fail ("GREET" ^ s)')
     file = net(tmp_path, text)

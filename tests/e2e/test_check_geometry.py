@@ -217,6 +217,7 @@ def test_the_command(tmp_path: Path) -> None:
     assert "proposal: a place `Top.Zone` of the supervisor" in result.stdout
 
 
+@pytest.mark.usefixtures("here")
 def test_what_it_needs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     cell = meeting_cell(tmp_path / "cell", guarded=False)
     run = CliRunner()

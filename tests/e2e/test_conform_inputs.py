@@ -16,7 +16,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.pipeline import generate
 from pn2code.toolchain import programs
 
-pytestmark = pytest.mark.cc
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("here")]
 
 
 def test_all_that_the_files_lead_to_is_compared(tmp_path: Path) -> None:

@@ -631,6 +631,7 @@ def test_channels_need_no_graph(explorers: Explorers, tmp_path: Path) -> None:
         assert rests[control_types.MESSAGES] == "net"
 
 
+@pytest.mark.usefixtures("here")
 def test_generate_and_verify_name_the_same_exception(tmp_path: Path) -> None:
     """Both name the expression that raises it; a bound that nobody can know then is no error of its own."""
     net = small_cell.NET.replace("guard [n <= 3]", "guard [n <= 3, 10 div (2 - n) < 20]")

@@ -13,7 +13,7 @@ from e2e.test_conform_references import NET as CELL_NET
 from helpers.netbuilder import write
 from helpers.processes import pn2code
 
-pytestmark = pytest.mark.cc
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("here")]
 
 NET = """
 net counted

@@ -119,6 +119,7 @@ def test_what_cannot_be_is_found(old: str, new: str, problem: str, tmp_path: Pat
     assert problem in seen.record.reason
 
 
+@pytest.mark.usefixtures("here")
 def test_a_pose_that_is_reached_from_some_places_only_is_not_proved(tmp_path: Path) -> None:
     """Whoever does not tell the track where to go relies on where it was left."""
     for far, answer in ((0.8, "yes"), (6.0, "unknown")):

@@ -24,7 +24,9 @@ def chromium() -> Iterator[Any]:
 def file(root: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     file = tmp_path_factory.mktemp("graph") / "graph.html"
     net = root / "examples/philosophers/philosophers.cpn"
-    done = pn2code("verify", net, "--set", "n=6", "--no-found", "--draw", file, "-q")
+    done = pn2code(
+        "verify", net, "--set", "n=6", "--no-found", "--draw", file, "-q", "-o", file.parent
+    )
     assert done.returncode == 0 and file.is_file(), done.stderr
     return file
 

@@ -182,6 +182,7 @@ def test_a_token_cannot_end_the_comment_that_names_it(tmp_path: Path) -> None:
     assert dry_run(program, folder).returncode == 0
 
 
+@pytest.mark.usefixtures("here")
 @pytest.mark.usefixtures("as_delivered")  # how deep a compiled net goes depends on its compiler
 def test_the_arena_has_room_for_what_the_file_needs(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -38,6 +38,7 @@ def test_all_messages_of_a_run(root: Path, tmp_path: Path) -> None:
 
 
 @pytest.mark.cc
+@pytest.mark.usefixtures("here")
 def test_parts_too_far_apart(root: Path, tmp_path: Path) -> None:
     """As its README says."""
     folder = root / "examples" / "minimal"

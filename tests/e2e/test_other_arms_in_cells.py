@@ -15,7 +15,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.pipeline import generate
 from pn2code.run.cell import RunOptions, run_cell
 
-pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build", "here")]
 
 DOWN = "rx = 180.0, ry = 0.0, rz = {yaw}"
 ARMS = {

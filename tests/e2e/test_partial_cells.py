@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from e2e.test_running_cell import ACT, ECHO, ONE, SLOW, net, toml, write
 from pn2code.cli.main import app
 
-pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build", "here")]
 
 COUNTS = """    place Waiting = 1
     place Count : INT

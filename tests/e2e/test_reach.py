@@ -20,7 +20,7 @@ from pn2code.verify.exploring import result
 from pn2code.verify.exploring.explore import explore
 from pn2code.verify.exploring.limits import Limits
 
-pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build", "here")]
 
 ARM = """model = "kr120_r2500"
 tool = "counterpoint"

@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 from e2e.test_running_cell import ACT, LATE, SLOW, TOOL, UNKNOWN, net, ran, steps, toml, write
 from pn2code.cli.main import app
 
-pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build", "here")]
 
 # It tells A something and has finished: A, who needs time for its answer, does not come to give it.
 LEAVES = net(

@@ -15,7 +15,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.pipeline import Generated, generate
 from pn2code.run.cell import RunOptions, run_cell
 
-pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build", "here")]
 
 ROBOT = """model = "kr120_r2500"
 base = { x = -1.0, y = 0.0, z = 0.0, yaw = 0.0 }

@@ -103,6 +103,7 @@ def test_no_number(net: Path, arguments: tuple[str, ...]) -> None:
     assert "nan is not a finite number" in " ".join(done.stderr.split())
 
 
+@pytest.mark.usefixtures("here")
 def test_an_exception_in_a_marking(tmp_path: Path) -> None:
     done = pn2code("verify", write(RAISES, tmp_path / "raises.cpn"), "--json")
     said = json.loads(done.stdout)

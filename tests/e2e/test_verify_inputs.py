@@ -17,7 +17,7 @@ from pn2code.semantics.game.marking import place_to_json
 from pn2code.toolchain import build
 from pn2code.verdict.opened import OpenNet, read, with_inputs
 
-pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build", "here")]
 
 INPUT = '[[input]]\nplace = "Pieces"\nfile = "pieces.txt"\n'
 ROBOT = """

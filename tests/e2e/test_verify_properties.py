@@ -100,6 +100,7 @@ def test_of_the_command_line_alone(net: Path, tmp_path: Path) -> None:
     }
 
 
+@pytest.mark.usefixtures("here")
 def test_not_known(net: Path, tmp_path: Path) -> None:
     options = ["--no-found", "--max-states", "6", "--traces", tmp_path]
     code, said, _ = asked(

@@ -24,14 +24,6 @@ def verify(*arguments: object) -> tuple[int, list[str], str]:
     return done.exit_code, done.stdout.rstrip("\n").split("\n"), done.stderr
 
 
-@pytest.fixture
-def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    folder = tmp_path / "here"
-    folder.mkdir()
-    monkeypatch.chdir(folder)
-    return folder
-
-
 def test_the_riveting_cell_on_one_screen(root: Path, here: Path) -> None:
     code, lines, _ = verify(root / "examples" / "riveting")
     assert code == 0

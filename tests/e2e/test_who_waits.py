@@ -15,7 +15,7 @@ from pn2code.diagnostics import Diagnostics
 from pn2code.semantics.game.token_game import Game
 from pn2code.verify.answers.who_waits import supervisor_waits
 
-pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build")]
+pytestmark = [pytest.mark.cc, pytest.mark.usefixtures("quick_build", "here")]
 
 FORGOTTEN = NET.replace("      out data : at n\n", "", 1).replace(
     "    place Going = 0\n",

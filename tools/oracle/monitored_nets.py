@@ -4,12 +4,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from helpers.monitors import Spec
+from pn2code.base.frozen import frozen
 
 
-@dataclass(frozen=True)
+@frozen
 class Case:
     """A net, its monitors, and how many steps are made."""
 
@@ -87,8 +87,8 @@ net Counter
   standard
   globref seen = 0;
   var n: INT;
-  var l : L;
   colset L = list INT;
+  var l : L;
   place P : INT = 1`0
   place Q : INT
   place R : L = 1`[]
@@ -103,9 +103,6 @@ net Counter
     in Q : n
     out Done : n
 """
-COUNTER = COUNTER.replace(
-    "  var l : L;\n  colset L = list INT;\n", "  colset L = list INT;\n  var l : L;\n"
-)
 T = "Top'Do_it (1, {l, n})"
 MANY = (
     size("Size of Q", "Top.Q"),
@@ -158,7 +155,7 @@ net Jobs
     out Next : (i + 1, 0)@+10
     in Queue : q
     out Queue : q ^^ [(i, IntInf.toInt (time ()))]
-  trans Start priority P_HIGH
+  trans Start priority 1
     in Queue : (i, t) :: q
     out Queue : q
     in Free : ()
@@ -168,7 +165,6 @@ net Jobs
     out Free : ()
     out Done : (i, t)
 """
-JOBS = JOBS.replace("priority P_HIGH", "priority 1")
 JOBS_MONITORS = (
     length("Queue length", "Top.Queue"),
     size("DoneSize", "Top.Done"),
@@ -191,7 +187,7 @@ net Sub
   standard
   var n : INT;
   page Top
-    place A : INT = 1`1 ++ 1`2
+    place A : INT = 1`1
     place B : INT
     place C : INT = empty
     subst Left = Work (I -> A, O -> B)
@@ -207,7 +203,6 @@ net Sub
       in M : n
       out O : n + 10
 """
-SUB = SUB.replace("1`1 ++ 1`2", "1`1")
 SUB_MONITORS = (
     count("LeftGets", "Top/Left.Get"),
     count("RightGets", "Top/Right.Get"),

@@ -10,7 +10,7 @@ from pn2code.cell.config import CellConfig
 from pn2code.cell.place_finder import PlaceFinder
 from pn2code.diagnostics import Diagnostics
 from pn2code.diagnostics.suggestions import did_you_mean
-from pn2code.ml.core.colsets import Colset, Kind
+from pn2code.ml.core.colsets import Kind
 from pn2code.net.finding import Finder
 from pn2code.net.flat import FlatNet
 
@@ -78,16 +78,10 @@ def _storage(net: FlatNet, config: CellConfig, d: Diagnostics) -> None:
                 config.locator.origin("storage", name),
                 hint=did_you_mean(name, net.program.colsets),
             )
-        elif not _is_real(colset):
+        elif colset.whole.kind is not Kind.REAL:
             d.error(
                 codes.CELL_VALUE,
                 f"`storage` names `{name}`, which is not a colour set of reals",
                 config.locator.origin("storage", name),
                 hint="name the colour set of the components that are reals",
             )
-
-
-def _is_real(colset: Colset) -> bool:
-    while colset.kind in (Kind.ALIAS, Kind.SUBSET) and colset.components[0] is not None:
-        colset = colset.components[0]
-    return colset.kind is Kind.REAL

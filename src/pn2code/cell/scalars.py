@@ -100,9 +100,7 @@ def scalars_of(colset: Colset, label: str = "") -> tuple[Scalar, ...] | None:
 def lines_of(colset: Colset) -> list[tuple[Scalar, ...]]:
     """The lines of an input file: one for each component; one for all where all are scalars; [()] for what has none."""
     scalars = scalars_of(colset) or ()
-    whole = colset
-    while whole.kind in (Kind.ALIAS, Kind.SUBSET) and whole.components[0] is not None:
-        whole = whole.components[0]
+    whole = colset.whole
     if whole.kind not in (Kind.PRODUCT, Kind.RECORD):
         return [scalars]
     counts = [len(scalars_of(part) or ()) for part in whole.components if part is not None]

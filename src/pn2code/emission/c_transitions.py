@@ -15,7 +15,7 @@ from pn2code.emission.needs import SIDE
 from pn2code.ir import nodes as ir
 from pn2code.ir.calls import ir_nodes
 from pn2code.ir.nodes import PlaceTable, Shared
-from pn2code.lowering.passes.counting import FEW
+from pn2code.lowering.passes.counting import is_large
 
 
 class Transitions(Frame):
@@ -82,14 +82,13 @@ class Transitions(Frame):
 
     def _row(self, t: ir.Transition, shared: Shared, code: dict[str, object]) -> dict[str, object]:
         """What the tables of hosts say of one instance."""
-        own = self._own_places(shared)
-        stem, flags = self._stem(shared), ("looks", "looks_outside", "assigns", "search_assigns")
+        stem, flags = str(code["stem"]), ("looks", "looks_outside", "assigns", "search_assigns")
         counting = ""
         if t.counts is not None:
             counting = c_rows.counting(
                 f"s_counts_of_{stem}", t, self._key if self._has_words else None
             )
-        further = [f".places = &{self._own_row(t, shared, own)}"] if own else []
+        further = self._own_row(t, shared)
         if not counting:
             own_stem = "net" if self._shares_successors(t) else stem
             further += [f".successors = {own_stem}_successors"] if self._net.has_successors else []
@@ -107,11 +106,13 @@ class Transitions(Frame):
             ),
         }
 
-    def _own_row(self, t: ir.Transition, shared: Shared, own: OwnPlaces) -> str:
+    def _own_row(self, t: ir.Transition, shared: Shared) -> list[str]:
         """The constant with the places that an instance has for its own."""
-        assert shared.table is not None
-        is_of_transitions = self._net.place_tables[shared.table].is_of_transitions
-        return self._names.instance(t.name if is_of_transitions else t.path, own.struct)
+        if shared.table is None:
+            return []
+        table = self._net.place_tables[shared.table]
+        path = t.name if table.is_of_transitions else t.path
+        return [f".places = &{self._names.instance(path, self._struct(table))}"]
 
     def _shares_successors(self, t: ir.Transition) -> bool:
         """Whether the function that makes its successors is one for many transitions of a large net.
@@ -120,8 +121,7 @@ class Transitions(Frame):
         """
         draws = t.effects.search_draws and t.effects.fire_draws
         is_packed = all(self._net.places[i].packed for i in t.effects.touched)
-        is_large = self._net.has_successors and len(self._net.transitions) > FEW
-        return is_large and is_packed and not draws and t.counts is None
+        return is_large(self._net) and is_packed and not draws and t.counts is None
 
     def _is_others(self, t: ir.Transition) -> bool:
         """Whether it is played by another program than the supervisor of the cell."""

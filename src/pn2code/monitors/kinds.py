@@ -13,7 +13,6 @@ from enum import Enum
 
 from pn2code.base.frozen import frozen
 from pn2code.diagnostics import Diagnostics, Origin, SourceText
-from pn2code.ml.core.colsets import Colset
 from pn2code.ml.core.colsets import Kind as ColsetKind
 from pn2code.monitors.codes import MONITOR_ERROR, UNSUPPORTED_MONITOR
 from pn2code.net.flat import FlatNet, FlatTransition, PlaceInstance
@@ -186,10 +185,7 @@ def _has_lists(m: Monitor, net: FlatNet, d: Diagnostics) -> bool:
     """Only the length of a list can be measured."""
     if m.kind is not Kind.LIST_LENGTH:
         return True
-    colset: Colset | None = net.places[m.places[0].place].colset
-    while colset is not None and colset.kind in (ColsetKind.ALIAS, ColsetKind.SUBSET):
-        colset = colset.components[0]
-    if colset is not None and colset.kind is ColsetKind.LIST:
+    if net.places[m.places[0].place].colset.whole.kind is ColsetKind.LIST:
         return True
     d.warning(
         MONITOR_ERROR,

@@ -86,7 +86,8 @@ class Terms:
     def condition(self, node: Node) -> SourceText | None:
         """The condition of a transition, its conjuncts separated by commas; None after an error."""
         try:
-            found = [self._bool(part) for part in _conjuncts(node)]
+            parts = self._operands(node) if node.tag == "and" else [node]
+            found = [self._bool(part) for part in parts]
         except TermError:
             return None
         return self._source(_joined(", ", [t.code for t in found], node))
@@ -528,16 +529,3 @@ def _summand(term: Term, node: Node) -> Code:
 
 def _text(term: Term) -> str:
     return "".join(text for text, _ in term.code)
-
-
-def _conjuncts(node: Node) -> list[Node]:
-    """The parts of nested `and`s."""
-    todo, found = [node], []
-    while todo:
-        at = todo.pop()
-        if at.tag == "and":
-            parts = (c.children[0] if c.tag == "subterm" and c.children else c for c in at.children)
-            todo += reversed([*parts])
-        else:
-            found.append(at)
-    return found

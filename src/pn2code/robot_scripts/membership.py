@@ -183,8 +183,7 @@ def _compared(name: str, value: Scalar, end: int | float | str, span: Span) -> t
 
 def parts_of(c: Colset | None) -> dict[str, Colset]:
     """The components of a record or product by label."""
-    while c is not None and c.kind in (Kind.ALIAS, Kind.SUBSET):
-        c = c.components[0]
+    c = None if c is None else c.whole
     if c is None or c.kind not in (Kind.RECORD, Kind.PRODUCT):
         return {}
     labels = c.labels or tuple(str(i) for i in range(1, len(c.components) + 1))

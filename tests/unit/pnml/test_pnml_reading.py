@@ -469,6 +469,7 @@ WRONG = [
         "6: unsupported-pnml: the operator `lukewarm` is not supported",
     ),
     (moved(op("equality", var("x"))), "6: pnml-element: `equality` has 1 subterms instead of 2"),
+    (moved(op("and")), "6: pnml-element: `and` has 0 subterms instead of at least 1"),
     (
         net(place("P", "Abc", number(1, var("n"))), declarations=ABC + RANGE),
         "4: pnml-sort: a multi-set over `Abc` is wanted, but `numberof` is a multi-set over `N`",

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from pn2code.base.frozen import frozen
 from pn2code.ir import nodes as ir
 from pn2code.ir.effects import Effects
-from pn2code.lowering.passes.counting import FEW
+from pn2code.lowering.passes.counting import is_large
 
 _OF_INSTANCES = frozenset(
     {"index", "name", "id", "origin", "owner", "priority", "guard_text", "places"}
@@ -40,7 +40,7 @@ class Alike:
 
 def has_places_by_table(net: ir.NetIR) -> bool:
     """Whether C reaches packed places by their tables, as shared code has to: it is less to compile."""
-    return net.has_successors and len(net.transitions) > FEW
+    return is_large(net)
 
 
 def alike(net: ir.NetIR) -> tuple[Alike, ...]:

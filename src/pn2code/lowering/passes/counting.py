@@ -18,11 +18,15 @@ FEW = 40
 """Transitions of a net that is compiled soon enough as it is: with code of its own each is somewhat faster."""
 
 
+def is_large(net: ir.NetIR) -> bool:
+    """Whether it is for an explorer, and has so many transitions that less C is better than somewhat faster C."""
+    return net.has_successors and len(net.transitions) > FEW
+
+
 def with_counts(net: ir.NetIR) -> ir.NetIR:
     """The net with `Transition.counts` and `Place.is_only_counted`: for explorers, in large nets whose places are all
     packed."""
-    is_table = net.has_successors and len(net.transitions) > FEW
-    if not is_table or not all(p.packed for p in net.places):
+    if not is_large(net) or not all(p.packed for p in net.places):
         return net
     transitions = tuple(replace(t, counts=counts(t, net.places)) for t in net.transitions)
     bodies: list[object] = [f.body for f in net.functions]

@@ -86,6 +86,14 @@ class Colset:
             c = base
         return c
 
+    @property
+    def whole(self) -> Colset:
+        """The colour set from which its colours are: with aliases and subsets looked through."""
+        c = self
+        while c.kind in (Kind.ALIAS, Kind.SUBSET) and c.components[0] is not None:
+            c = c.components[0]
+        return c
+
 
 def definition(c: Colset) -> str:
     """What a colour set is, in the words of its declaration, shortened: `INT * STRING`, `{name: STRING}`."""

@@ -46,13 +46,13 @@ from pn2code.verify.controller.stated import Stated, stated
 from pn2code.verify.exploring.counted import MOST_STATES, SOON, counted
 from pn2code.verify.exploring.counts import LEAST_TOKENS, Counts
 from pn2code.verify.exploring.explore import ExploreOptions, explore
-from pn2code.verify.exploring.limits import Limits, Order
+from pn2code.verify.exploring.limits import REACHED, Limits, Order
 from pn2code.verify.exploring.programs import Generated, Sizes
 from pn2code.verify.exploring.ranking import Ranking
 from pn2code.verify.exploring.result import Bounds, Exploration
 from pn2code.verify.exploring.turns import Turns
 
-_LIMITS = ("states", "seconds", "memory", "processor")
+_LIMITS = (*REACHED, "processor")
 """Why not all states of a cell were explored, but as many as could be."""
 WITNESSES = 60_000
 """States among which transitions are looked for that occur."""
@@ -231,15 +231,14 @@ def _open_properties(
     partition: Partition, plan: Plan, known: Sequence[Mapping[str, Any]]
 ) -> list[tuple[int, Stated]] | None:
     """Those that a part of the whole space does not decide, by number; None: one is no condition on states."""
-    count = len(plan.properties.properties)
-    over = Running.of(partition, loose=True).over
-    found: list[tuple[int, Stated]] = []
-    if len(known) < count:
+    properties = plan.properties.properties
+    if len(known) < len(properties):
         return None
-    for i, p in enumerate(plan.properties.properties):
-        if known[i]["answer"] != "unknown":
-            continue
-        own = stated(p, over, plan.properties, partition)
+    left = [i for i in range(len(properties)) if known[i]["answer"] == "unknown"]
+    over = Running.of(partition, loose=True).over if left else 0
+    found: list[tuple[int, Stated]] = []
+    for i in left:
+        own = stated(properties[i], over, plan.properties, partition)
         if own is None:
             return None
         found.append((i, own))

@@ -358,6 +358,8 @@ def _part_of_orders(
     found = explore(running.net, plan.storage, replace(limits, max_states=few), d, options)
     if found is None or found.why != "states" or by_counts.is_decided(found.answers):
         return found
+    if few == limits.max_states:
+        return found  # that is all that may be looked at
     return explore(running.net, plan.storage, limits, d, options)
 
 

@@ -56,8 +56,8 @@ class Stated:
     places: frozenset[int]
     exact: frozenset[int]
     over: int
-    inputs: tuple[tuple[int, ...], ...]
-    """by transition, places that hold a token where it is enabled"""
+    inputs: Mapping[int, tuple[int, ...]]
+    """by transition that it asks about, places that hold a token where it is enabled"""
 
     def ask(self, asked: Questions) -> None:
         """Adds one question."""
@@ -117,10 +117,9 @@ def stated(
         properties: those that it belongs to.
         partition: the cell.
     """
-    inputs = tuple(_inputs(partition))
     if isinstance(p.asked, m.Bound):
         place = frozenset({p.asked.place})
-        return Stated(p.asked, False, (), place, place, over, inputs)
+        return Stated(p.asked, False, (), place, place, over, {})
     found = _condition(p.asked)
     if found is None:
         return None
@@ -139,7 +138,8 @@ def stated(
         if a.kind == "pred"
         for _, place in properties.predicates[a.number].places
     }
-    places = exact | {place for a in atoms if a.kind == "enabled" for place in inputs[a.number]}
+    inputs = {a.number: _inputs(partition, a.number) for a in atoms if a.kind == "enabled"}
+    places = exact.union(*inputs.values())
     places |= {over} if is_at_end else set()
     places |= {own[0] for own in changed}
     return Stated(condition, is_of_ends, steps, frozenset(places), frozenset(exact), over, inputs)
@@ -206,19 +206,15 @@ def _atoms(f: m.Formula, is_positive: bool) -> Iterable[m.Atom]:
             raise _NotStatedError
 
 
-def _inputs(partition: Partition) -> Iterable[tuple[int, ...]]:
-    """By transition, those of its own places that hold a token where it is enabled."""
+def _inputs(partition: Partition, transition: int) -> tuple[int, ...]:
+    """The places of its own that hold a token where a transition is enabled."""
     channels = {c.place for c in partition.channels}
-    for t in partition.net.transitions:
-        yield tuple(
-            sorted(
-                {
-                    a.place
-                    for a in t.arcs
-                    if a.kind in (ArcKind.INPUT, ArcKind.BOTH)
-                    and a.place not in channels
-                    and a.inscription is not None
-                    and a.inscription.form is Form.TOKEN
-                }
-            )
-        )
+    found = {
+        a.place
+        for a in partition.net.transitions[transition].arcs
+        if a.kind in (ArcKind.INPUT, ArcKind.BOTH)
+        and a.place not in channels
+        and a.inscription is not None
+        and a.inscription.form is Form.TOKEN
+    }
+    return tuple(sorted(found))
