@@ -124,14 +124,11 @@ class ZoneWatch:
 
 
 def unread(cell: RobotCell) -> Iterator[str]:
-    """What has a shape that cannot be read, so that nobody knows whether it is in a zone."""
+    """The links with a shape that cannot be read, so that nobody knows whether they are in a zone."""
     for robot in cell.moving:
         for link, (tree, name) in _trees(robot).items():
             if any(shape is None for shape in _shapes(tree, name)):
                 yield f"{robot.name}/{link}"
-    for kind in cell.parts.values():
-        if Hull.of(kind.shape) is None:
-            yield kind.name
 
 
 def _trees(robot: CellRobot) -> dict[str, tuple[Urdf, str]]:
