@@ -22,7 +22,7 @@ from pn2code.robot.parts import Part, carried_to
 from pn2code.robot.placed_links import placed_links
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, inverse, matrix_of, rotation_xyz
-from pn2code.robot.urdf import Urdf
+from pn2code.robot.urdf import Urdf, mesh_file
 from pn2code.robot.zones_table import Zone
 
 _STEP = 1e-6
@@ -176,8 +176,7 @@ def _shape(geometry: etree._Element | None, tree: Urdf) -> Hull | None:
                 across = 2.0 * float(shape.get("radius", ""))
                 return Hull.box((across, across, across))
             case "mesh":
-                name = shape.get("filename", "").removeprefix("package://").removeprefix("file://")
-                hull = Hull.around(tree.path.parent / name, 1.0)
+                hull = Hull.around(mesh_file(shape, tree.path.parent), 1.0)
                 if hull is None:
                     return None
                 scale = np.array(_numbers(shape.get("scale", "1 1 1")))
