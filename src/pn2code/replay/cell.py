@@ -19,7 +19,7 @@ from pn2code.robot.looks import Look
 from pn2code.robot.parts import PartChange, Parts
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, matrix_of, rotation_xyz
-from pn2code.robot.urdf import Urdf
+from pn2code.robot.urdf import Urdf, mesh_file
 
 Json = dict[str, Any]
 
@@ -161,8 +161,9 @@ def _shape(geometry: Any, folder: Path, store: Meshes) -> tuple[int, list[float]
     for shape in geometry if geometry is not None else ():
         match shape.tag:
             case "mesh":
-                name = shape.get("filename", "").removeprefix("package://").removeprefix("file://")
-                return store.file(folder / name), _numbers(shape.get("scale", "1 1 1"), 3) or ones
+                return store.file(mesh_file(shape, folder)), _numbers(
+                    shape.get("scale", "1 1 1"), 3
+                ) or ones
             case "box":
                 size = _numbers(shape.get("size", ""), 3)
                 return (store.box((size[0], size[1], size[2])), ones) if size else (-1, ones)

@@ -22,7 +22,7 @@ from pn2code.robot.external import ExternalAxis, Externals
 from pn2code.robot.kinematics import Branch, Conditioning, Kinematics, Solution
 from pn2code.robot.model import Arm
 from pn2code.robot.scene_objects import SceneObject
-from pn2code.robot.transforms import Array, inverse, pose_of, rotation_about
+from pn2code.robot.transforms import Array, inverse, pose_of
 
 STAND = "stand"
 """The link that holds all: it has no shape."""
@@ -185,10 +185,7 @@ class WithAxes(Kinematics):
 
     def T_base_table(self, index: int, value: float) -> Array:  # noqa: N802
         """A turntable, by its index among the axes, at a position."""
-        axis = self.axes.tables[index - self.joints.stop]
-        out = np.eye(4)
-        out[:3, :3] = rotation_about(axis.direction, value)
-        return np.asarray(axis.T_base_axis @ out)
+        return self.axes.tables[index - self.joints.stop].at(value)
 
     def whole(self, q: Array, joints: Array) -> Array:
         """A joint position with other joints of the arm."""
@@ -218,10 +215,7 @@ class WithAxes(Kinematics):
         for frame in (*joints, flange):
             frame[:, :3, 3] += carried
         out += joints
-        for i, axis in enumerate(self.axes.tables):
-            turn = np.repeat(np.eye(4)[None], count, axis=0)
-            turn[:, :3, :3] = rotation_about(axis.direction, q[:, self.joints.stop + i])
-            out.append(axis.T_base_axis @ turn)
+        out += [axis.at(q[:, self.joints.stop + i]) for i, axis in enumerate(self.axes.tables)]
         return [*out, flange]
 
     def joint_frames(self, q: ArrayLike) -> Array:

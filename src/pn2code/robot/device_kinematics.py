@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from pn2code.robot.external import Externals
 from pn2code.robot.kinematics import Conditioning, Kinematics
 from pn2code.robot.model import Arm
-from pn2code.robot.transforms import Array, rotation_about
+from pn2code.robot.transforms import Array
 
 _NONE = Conditioning(1.0, 1.0, 0.0, 0.0)
 """Nothing is singular where there is no arm."""
@@ -31,16 +31,8 @@ class DeviceKinematics(Kinematics):
 
     def link_frames(self, q: Array) -> list[Array]:
         """`T_base_axis` of each axis, after its own motion, and of the base, which is the flange."""
-        count = len(q)
-        out = []
-        for i, axis in enumerate(self.axes.tables):
-            step = np.repeat(np.eye(4)[None], count, axis=0)
-            if axis.is_track:
-                step[:, :3, 3] = q[:, i, None] * axis.direction
-            else:
-                step[:, :3, :3] = rotation_about(axis.direction, q[:, i])
-            out.append(axis.T_base_axis @ step)
-        return [*out, np.repeat(np.eye(4)[None], count, axis=0)]
+        out = [axis.at(q[:, i]) for i, axis in enumerate(self.axes.tables)]
+        return [*out, self.forward_many(q)]
 
     def joint_frames(self, q: ArrayLike) -> Array:
         """The same of one joint position."""

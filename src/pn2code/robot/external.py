@@ -15,13 +15,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from pn2code.base.frozen import frozen
 from pn2code.robot import codes
 from pn2code.robot.commands import Pose
 from pn2code.robot.scene_objects import SceneObject, read_object
 from pn2code.robot.table_poses import read_pose
-from pn2code.robot.transforms import Array, inverse, matrix_of
+from pn2code.robot.transforms import Array, inverse, matrix_of, rotation_about
 
 if TYPE_CHECKING:
     from pn2code.robot.table import Table
@@ -67,6 +68,16 @@ class ExternalAxis:
     def unit(self) -> str:
         """Of its positions in cell.toml."""
         return "m" if self.is_track else "degrees"
+
+    def at(self, position: ArrayLike) -> Array:
+        """Its frame after its own motion, in that of the robot's `base`; of positions (n,) all of them, (n, 4, 4)."""
+        position = np.asarray(position, float)
+        step = np.tile(np.eye(4), (*position.shape, 1, 1))
+        if self.is_track:
+            step[..., :3, 3] = position[..., None] * self.direction
+        else:
+            step[..., :3, :3] = rotation_about(self.direction, position)
+        return np.asarray(self.T_base_axis @ step)
 
     def described(self) -> tuple[object, ...]:
         """All of it, in what can be compared."""

@@ -111,7 +111,7 @@ class Ground:
         self._low = np.array([low for low, _ in extents]).reshape(-1, 3)
         self._high = np.array([high for _, high in extents]).reshape(-1, 3)
         self.plates = dict(_plates(cell))
-        self._kinds = {k.name: Hull.of(k.shape) for k in cell.parts.values()}
+        self._kinds = {k.name: _shape_of(k) for k in cell.parts.values()}
         self._tops: dict[int, Face | None] = {}
 
     @staticmethod
@@ -122,13 +122,11 @@ class Ground:
 
     def radius(self, kind: str) -> float:
         """m: of a ball around the frame of a part of a kind."""
-        hull = self._kinds[kind]
-        return 0.0 if hull is None else hull.radius
+        return self._kinds[kind].radius
 
     def middle(self, kind: PartKind, frame: Array) -> Array:
         """Where the middle of a part is, in the world."""
-        hull = self._kinds[kind.name]
-        return frame[:3, 3] if hull is None else hull.at(frame).middle
+        return self._kinds[kind.name].at(frame).middle
 
     def rest(
         self,
@@ -137,20 +135,15 @@ class Ground:
         others: Iterable[tuple[str, PartKind, Array]],
         plates: Mapping[str, Array],
         slack: float = 0.0,
-    ) -> Rest | None:
+    ) -> Rest:
         """How a part stands.
 
         Args:
             frame: `T_world_part`; others: the other parts that stand: name, kind, where.
             plates: where the turntables are, in the world.
             slack: m: what is so much further away, or overlaps by so much less, still counts.
-
-        None: its shape cannot be read.
         """
-        own = self._kinds[kind.name]
-        if own is None:
-            return None
-        hull = own.at(frame)
+        hull = self._kinds[kind.name].at(frame)
         lowest = face(hull, up=False, steep=_ANY, within=REST_GAP)
         assert lowest is not None, "some face of a convex piece looks down"
         low, high = hull.extent
@@ -211,10 +204,7 @@ class Ground:
                 if may(*hull.extent) and (top := _top(hull)) is not None:
                     yield name, top
         for name, kind, frame in others:
-            shape = self._kinds[kind.name]
-            if shape is None:
-                continue
-            hull = shape.at(frame)
+            hull = self._kinds[kind.name].at(frame)
             if may(*hull.extent) and (top := _top(hull)) is not None:
                 yield name, top
 
@@ -222,6 +212,12 @@ class Ground:
 def _smaller(polygon: Array, by: float) -> Array:
     out = shrunk(polygon, by)
     return out if len(out) >= 3 else polygon
+
+
+def _shape_of(kind: PartKind) -> Hull:
+    hull = Hull.of(kind.shape)
+    assert hull is not None, "cells with parts that are no bodies are refused"
+    return hull
 
 
 def _top(hull: Hull) -> Face | None:

@@ -132,9 +132,8 @@ class Parts:
             if part.plate == old.plate:
                 self.present[name] = old
                 continue
-            rest = self.rest(part)
+            on = self.rest(part).on
             on_plate = pose_of(part.frame) if part.plate else None
-            on = rest.on if rest is not None else ()
             pose = pose_of(self.world(part))
             self.settled += (PartChange("settles", name, pose, on, part.plate, on_plate),)
 
@@ -170,8 +169,8 @@ class Parts:
         """What turns with a turntable."""
         return [p for p in self.present.values() if p.plate == plate]
 
-    def rest(self, part: Part, without: str = "") -> Rest | None:
-        """How a part stands, also if another one were not there; None: its shape is not known."""
+    def rest(self, part: Part, without: str = "") -> Rest:
+        """How a part stands, also if another one were not there."""
         others = [
             (p.name, p.kind, self.world(p))
             for p in self.present.values()
@@ -191,8 +190,7 @@ class Parts:
             )
         own = {plate, *(p.name for p in riders)}
         for part in riders:
-            rest = self.rest(part)
-            off = [x for x in rest.on if x not in own] if rest is not None else []
+            off = [x for x in self.rest(part).on if x not in own]
             if off:
                 raise PartFault(
                     f"`{plate}` {self._ground.plates[plate].does}, but `{part.name}` on it also stands on `{off[0]}`, "
@@ -205,8 +203,7 @@ class Parts:
         for part in self.present.values():
             if part.plate in ("", plate):
                 continue
-            rest = self.rest(part)
-            on = sorted(own.intersection(rest.on)) if rest is not None else []
+            on = sorted(own.intersection(self.rest(part).on))
             if on:
                 raise PartFault(
                     f"`{plate}` {self._ground.plates[plate].does}, but `{part.name}` on `{part.plate}` also stands on "
@@ -215,8 +212,7 @@ class Parts:
 
     def plates_under(self, part: Part) -> set[str]:
         """The turntables and belts on which a part stands, also by parts that do."""
-        rest = self.rest(part)
-        on = rest.on if rest is not None else ()
+        on = self.rest(part).on
         goes = {x: self.present[x].plate for x in on if x in self.present}
         return {x for x in on if x in self._plates} | set(goes.values()) - {""}
 
@@ -231,14 +227,13 @@ class Parts:
         own = {p.name for p in self.riders(plate)}
         for part in self.riders(plate):
             rest = self.rest(part)
-            trouble = rest.trouble(self.slack) if rest is not None else ""
-            if trouble:
+            if trouble := rest.trouble(self.slack):
                 where = describe(pose_of(self.world(part)))
                 raise PartFault(
                     f"`{plate}` takes `{part.name}` along until it is {trouble}, part at {where}"
                 )
             off = self._beyond(plate, part)
-            if off > self.slack and rest is not None and not own.intersection(rest.on):
+            if off > self.slack and not own.intersection(rest.on):
                 where = describe(pose_of(self.world(part)))
                 raise PartFault(
                     f"`{plate}` takes `{part.name}` along until its middle is {1000.0 * off:.1f} mm beyond the end, "
@@ -319,12 +314,11 @@ class Parts:
         frame = tcp @ held.frame
         part = Part(held.name, kind, frame)
         rest = self.rest(part)
-        trouble = rest.trouble(self.slack) if rest is not None else ""
-        if trouble:
+        if trouble := rest.trouble(self.slack):
             raise PartFault(
                 f"`{robot}` releases `{part.name}` {trouble}, part at {describe(pose_of(frame))}"
             )
-        return self._put_down(f"`{robot}` releases `{part.name}`", "releases", part, rest)
+        return self._put_down(f"`{robot}` releases `{part.name}`", "releases", part, rest.on)
 
     def _create(self, who: str, kind: PartKind, place: str) -> PartChange:
         pose = self.cell.places[place]
@@ -335,11 +329,10 @@ class Parts:
             )
         part = Part(f"{kind.name}.{next(self._numbers[kind.name])}", kind, matrix_of(pose))
         does = f"`{who}` puts `{part.name}` at place `{place}`"
-        return self._put_down(does, "creates", part, self.rest(part))
+        return self._put_down(does, "creates", part, self.rest(part).on)
 
-    def _put_down(self, does: str, effect: str, part: Part, rest: Rest | None) -> PartChange:
+    def _put_down(self, does: str, effect: str, part: Part, on: tuple[str, ...]) -> PartChange:
         """A part stands from now on; `part` has its frame in the world."""
-        on = rest.on if rest is not None else ()
         plate = self._plate_of(on)
         if plate in self.turning:
             raise PartFault(f"{does} on `{plate}` while that {self._ground.plates[plate].does}")
@@ -381,18 +374,17 @@ class Parts:
             if off > near + self._ground.radius(other.kind.name):
                 continue
             rest = self.rest(other)
-            if rest is None or part.name not in rest.on:
+            if part.name not in rest.on:
                 continue
             carries = True
             without = self.rest(other, without=part.name)
-            if not rest.trouble(self.slack) and without and without.trouble(self.slack):
+            if not rest.trouble(self.slack) and without.trouble(self.slack):
                 raise PartFault(f"{does}, but `{other.name}` stands on it, {at}")
         return carries
 
     def _plate_under(self, part: Part) -> str:
         """The turntable with which a part turns that stands where it is; "": with none."""
-        rest = self.rest(part)
-        return self._plate_of(rest.on) if rest is not None else ""
+        return self._plate_of(self.rest(part).on)
 
     def _plate_of(self, on: tuple[str, ...]) -> str:
         for name in on:

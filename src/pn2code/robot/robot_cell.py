@@ -19,7 +19,7 @@ from pn2code.robot.motion import MotionLimits
 from pn2code.robot.parts_table import PartKind
 from pn2code.robot.payload import Load
 from pn2code.robot.scene_objects import SceneObject
-from pn2code.robot.transforms import Array, matrix_of, rotation_about
+from pn2code.robot.transforms import Array, matrix_of
 from pn2code.robot.zones_table import Zone
 
 PART_CONTACT = 1e-3
@@ -157,13 +157,7 @@ class CellRobot:
 
     def T_world_plate(self, axis: ExternalAxis, q: Sequence[float] | Array) -> Array:  # noqa: N802
         """Where one of these is, with what goes with it."""
-        position = float(q[self.index(axis.name)])
-        step = np.eye(4)
-        if axis.is_track:
-            step[:3, 3] = position * axis.direction
-        else:
-            step[:3, :3] = rotation_about(axis.direction, position)
-        return np.asarray(self.T_world_base @ (axis.T_base_axis @ step))
+        return np.asarray(self.T_world_base @ axis.at(q[self.index(axis.name)]))
 
     def is_at(self, axis: str, q: Sequence[float] | Array, position: float) -> bool:
         """Whether an axis is at a position (m, degrees), to 1 mm or 0.1 degrees; of a clamp that is its gap."""

@@ -43,6 +43,7 @@ from pn2code.robot.scene_objects import SceneObject, read_object
 from pn2code.robot.table import Locate, Table, is_number
 from pn2code.robot.table_poses import read_own_pose, read_pose
 from pn2code.robot.transforms import Array, matrix_of
+from pn2code.robot.zones import unread
 from pn2code.robot.zones_table import read_zones
 
 RADIANS = "angles in cell.toml are in degrees; if these are radians, multiply them by 57.2958"
@@ -95,7 +96,15 @@ def load(
     zones = read_zones(table("zones", None))
     if len(d.errors) != before:
         return None
-    return RobotCell(robots, motion, scene, kinds, places, frames.standing, devices, zones)
+    cell = RobotCell(robots, motion, scene, kinds, places, frames.standing, devices, zones)
+    for name in unread(cell) if zones else ():
+        d.error(
+            codes.ROBOT_VALUE,
+            f"a shape of `{name}` cannot be read, so that nobody knows whether it is in a zone",
+            table("zones", None).at(),
+            hint="let it be a box, a cylinder, a sphere, or an OBJ or STL file of a body that is not flat",
+        )
+    return cell if len(d.errors) == before else None
 
 
 def _with_frames(robot: CellRobot, frames: Frames) -> CellRobot:

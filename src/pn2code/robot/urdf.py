@@ -338,5 +338,10 @@ def with_tool(arm: Urdf, flange: str, tool: Urdf | None, prefix: str = "tool_") 
 
 def _absolute(root: Any, folder: Path) -> None:
     for mesh in root.iter("mesh"):
-        name = mesh.get("filename", "").removeprefix("package://").removeprefix("file://")
-        mesh.set("filename", str((folder / name).resolve()))
+        mesh.set("filename", str(mesh_file(mesh, folder).resolve()))
+
+
+def mesh_file(mesh: Any, folder: Path) -> Path:
+    """The file that an element names; names are relative to the folder of the URDF."""
+    name: str = mesh.get("filename", "")
+    return folder / name.removeprefix("package://").removeprefix("file://")

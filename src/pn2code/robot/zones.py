@@ -22,7 +22,7 @@ from pn2code.robot.parts import Part, carried_to
 from pn2code.robot.placed_links import placed_links
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, inverse, matrix_of, rotation_xyz
-from pn2code.robot.urdf import Urdf
+from pn2code.robot.urdf import Urdf, mesh_file
 from pn2code.robot.zones_table import Zone
 
 _STEP = 1e-6
@@ -123,10 +123,24 @@ class ZoneWatch:
         return None
 
 
-def _boxes(robot: CellRobot) -> Iterator[_Box]:
+def unread(cell: RobotCell) -> Iterator[str]:
+    """The links with a shape that cannot be read, so that nobody knows whether they are in a zone."""
+    for robot in cell.moving:
+        for link, (tree, name) in _trees(robot).items():
+            if any(shape is None for shape in _shapes(tree, name)):
+                yield f"{robot.name}/{link}"
+
+
+def _trees(robot: CellRobot) -> dict[str, tuple[Urdf, str]]:
+    """Each link of a robot and its tool, in which file and under which name it is."""
     trees: dict[str, tuple[Urdf, str]] = {x: (robot.arm.urdf, x) for x in robot.arm.urdf.links}
     if robot.tool is not None:
         trees |= {f"tool_{x}": (robot.tool.urdf, x) for x in robot.tool.urdf.links}
+    return trees
+
+
+def _boxes(robot: CellRobot) -> Iterator[_Box]:
+    trees = _trees(robot)
     for link, axis, frame in placed_links(robot):
         corners = _corners(list(_shapes(*trees[link])))
         if corners is not None:
@@ -135,15 +149,18 @@ def _boxes(robot: CellRobot) -> Iterator[_Box]:
 
 
 def _shapes(tree: Urdf, link: str) -> Iterator[Hull | None]:
-    """The collision shapes of a link, in its frame."""
+    """The collision shapes of a link, in its frame; None: one cannot be read."""
     element = next(e for e in tree.xml.findall("link") if e.get("name") == link)
     for collision in element.findall("collision"):
-        hull = _shape(collision.find("geometry"), tree)
-        origin = collision.find("origin")
-        frame = np.eye(4)
-        if origin is not None:
-            frame[:3, 3] = _numbers(origin.get("xyz", "0 0 0"))
-            frame[:3, :3] = rotation_xyz(*_numbers(origin.get("rpy", "0 0 0")))
+        try:
+            hull = _shape(collision.find("geometry"), tree)
+            origin = collision.find("origin")
+            frame = np.eye(4)
+            if origin is not None:
+                frame[:3, 3] = _numbers(origin.get("xyz", "0 0 0"))
+                frame[:3, :3] = rotation_xyz(*_numbers(origin.get("rpy", "0 0 0")))
+        except ValueError:  # what should be numbers is none
+            hull = None
         yield hull.at(frame) if hull is not None else None
 
 
@@ -154,15 +171,12 @@ def _shape(geometry: etree._Element | None, tree: Urdf) -> Hull | None:
                 x, y, z = _numbers(shape.get("size", ""))
                 return Hull.box((x, y, z))
             case "cylinder":
-                return Hull.cylinder(
-                    float(shape.get("radius", "0")), float(shape.get("length", "0"))
-                )
+                return Hull.cylinder(float(shape.get("radius", "")), float(shape.get("length", "")))
             case "sphere":
-                across = 2.0 * float(shape.get("radius", "0"))
+                across = 2.0 * float(shape.get("radius", ""))
                 return Hull.box((across, across, across))
             case "mesh":
-                name = shape.get("filename", "").removeprefix("package://").removeprefix("file://")
-                hull = Hull.around(tree.path.parent / name, 1.0)
+                hull = Hull.around(mesh_file(shape, tree.path.parent), 1.0)
                 if hull is None:
                     return None
                 scale = np.array(_numbers(shape.get("scale", "1 1 1")))

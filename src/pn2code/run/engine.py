@@ -478,7 +478,7 @@ class Engine:
         """What belts that have come to rest have taken along stands there, or on something else."""
         if robot.arm is None or not robot.arm.robot.is_device:
             return
-        for plate in turned_by(robot.arm.robot, motion.trajectory, robot.arm.robot.belts):
+        for plate in sorted(turned_by(robot.arm.robot, motion.trajectory, robot.arm.robot.belts)):
             self._look_at_turntables()
             try:
                 settled = self.parts.run_out(plate)
@@ -498,16 +498,16 @@ class Engine:
             for held in holding(self.cell, part.kind, frame):
                 own = stands[held.device.name].joints(self.now)
                 if held.holds(own):
-                    words = held.words(robot.name, part.name, own)
+                    why = held.words(robot.name, part.name, own)
                     raise CellStoppedError(
-                        f"{robot.at(line)}: {words}, part at {describe(pose_of(frame))}"
+                        f"{robot.at(line)}: {why}, part at {describe(pose_of(frame))}"
                     )
 
     def _expect_riders_stay(self, robot: RobotRunner, motion: Motion, line: int) -> None:
         """What stands on a turntable that begins to turn stays there, or the cell stops."""
         if robot.arm is None:
             return
-        for plate in turned(robot.arm.robot, motion):
+        for plate in sorted(turned(robot.arm.robot, motion)):
             self._look_at_turntables()
             try:
                 self.parts.parts.turn(plate)

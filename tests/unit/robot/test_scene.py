@@ -259,3 +259,14 @@ def test_a_window_needs_a_display(monkeypatch):
     monkeypatch.setattr("sys.platform", "linux")
     with pytest.raises(BackendUnavailableError, match="there is no display"):
         open_backend("bullet", riveting_cell("good"), gui=True)
+
+
+@pytest.mark.parametrize("text", ["not a mesh", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"])
+def test_a_part_is_a_body(text, tmp_path):
+    """Of what cannot be read, or is flat, nobody could say what it stands on when it is released."""
+    (tmp_path / "sheet.obj").write_text(text, encoding="utf-8")
+    d = Diagnostics()
+    part = {"kind": "mesh", "file": "sheet.obj"}
+    assert load({"parts": {"sheet": part}}, tmp_path, nowhere, d) is None
+    (error,) = d.errors
+    assert "`parts.sheet.file` is `sheet.obj`, but an OBJ or STL file that" in error.message

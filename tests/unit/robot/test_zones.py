@@ -21,6 +21,7 @@ from pn2code.geometry.shown import Shown
 from pn2code.geometry.zone_speeds import slow_enough
 from pn2code.robot.bullet import BulletBackend
 from pn2code.robot.commands import Along, MoveExternal, MoveJoint, MoveLinear
+from pn2code.robot.model import MODELS
 from pn2code.robot.parts import Parts
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.scene import load
@@ -51,6 +52,31 @@ def cell_of(most: float = 0.5) -> RobotCell:
 CELL = cell_of()
 SHUT = np.array([0.0, 0.02, 0.02])
 OPEN = np.array([0.9, 0.02, 0.02])
+
+
+@pytest.mark.parametrize("odd", ['<mesh filename="odd.dae"/>', '<sphere radius="wide"/>'])
+def test_what_has_no_shape_that_can_be_read_is_not_left_out_of_zones(
+    odd: str, tmp_path: Path
+) -> None:
+    """Nobody would see how fast it is there."""
+    text = (MODELS / "gp25.urdf").read_text(encoding="utf-8")
+    (tmp_path / "odd.dae").write_text("<COLLADA/>", encoding="utf-8")
+    shape = f'<link name="flange"><collision><geometry>{odd}</geometry></collision></link>'
+    assert '<link name="flange"/>' in text
+    arm = text.replace('<link name="flange"/>', shape)
+    arm = arm.replace('filename="', f'filename="{MODELS}/').replace(f"{MODELS}/odd", "odd")
+    (tmp_path / "arm.urdf").write_text(arm, encoding="utf-8")
+    data: dict[str, Any] = tomllib.loads(TOML + ZONES)
+    data["robots"]["arm"]["model"] = "arm.urdf"
+    for zones in ({}, data.pop("zones")):
+        d = Diagnostics()
+        found = load({**data, "zones": zones}, tmp_path, nowhere, d)
+        said = [e.message for e in d.errors]
+        words = (
+            "a shape of `arm/flange` cannot be read, so that nobody knows whether it is in a zone"
+        )
+        assert said == ([words] if zones else []), said
+        assert (found is None) is bool(zones)
 
 
 def at(x: float, y: float, z: float) -> np.ndarray[Any, Any]:
