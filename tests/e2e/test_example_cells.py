@@ -265,7 +265,8 @@ def test_the_riveting_cell_has_its_properties(root: Path, tmp_path: Path) -> Non
     "file",
     [
         "sorting/cell.toml", "handover/cell.toml", "tending/cell.toml", "palletiser/cell.toml", "shared-zone/cell.toml",
-        "machining/cell.toml", "welding/cell.toml", "assembly/cell.toml", "timed/cell.toml", "riveting/cell.properties.toml",
+        "machining/cell.toml", "welding/cell.toml", "assembly/cell.toml", "timed/cell.toml",
+        "riveting/cell.properties.toml",
     ],
 )  # fmt: skip
 def test_properties_are_told_in_plain_words(root: Path, file: str) -> None:

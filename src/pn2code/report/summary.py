@@ -88,6 +88,11 @@ def summarise(
         "pictures": record.pictures,
         **({"parts": _parts(record)} if record.parts else {}),
         **(
+            {"zones": {record.too_fast.zone: record.too_fast.described()}}
+            if record.too_fast
+            else {}
+        ),
+        **(
             {
                 "by_hand": [
                     {"t": round(h.t, 6), "robot": h.robot, "text": h.text} for h in record.by_hand

@@ -55,6 +55,7 @@ from pn2code.run.handling import PartKeeper
 from pn2code.run.record import (
     ActionRecord,
     ActivityRecord,
+    BrokenZone,
     MessageRecord,
     PartRecord,
     RunRecord,
@@ -687,6 +688,10 @@ class Engine:
         found = self.zones.too_fast(joints, speeds, self.parts.parts.present.values())
         if found is not None:
             self.now = t
+            self.record.too_fast = BrokenZone(
+                found.zone.name, t, found.link, found.speed, found.point
+            )
+            self.backend.light_zone(found.zone.name)
             who = self.cell.robot(found.robot).words
             raise CellStoppedError(f"{who}: {found.words()}; {self._doing()}")
 
