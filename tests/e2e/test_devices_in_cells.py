@@ -173,3 +173,22 @@ def test_a_belt_with_a_stop_may_run_for_less_than_it_is_told(tmp_path: Path) -> 
     feed, belt = done.parts
     assert (feed.ns, feed.least) == (2 * NS, None)
     assert belt.ns > 4 * NS and belt.least == 0
+
+
+@pytest.mark.parametrize("backend", ["fake", pytest.param("bullet", marks=pytest.mark.bullet)])
+def test_a_belt_carries_on_what_another_one_brings(backend: str, tmp_path: Path) -> None:
+    d = Diagnostics()
+    options = RunOptions(out=tmp_path / "run", backend=backend, checked=False, looks=False)  # type: ignore[arg-type]
+    found = run_cell(belt_cell(tmp_path / "cell", toml=belts.LINE), options, d)
+    assert found is not None, [e.message for e in d.errors]
+    assert found.record.verdict == "finished", found.record.reason
+    settled = [p.change for p in found.record.parts if p.change.effect == "settles"]
+    assert [(c.part, c.plate, round(c.pose.y, 6)) for c in settled] == [
+        (f"box.{n}", "feeder/away", -0.6) for n in (1, 2)
+    ]
+
+
+def test_over_all_interleavings_a_belt_carries_on_what_another_one_brings(tmp_path: Path) -> None:
+    net = belts.NET.replace("parts = 2", "parts = 1")
+    layout = looked(belt_cell(tmp_path / "cell", net, belts.LINE), tmp_path / "traces")
+    assert (layout.of_moves, layout.of_pairs) == ("yes", "yes")
