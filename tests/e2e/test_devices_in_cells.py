@@ -71,6 +71,9 @@ def test_a_run_opens_and_closes_the_door(tmp_path: Path) -> None:
     moves = [a for a in found.record.actions if (a.robot, a.label) == ("mill", "external")]
     assert [round(a.end - a.start, 3) for a in moves] == [1.741, 2.2, 1.345, 3.4]
     assert "condition.mill" not in found.record.series
+    assert {a.kind for a in moves} == {"external"}
+    seconds = found.summary["robots"]["mill"]
+    assert (seconds["external"], seconds["joint"]) == (pytest.approx(8.686, abs=0.001), 0.0)
 
 
 def test_a_run_stops_where_an_arm_goes_through_a_closed_door(tmp_path: Path) -> None:

@@ -22,7 +22,7 @@ MOST_PARTS = 12
 MOST_BY_HAND = 12
 MOST_NUMBERS = 12
 """in one line"""
-KINDS = ("joint", "home", "linear", "tool", "measure", "wait")
+KINDS = ("joint", "home", "linear", "external", "tool", "measure", "wait")
 
 
 def summarise(
