@@ -54,7 +54,16 @@ def read_devices(t: Table, folder: Path, places: Mapping[str, Pose]) -> tuple[Ce
     for name, data in t.data.items():
         if not isinstance(data, Mapping) or "axes" not in data:
             continue  # what is no table is reported where its page is read
-        axes = _axes(t.inside(name, "axes"), name, folder, places)
+        own = t.inside(name, "axes")
+        if not data["axes"]:
+            t.d.error(
+                codes.ROBOT_VALUE,
+                f"device `{name}` has `axes`, but none is named",
+                t.inside(name).at("axes"),
+                hint=f"add a table `[devices.{name}.axes.NAME]`, or remove `axes`",
+            )
+            continue
+        axes = _axes(own, name, folder, places)
         if axes:
             out.append(device_of(name, axes))
     return tuple(out)
@@ -113,10 +122,10 @@ def _axis(t: Table, name: str, folder: Path, places: Mapping[str, Pose]) -> _Rea
     frame = matrix_of(read_pose(t, "pose"))
     direction = np.array([0.0, 0.0, 1.0])
     objects: tuple[SceneObject, ...] = ()
-    holds = ""
+    holds, may_be_empty = "", False
     if kind == "clamp":
         objects = (_jaw(t),)
-        holds = _place(t, "holds", places)
+        holds, may_be_empty = _place(t, "holds", places), t.flag("may_be_empty")
     else:
         t.has("objects")
         objects = tuple(o for e in t.tables("objects") if (o := read_object(e, folder)) is not None)
@@ -140,7 +149,7 @@ def _axis(t: Table, name: str, folder: Path, places: Mapping[str, Pose]) -> _Rea
         name, slides, frame, direction, lower, upper, speed, acceleration, jerk, home,
         objects=objects,
     )  # fmt: skip
-    return _Read((own,)) if kind != "clamp" else _clamped(own, holds)
+    return _Read((own,)) if kind != "clamp" else _clamped(own, holds, may_be_empty)
 
 
 def _place(t: Table, key: str, places: Mapping[str, Pose]) -> str:
@@ -238,7 +247,7 @@ def _jaw(t: Table) -> SceneObject:
     return SceneObject("jaw", "box", pose, read_colour(t), size=(x, y, z))
 
 
-def _clamped(gap: ExternalAxis, place: str) -> _Read:
+def _clamped(gap: ExternalAxis, place: str, may_be_empty: bool) -> _Read:
     """Both jaws: each of them goes half of the gap, in half of the speed."""
     jaws = []
     for number, turn in ((1, 0.0), (2, math.pi)):
@@ -252,7 +261,7 @@ def _clamped(gap: ExternalAxis, place: str) -> _Read:
             )
         )  # fmt: skip
     one, other = jaws
-    clamp = Clamp(replace(gap, objects=()), (one.name, other.name), place)
+    clamp = Clamp(replace(gap, objects=()), (one.name, other.name), place, may_be_empty)
     return _Read((one, other), clamp)
 
 

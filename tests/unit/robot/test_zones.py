@@ -218,6 +218,10 @@ def test_what_a_sensor_sees_is_there(tmp_path: Path) -> None:
         ('sees = "inVice"\nat = 0.1', "`at` says where an axis is seen, but `sees` names none"),
         ('sees = "front"\npart = "blank"', "but `front` is no place"),
         ('sees = "frnt"', "there is no `[places.frnt]`"),
+        ('sees = ""', "`sees` is empty, but the name of a place, a zone or an axis is expected"),
+        ('sees = "inVice"\npart = ""', "`part` is empty, but the name of a kind of parts is exp"),
+        ('file = ""', "`file` is empty, but a file name is expected"),
+        ('sees = "front"\nsays = ""', ""),
         ('sees = "front"', ""),
         ('sees = "mill.door"\nat = 0.9', ""),
     ):
