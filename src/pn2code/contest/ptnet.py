@@ -24,7 +24,7 @@ _CHILDREN = {
     "": frozenset({"pnml"}),
     "pnml": frozenset({"net"}),
     "net": frozenset({"page", "place", "transition", "arc"}),
-    "page": frozenset({"page", "place", "transition", "arc"}),
+    "page": frozenset({"place", "transition", "arc"}),
     "place": frozenset({"initialMarking"}),
     "transition": frozenset[str](),
     "arc": frozenset({"inscription"}),
@@ -62,6 +62,7 @@ class _Reader:
         self.initial: list[int] = []
         self.arcs: list[tuple[str, str, int]] = []
         self.nets = 0
+        self.pages = 0
         self.within = [""]
         self.skipped = 0
         self.source = self.target = ""
@@ -87,7 +88,7 @@ class _Reader:
             else:
                 arcs, p = post[transition[source]], place[target]
             arcs[p] = arcs.get(p, 0) + weight
-        if self.nets != 1 or not place.keys().isdisjoint(transition):
+        if self.nets != 1 or self.pages > 1 or not place.keys().isdisjoint(transition):
             raise _UnusualError
         found = Tables(
             tuple(self.initial),
@@ -140,6 +141,10 @@ class _Reader:
         name = attributes.get("type", "").strip().rstrip("/").rpartition("/")[2].rpartition("#")[2]
         if name not in _TYPES:
             raise _UnusualError
+
+    def page(self, _attributes: dict[str, str]) -> None:
+        """One of perhaps several pages, which the front end keeps apart."""
+        self.pages += 1
 
     def begin_place(self, attributes: dict[str, str]) -> None:
         """A place without tokens."""
@@ -196,6 +201,7 @@ def _refuse(*_: object) -> int:
 
 _BEGUN: dict[str, Callable[[_Reader, dict[str, str]], None]] = {
     "net": _Reader.net,
+    "page": _Reader.page,
     "place": _Reader.begin_place,
     "transition": _Reader.begin_transition,
     "arc": _Reader.begin_arc,
