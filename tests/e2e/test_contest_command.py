@@ -192,7 +192,9 @@ def test_nets_that_the_engine_does_not_have(tmp_path: Path) -> None:
 def test_methods_that_contradict_each_other(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """It is an error of the program, and no answer."""
 
-    def contradicting(program: Path, lanes: object, said: object, **more: object) -> Iterator[Answer]:
+    def contradicting(
+        program: Path, lanes: object, said: object, **more: object
+    ) -> Iterator[Answer]:
         del program, lanes, said, more
         yield Answer(0, True, True, "ONE")
         yield Answer(0, False, True, "OTHER")

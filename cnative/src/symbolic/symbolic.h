@@ -172,5 +172,14 @@ void sy_say_sizes(sy_diagrams_t *d, const sy_frozen_t *f);
 sy_node_t sy_where(sy_diagrams_t *d, const tb_formula_t *f);
 /* sum <= limit */
 sy_node_t sy_where_sum(sy_diagrams_t *d, const tb_formula_t *f);
+/* Nothing is enabled. */
+sy_node_t sy_where_dead(sy_diagrams_t *d);
+/* The markings of `within` from which a transition leads into a set. */
+sy_node_t sy_before(sy_diagrams_t *d, sy_node_t n, sy_node_t within);
+
+/* --- automata (symbolic_linear.c) --------------------------------------------------------------------------------- */
+
+/* Whether an automaton accepts a run from the initial marking; a run that ends in a dead marking stays there. */
+bool sy_accepts(sy_diagrams_t *d, const tb_automaton_t *a);
 
 #endif

@@ -115,7 +115,7 @@ static sy_node_t where_enabled(sy_diagrams_t *d, const tb_formula_t *f)
     return found;
 }
 
-static sy_node_t where_dead(sy_diagrams_t *d)
+sy_node_t sy_where_dead(sy_diagrams_t *d)
 {
     if (d->dead == (sy_node_t)SY_ANY) {
         sy_node_t left = d->space;
@@ -127,8 +127,7 @@ static sy_node_t where_dead(sy_diagrams_t *d)
     return d->dead;
 }
 
-/* The markings of `within` from which a transition leads into a set. */
-static sy_node_t before(sy_diagrams_t *d, sy_node_t n, sy_node_t within)
+sy_node_t sy_before(sy_diagrams_t *d, sy_node_t n, sy_node_t within)
 {
     sy_node_t found = (sy_node_t)SY_NONE;
     for (uint32_t t = 0U; t < d->net->transitions; t++) {
@@ -151,9 +150,12 @@ static sy_node_t exists_until(sy_diagrams_t *d, sy_node_t p, sy_node_t q)
 
 static sy_node_t exists_always(sy_diagrams_t *d, sy_node_t p)
 {
-    const sy_node_t ends = sy_intersection(d, where_dead(d), p);
+    if (p == d->space) {
+        return p; /* wherever a path goes */
+    }
+    const sy_node_t ends = sy_intersection(d, sy_where_dead(d), p);
     for (;;) {
-        const sy_node_t kept = sy_union(d, ends, before(d, p, p));
+        const sy_node_t kept = sy_union(d, ends, sy_before(d, p, p));
         if (kept == p) {
             return p;
         }
@@ -172,8 +174,8 @@ static sy_node_t where_temporal(sy_diagrams_t *d, const tb_formula_t *f)
 {
     const sy_node_t p = sy_where(d, f->part[0]);
     switch (f->op) {
-    case TB_EX: return before(d, p, d->space);
-    case TB_AX: return other(d, before(d, other(d, p), d->space));
+    case TB_EX: return sy_before(d, p, d->space);
+    case TB_AX: return other(d, sy_before(d, other(d, p), d->space));
     case TB_EF: return exists_until(d, d->space, p);
     case TB_AF: return other(d, exists_always(d, other(d, p)));
     case TB_EG: return exists_always(d, p);
@@ -204,7 +206,7 @@ sy_node_t sy_where(sy_diagrams_t *d, const tb_formula_t *f)
     case TB_OR: return where_parts(d, f);
     case TB_SUM: return sy_where_sum(d, f);
     case TB_ENABLED: return where_enabled(d, f);
-    case TB_DEAD: return where_dead(d);
+    case TB_DEAD: return sy_where_dead(d);
     default: return where_temporal(d, f);
     }
 }

@@ -410,7 +410,7 @@ class _Portfolio:
                 if still and left >= _LEAST_SLICE_S / 5:
                     # A diagram of the net as it is is one for all formulas.
                     is_whole = number == 0 or (
-                        method == METHOD and number % 2 == 1 and kinds == {"ctl"}
+                        method == METHOD and number % 2 == 1 and kinds <= {"ctl", "ltl"}
                     )
                     task = self._task(method, still, which, is_first=is_whole)
                     until_end = self.ends - time.monotonic()
