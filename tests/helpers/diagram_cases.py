@@ -112,8 +112,8 @@ def difference(program: Path, c: Case, asked: list[str], wanted: dict[int, bool 
     """How the diagrams differ from the graph; "" if they agree."""
     task = Task("diagrams", c.tables.text(asked, c.order), SECONDS, MEBIBYTES)
     found = {a.number: a.value for a in ask(program, [task]) if isinstance(a, Answer)}
-    for n, question in enumerate(asked):
+    for n, text in enumerate(asked):
         if found.get(n) != wanted[n]:
-            return f"`{question}` is {found.get(n)}, not {wanted[n]}"
+            return f"`{text}` is {found.get(n)}, not {wanted[n]}"
     counted = list(ask(program, [Task("sizes", c.tables.text([], c.order), SECONDS, MEBIBYTES)]))
     return "" if counted == [sizes(c)] else f"{counted} is not {sizes(c)}"
