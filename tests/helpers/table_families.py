@@ -90,6 +90,23 @@ def dekker(n: int = 3) -> Tables:
     return net(initial, moves)
 
 
+def philosophers(n: int = 3) -> Tables:
+    """Each takes the two forks beside him one by one, in either order."""
+    initial: dict[str, int] = {}
+    moves: list[Move] = []
+    for i in range(n):
+        left, right = f"fork{i}", f"fork{(i + 1) % n}"
+        initial |= {f"thinks{i}": 1, left: 1, f"left{i}": 0, f"right{i}": 0, f"eats{i}": 0}
+        moves += [
+            (f"take_left{i}", [f"thinks{i}", left], [f"left{i}"]),
+            (f"take_right{i}", [f"thinks{i}", right], [f"right{i}"]),
+            (f"then_right{i}", [f"left{i}", right], [f"eats{i}"]),
+            (f"then_left{i}", [f"right{i}", left], [f"eats{i}"]),
+            (f"end{i}", [f"eats{i}"], [f"thinks{i}", left, right]),
+        ]
+    return net(initial, moves)
+
+
 def readers_and_writers(readers: int = 4, writers: int = 2) -> Tables:
     """A writer takes what each of the readers needs one of."""
     initial: dict[str, int] = {f"free{i}": 1 for i in range(readers)}

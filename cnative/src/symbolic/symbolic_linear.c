@@ -89,11 +89,7 @@ static void find_ways(product_t *p)
 
 static sy_node_t after(sy_diagrams_t *d, sy_node_t n)
 {
-    sy_node_t found = sy_intersection(d, sy_where_dead(d), n);
-    for (uint32_t t = 0U; (n != (sy_node_t)SY_NONE) && (t < d->net->transitions); t++) {
-        found = sy_union(d, found, sy_fire(d, n, (sy_node_t)SY_ANY, d->forwards.path[t]));
-    }
-    return found;
+    return sy_union(d, sy_intersection(d, sy_where_dead(d), n), sy_after(d, n));
 }
 
 static sy_node_t before(sy_diagrams_t *d, sy_node_t n, sy_node_t within)
