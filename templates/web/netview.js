@@ -531,6 +531,15 @@ export class NetView {
   }
 
   /**
+   * Marks the places of the page of which something holds: that they are not as in the other run.
+   * @param {(place: number) => boolean} holds
+   */
+  differ(holds) {
+    const { elements } = this.draw(this.net.instances[this.current].page);
+    for (const { place, id } of this.places?.[this.current] ?? []) elements.get(id)?.[0].classList.toggle("differs", holds(place));
+  }
+
+  /**
    * Marks what is selected anywhere on the page.
    * @param {number} [transition]
    * @param {number} [place]
