@@ -49,6 +49,7 @@ CELLS = (
     "minimal",
     "handover",
     "palletiser",
+    "machining",
     "shared-zone",
     "tending",
     "welding",
