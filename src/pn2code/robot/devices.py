@@ -18,7 +18,7 @@ import numpy as np
 from lxml import etree
 
 from pn2code.base.frozen import frozen
-from pn2code.cell_file.devices import DEVICE_AXIS
+from pn2code.cell_file.devices import DEVICE_AXIS, DEVICE_PLACE
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes, urdf
 from pn2code.robot.carried import STAND, add_joint, add_limit, add_shape, axis_words
@@ -53,13 +53,14 @@ def read_devices(t: Table, folder: Path, places: Mapping[str, Pose]) -> tuple[Ce
     for name, data in t.data.items():
         if not isinstance(data, Mapping) or "axes" not in data:
             continue  # what is no table is reported where its page is read
-        axes = _axes(t.inside(name, "axes"), name, folder, places)
+        base = read_pose(t.only(name, DEVICE_PLACE), "base")
+        axes = _axes(t.inside(name, "axes"), name, _Around(folder, places, matrix_of(base)))
         if axes:
-            out.append(device_of(name, axes))
+            out.append(device_of(name, axes, base))
     return tuple(out)
 
 
-def device_of(name: str, axes: Externals) -> CellRobot:
+def device_of(name: str, axes: Externals, base: Pose = NO_POSE) -> CellRobot:
     """A device with these axes."""
     tree = urdf.tree_of(Path(name), _tree(name, axes))
     arm = Arm(
@@ -73,14 +74,27 @@ def device_of(name: str, axes: Externals) -> CellRobot:
         tuple(a.name for a in axes.tables),
     )
     home = tuple(a.home for a in axes.tables)
-    return CellRobot(name, arm, None, DeviceKinematics(arm, axes), NO_POSE, home, None, axes)
+    return CellRobot(name, arm, None, DeviceKinematics(arm, axes), base, home, None, axes)
 
 
-def _axes(t: Table, device: str, folder: Path, places: Mapping[str, Pose]) -> Externals:
+@frozen(eq=False)
+class _Around:
+    """What axes are read with: the folder of meshes, the places, and where the device stands."""
+
+    folder: Path
+    places: Mapping[str, Pose]
+    T_world_base: Array
+
+    def along(self, frame: Array, place: str) -> float:
+        """Where a place is along the x of a frame of the device, m."""
+        return float((inverse(self.T_world_base @ frame) @ matrix_of(self.places[place]))[0, 3])
+
+
+def _axes(t: Table, device: str, around: _Around) -> Externals:
     found = [
         read
         for name, table in t.named(DEVICE_AXIS)
-        if (read := _axis(table, name, folder, places)) is not None
+        if (read := _axis(table, name, around)) is not None
     ]
     tables = tuple(a for read in found for a in read.moved)
     names = [a.name for a in tables]
@@ -97,13 +111,13 @@ def _axes(t: Table, device: str, folder: Path, places: Mapping[str, Pose]) -> Ex
     return Externals((), tables, tuple(read.clamp for read in found if read.clamp is not None))
 
 
-def _axis(t: Table, name: str, folder: Path, places: Mapping[str, Pose]) -> _Read | None:
+def _axis(t: Table, name: str, around: _Around) -> _Read | None:
     before = len(t.d.errors)
     kind = t.text("kind")
     if kind != t.data.get("kind", kind):
         return None  # what else there may be is not known
     if kind == "belt":
-        return _belt(t, name, places)
+        return _belt(t, name, around)
     slides = kind != "swing"
     numbers = {k: t.number(k) for k in ("from", "to", "home", *_PACE)}
     for key in ("from", "to"):
@@ -114,10 +128,12 @@ def _axis(t: Table, name: str, folder: Path, places: Mapping[str, Pose]) -> _Rea
     holds = ""
     if kind == "clamp":
         objects = (_jaw(t),)
-        holds = _place(t, "holds", places)
+        holds = _place(t, "holds", around.places)
     else:
         t.has("objects")
-        objects = tuple(o for e in t.tables("objects") if (o := read_object(e, folder)) is not None)
+        objects = tuple(
+            o for e in t.tables("objects") if (o := read_object(e, around.folder)) is not None
+        )
     if kind == "slide":
         direction = np.array(t.numbers("direction"))
         if not np.linalg.norm(direction) > 1e-9:
@@ -128,7 +144,7 @@ def _axis(t: Table, name: str, folder: Path, places: Mapping[str, Pose]) -> _Rea
     if len(t.d.errors) == before:
         _expect_order(t, name, kind, numbers)
         if holds and len(t.d.errors) == before:
-            _expect_between(t, name, frame, numbers["to"], (holds, places[holds]))
+            _expect_between(t, name, numbers["to"], holds, around.along(frame, holds))
     if len(t.d.errors) != before:
         return None
     factor = 1.0 if slides else math.radians(1.0)
@@ -150,7 +166,7 @@ def _place(t: Table, key: str, places: Mapping[str, Pose]) -> str:
     return name
 
 
-def _belt(t: Table, name: str, places: Mapping[str, Pose]) -> _Read | None:
+def _belt(t: Table, name: str, around: _Around) -> _Read | None:
     before = len(t.d.errors)
     length, width, height = (t.number(k) for k in ("length", "width", "height"))
     for key in ("length", "width"):
@@ -158,18 +174,18 @@ def _belt(t: Table, name: str, places: Mapping[str, Pose]) -> _Read | None:
     speed, acceleration, jerk = (t.number(k) for k in _PACE)
     pose = read_pose(t, "pose")
     frame = matrix_of(pose)
-    stop = _place(t, "stop", places)
+    stop = _place(t, "stop", around.places)
     colour = read_colour(t)
     t.done()
-    if abs(float(frame[2, 2]) - 1.0) > 1e-9:
+    if abs(float((around.T_world_base @ frame)[2, 2]) - 1.0) > 1e-9:
         t.d.error(
             codes.ROBOT_VALUE,
             f"belt `{name}` is not level, so that what stands on it would slide",
             t.at("pose"),
-            hint="leave `roll` and `pitch` of its pose out",
+            hint="leave `roll` and `pitch` of its `pose`, and of the `base` of its device, out",
         )
     if len(t.d.errors) == before and stop:
-        along = _along(frame, places[stop])
+        along = around.along(frame, stop)
         if not -_SAME <= along <= length + _SAME:
             t.d.error(
                 codes.ROBOT_VALUE,
@@ -192,17 +208,8 @@ def _belt(t: Table, name: str, places: Mapping[str, Pose]) -> _Read | None:
     )  # fmt: skip
 
 
-def _along(frame: Array, place: Pose) -> float:
-    """Where a place is along the x of a frame, m."""
-    return float((inverse(frame) @ matrix_of(place))[0, 3])
-
-
-def _expect_between(
-    t: Table, name: str, frame: Array, widest: float, place: tuple[str, Pose]
-) -> None:
-    """What a clamp holds must be between its jaws."""
-    called, pose = place
-    along = _along(frame, pose)
+def _expect_between(t: Table, name: str, widest: float, called: str, along: float) -> None:
+    """What a clamp holds must be between its jaws, which close along the x of its frame."""
     if abs(along) > widest / 2.0 + _SAME:
         t.d.error(
             codes.ROBOT_VALUE,
