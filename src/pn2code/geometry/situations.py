@@ -120,6 +120,11 @@ class Situations:
                     todo.append(found)
 
     @property
+    def sees(self) -> bool:
+        """Whether what is done depends on what sensors see there."""
+        return bool(self._seeing)
+
+    @property
     def stopped(self) -> bool:
         """Whether runs stop at something impossible, so that nobody has gone through what would come after it."""
         return any(self.doing.activities[number].fault for number, _ in self.activities)
