@@ -2,7 +2,7 @@
 
 Each is a robot without joints, of which all axes are external ones.
 
-devices = read_devices(t, folder, places)       # of [devices]; those without `axes` are left out
+devices = read_devices(t, Around(folder, places, 0.2))    # of [devices]; those without `axes` are left out
 
 So everything that knows of robots knows of them: planner, backends, sweeps, pictures.
 """
@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import field, replace
 from pathlib import Path
 
 import numpy as np
@@ -27,7 +27,8 @@ from pn2code.robot.device_kinematics import DeviceKinematics
 from pn2code.robot.external import Belt, Clamp, ExternalAxis, Externals
 from pn2code.robot.model import Arm
 from pn2code.robot.robot_cell import CellRobot
-from pn2code.robot.scene_objects import SceneObject, read_colour, read_object
+from pn2code.robot.scene_objects import SceneObject, read_colour
+from pn2code.robot.solid_objects import read_solids
 from pn2code.robot.table import Table
 from pn2code.robot.table_poses import NO_POSE, read_pose
 from pn2code.robot.transforms import Array, inverse, matrix_of, pose_of
@@ -47,14 +48,36 @@ class _Read:
     clamp: Clamp | None = None
 
 
-def read_devices(t: Table, folder: Path, places: Mapping[str, Pose]) -> tuple[CellRobot, ...]:
+@frozen(eq=False)
+class Around:
+    """What axes are read with.
+
+    Args:
+        folder: of meshes; places: by name.
+        far: m: from the frame of a part to its furthest point, of the largest kind; 0: there are no parts.
+        T_world_base: where the device stands.
+    """
+
+    folder: Path
+    places: Mapping[str, Pose]
+    far: float
+    T_world_base: Array = field(default_factory=lambda: np.eye(4))
+
+    def seen_from(self, frame: Array, place: str) -> tuple[float, float, float]:
+        """Where a place is in a frame of the device, m."""
+        spot = inverse(self.T_world_base @ frame) @ matrix_of(self.places[place])
+        x, y, z = spot[:3, 3].tolist()
+        return x, y, z
+
+
+def read_devices(t: Table, around: Around) -> tuple[CellRobot, ...]:
     """The devices of which something moves; what is wrong is reported."""
     out = []
     for name, data in t.data.items():
         if not isinstance(data, Mapping) or "axes" not in data:
             continue  # what is no table is reported where its page is read
         base = read_pose(t.only(name, DEVICE_PLACE), "base")
-        axes = _axes(t.inside(name, "axes"), name, _Around(folder, places, matrix_of(base)))
+        axes = _axes(t.inside(name, "axes"), name, replace(around, T_world_base=matrix_of(base)))
         if axes:
             out.append(device_of(name, axes, base))
     return tuple(out)
@@ -77,20 +100,7 @@ def device_of(name: str, axes: Externals, base: Pose = NO_POSE) -> CellRobot:
     return CellRobot(name, arm, None, DeviceKinematics(arm, axes), base, home, None, axes)
 
 
-@frozen(eq=False)
-class _Around:
-    """What axes are read with: the folder of meshes, the places, and where the device stands."""
-
-    folder: Path
-    places: Mapping[str, Pose]
-    T_world_base: Array
-
-    def along(self, frame: Array, place: str) -> float:
-        """Where a place is along the x of a frame of the device, m."""
-        return float((inverse(self.T_world_base @ frame) @ matrix_of(self.places[place]))[0, 3])
-
-
-def _axes(t: Table, device: str, around: _Around) -> Externals:
+def _axes(t: Table, device: str, around: Around) -> Externals:
     found = [
         read
         for name, table in t.named(DEVICE_AXIS)
@@ -111,7 +121,7 @@ def _axes(t: Table, device: str, around: _Around) -> Externals:
     return Externals((), tables, tuple(read.clamp for read in found if read.clamp is not None))
 
 
-def _axis(t: Table, name: str, around: _Around) -> _Read | None:
+def _axis(t: Table, name: str, around: Around) -> _Read | None:
     before = len(t.d.errors)
     kind = t.text("kind")
     if kind != t.data.get("kind", kind):
@@ -131,9 +141,7 @@ def _axis(t: Table, name: str, around: _Around) -> _Read | None:
         holds = _place(t, "holds", around.places)
     else:
         t.has("objects")
-        objects = tuple(
-            o for e in t.tables("objects") if (o := read_object(e, around.folder)) is not None
-        )
+        objects = read_solids(t.tables("objects"), around.folder)
     if kind == "slide":
         direction = np.array(t.numbers("direction"))
         if not np.linalg.norm(direction) > 1e-9:
@@ -144,7 +152,9 @@ def _axis(t: Table, name: str, around: _Around) -> _Read | None:
     if len(t.d.errors) == before:
         _expect_order(t, name, kind, numbers)
         if holds and len(t.d.errors) == before:
-            _expect_between(t, name, numbers["to"], holds, around.along(frame, holds))
+            _expect_between(
+                t, name, numbers["to"], holds, (around.seen_from(frame, holds), around.far)
+            )
     if len(t.d.errors) != before:
         return None
     factor = 1.0 if slides else math.radians(1.0)
@@ -166,7 +176,7 @@ def _place(t: Table, key: str, places: Mapping[str, Pose]) -> str:
     return name
 
 
-def _belt(t: Table, name: str, around: _Around) -> _Read | None:
+def _belt(t: Table, name: str, around: Around) -> _Read | None:
     before = len(t.d.errors)
     length, width, height = (t.number(k) for k in ("length", "width", "height"))
     for key in ("length", "width"):
@@ -185,7 +195,7 @@ def _belt(t: Table, name: str, around: _Around) -> _Read | None:
             hint="leave `roll` and `pitch` of its `pose`, and of the `base` of its device, out",
         )
     if len(t.d.errors) == before and stop:
-        along = around.along(frame, stop)
+        along, beside, above = around.seen_from(frame, stop)
         if not -_SAME <= along <= length + _SAME:
             t.d.error(
                 codes.ROBOT_VALUE,
@@ -193,6 +203,19 @@ def _belt(t: Table, name: str, around: _Around) -> _Read | None:
                 "no part on it comes there",
                 t.at("stop"),
                 hint=f"it runs from its `pose` along the x of that; correct this or `[places.{stop}]`",
+            )
+        elif abs(beside) > width / 2.0 + _SAME or above < -_SAME:
+            is_beside = above >= -_SAME
+            where = (
+                f"{abs(beside):g} m beside its middle"
+                if is_beside
+                else f"{-above:g} m below its top"
+            )
+            t.d.error(
+                codes.ROBOT_VALUE,
+                f"the stop of belt `{name}`, `{stop}`, is {where}: no part on it comes there",
+                t.at("stop"),
+                hint=f"it is {width:g} m wide, and parts are on top of it; correct its `pose` or `[places.{stop}]`",
             )
     if len(t.d.errors) != before:
         return None
@@ -208,16 +231,31 @@ def _belt(t: Table, name: str, around: _Around) -> _Read | None:
     )  # fmt: skip
 
 
-def _expect_between(t: Table, name: str, widest: float, called: str, along: float) -> None:
-    """What a clamp holds must be between its jaws, which close along the x of its frame."""
-    if abs(along) > widest / 2.0 + _SAME:
+def _expect_between(
+    t: Table, name: str, widest: float, called: str, at: tuple[tuple[float, float, float], float]
+) -> None:
+    """What a clamp holds must be between its jaws; `at`: where it is seen from the clamp, and how far parts reach."""
+    spot, far = at
+    along = abs(spot[0])
+    if along > widest / 2.0 + _SAME:
         t.d.error(
             codes.ROBOT_VALUE,
-            f"clamp `{name}` opens to {widest:g} m, but what it holds, at `{called}`, is {abs(along):g} m beside the "
+            f"clamp `{name}` opens to {widest:g} m, but what it holds, at `{called}`, is {along:g} m beside the "
             "middle between its jaws",
             t.at("holds"),
             hint=f"the jaws close along the x of its `pose`; correct it or `[places.{called}]`",
         )
+        return
+    for axis, off, size in zip("yz", spot[1:], t.numbers("jaw")[1:], strict=True):
+        if far and abs(off) > size / 2.0 + far + _SAME:
+            t.d.error(
+                codes.ROBOT_VALUE,
+                f"the jaws of clamp `{name}` reach {size / 2.0:g} m along the {axis} of its `pose`, but what it holds, "
+                f"at `{called}`, is {abs(off):g} m away: they touch no part there",
+                t.at("holds"),
+                hint=f"correct its `pose` or `[places.{called}]`",
+            )
+            return
 
 
 def _expect_order(t: Table, name: str, kind: str, numbers: Mapping[str, float]) -> None:
