@@ -91,6 +91,7 @@ class Activity:
         may_run: belts that are told to run in it, also those that do not because a part waits at their stop: once that
             is taken away, they do.
         handled: where parts are handled in it (a place in the world, m), and how far around that (m).
+        halfway: of a device of which nothing moves, the parts from the beginning until it is done.
     """
 
     number: int
@@ -105,11 +106,12 @@ class Activity:
     turns: frozenset[str] = frozenset()
     may_run: frozenset[str] = frozenset()
     handled: tuple[tuple[Array, float], ...] = ()
+    halfway: tuple[Contents, ...] = ()
 
     @property
     def between(self) -> tuple[Contents, ...]:
         """The parts at each moment."""
-        return (*(contents for _, contents in self.legs), self.after)
+        return (*(contents for _, contents in self.legs), *self.halfway, self.after)
 
 
 class Doing:
@@ -192,6 +194,7 @@ class Doing:
         turns: frozenset[str] = frozenset()
         may_run: frozenset[str] = frozenset()
         handled: list[tuple[Array, float]] = []
+        halfway: list[Contents] = []
         done = Activity(0, (), stand, contents, kinds=kinds)
         others = tuple(s for s in others if s.robot != owner)
         for command in commands:
@@ -202,7 +205,7 @@ class Doing:
                     may_run |= told
                     kinds |= frozenset(self._cell.parts)
                     done = replace(done, kinds=kinds)
-                    command = until_stop(own, _parts(contents, standing, 0.0), command)
+                    command = until_stop(own, parts_of(contents, standing, 0.0), command)
                 leg = self.planner.leg(stand, command)
                 if leg.path is not None and leg.is_moving:
                     plates = turned_by(own, leg.path)
@@ -231,6 +234,8 @@ class Doing:
                     if doubt and not done.doubt:
                         done = replace(done, doubt=doubt, command=command)
                     handled += self._handed_on(ran, (*others, stand), contents)
+            else:
+                halfway.append(contents)
             if isinstance(command, ToolAction) and command.handling is not None:
                 tcp = None
                 if stand is not None:
@@ -252,6 +257,7 @@ class Doing:
             turns=turns,
             may_run=may_run,
             handled=tuple(handled),
+            halfway=tuple(halfway),
         )
 
     def _run_out(
@@ -277,7 +283,7 @@ class Doing:
         self, ran: frozenset[str], standing: tuple[Stand, ...], contents: Contents
     ) -> list[tuple[Array, float]]:
         """Where belts have taken parts onto other belts or turntables, as if they had been put there."""
-        parts = _parts(contents, standing, 0.0)
+        parts = parts_of(contents, standing, 0.0)
         ground = Ground.of(self._cell)
         out = []
         for part in parts.present.values():
@@ -416,7 +422,7 @@ def _tried(
     found: list[tuple[_Done, Parts]] = []
     faults: list[PartFault] = []
     for slack in _SLACKS:
-        parts = _parts(contents, standing, slack)
+        parts = parts_of(contents, standing, slack)
         try:
             found.append((does(parts), parts))
         except PartFault as fault:
@@ -426,7 +432,7 @@ def _tried(
     return found, faults
 
 
-def _parts(contents: Contents, standing: tuple[Stand, ...], slack: float) -> Parts:
+def parts_of(contents: Contents, standing: tuple[Stand, ...], slack: float) -> Parts:
     """The parts, to be handled otherwise, with turntables where they are."""
     parts = contents.parts.copy(slack)
     for stand in standing:
