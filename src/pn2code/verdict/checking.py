@@ -121,10 +121,12 @@ def examine_cell(
     _properties(net, config, result, d)
     if ahead and partition is not None and programs is not None and not d.has_errors:
         from pn2code.verdict.ahead import look_ahead
-        from pn2code.verify.controller import long_timers, short_timers
 
-        short_timers.warn(partition, config, d)
-        long_timers.warn(partition, config, d)
+        if partition.net.timed:  # a timer is a place whose token has a time
+            from pn2code.verify.controller import long_timers, short_timers
+
+            short_timers.warn(partition, config, d)
+            long_timers.warn(partition, config, d)
         look_ahead(partition, config, programs, d, inputs, kept)
     return partition
 
