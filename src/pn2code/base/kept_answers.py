@@ -41,23 +41,27 @@ _TICK_NS = 20_000_000
 """Dates of files are this coarse at most on the file systems that are looked at."""
 
 
+_LOADED_NS = time.time_ns()
+"""A command begins by loading its modules, and reads its files later, perhaps once for several questions."""
+
+
 class KeptAnswers:
     """Where answers are kept.
 
     Args:
         folder: for their files; it is made when there is one.
-        begun_ns: the time from which on files must not have changed.
+        begun_ns: the time from which on files must not have changed: before any of them is read.
     """
 
-    def __init__(self, folder: Path, begun_ns: int | None = None) -> None:
+    def __init__(self, folder: Path, begun_ns: int) -> None:
         self.folder = folder
-        self._begun = time.time_ns() if begun_ns is None else begun_ns
+        self._begun = begun_ns
 
     @staticmethod
     def of_user() -> KeptAnswers | None:
         """Those of this user; None where there is no private folder, or `PN2CODE_ANEW` is set."""
         folder = None if os.environ.get(ANEW) else private_folder()
-        return None if folder is None else KeptAnswers(folder / "answers")
+        return None if folder is None else KeptAnswers(folder / "answers", _LOADED_NS)
 
     def question(self, name: str, *parts: object) -> Question:
         """What is asked.

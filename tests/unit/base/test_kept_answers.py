@@ -40,7 +40,7 @@ def test_an_answer_is_kept_with_the_files_that_it_is_about(tmp_path: Path) -> No
 
 def test_what_changes_while_a_command_runs_is_neither_kept_nor_believed(tmp_path: Path) -> None:
     arm = tmp_path / "arm.urdf"
-    begun = KeptAnswers(tmp_path / "answers")
+    begun = KeptAnswers(tmp_path / "answers", time.time_ns())
     arm.write_text("<robot/>")
     begun.question("scene").keep("fine", [arm])
     assert later(tmp_path).question("scene").answer() is None
@@ -99,3 +99,4 @@ def test_of_the_user_unless_it_is_not_wanted(
     monkeypatch.delenv(ANEW)
     kept = KeptAnswers.of_user()
     assert kept is not None and kept.folder == tmp_path / "pn2code" / "answers"
+    assert not kept.is_settled(tmp_path)  # it is newer than this process
