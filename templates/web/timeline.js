@@ -49,6 +49,8 @@ export class Timeline {
     this.above.setAttribute("aria-hidden", "true");
     host.append(this.canvas, this.above);
     this.drawn = "";
+    /** @type {{t: number, text: string}[]} moments where another run begins to differ */
+    this.marks = [];
     this.from = 0;
     this.to = clock.end;
     this.lane = LOWEST_LANE;
@@ -313,7 +315,7 @@ export class Timeline {
     const drawn = [this.from, this.to, w, h, devicePixelRatio, this.lanes.length, document.documentElement.dataset.theme].join(" ");
     if (drawn !== this.drawn) {
       this.drawn = drawn;
-      this.ink = { text: colour("text"), faint: colour("faint"), line: colour("line"), accent: colour("accent"), bar: colour("bar") };
+      this.ink = { text: colour("text"), faint: colour("faint"), line: colour("line"), accent: colour("accent"), bar: colour("bar"), differs: colour("differs") };
       const c = cleared(this.canvas, w, h);
       this.axis(c, w, h);
       this.divide();
@@ -538,6 +540,14 @@ export class Timeline {
       c.fill();
       if (event.kind === "fault") c.fillRect(x - 0.75, HEAD, 1.5, h);
     }
+    this.marks.forEach(({ t, text }, i) => {
+      if (t < this.from || t > this.to) return;
+      c.fillStyle = this.ink?.differs ?? "";
+      c.fillRect(this.x(t) - 1, HEAD - 8, 2, h);
+      c.textAlign = this.x(t) > this.width() - 80 ? "right" : "left";
+      c.fillText(text, this.x(t) + (c.textAlign === "left" ? 5 : -5), HEAD + 8 + i * LABEL);
+      c.textAlign = "left";
+    });
   }
 
   /**

@@ -101,6 +101,7 @@ class Activity:
             is taken away, they do.
         handled: where parts are handled in it (a place in the world, m), and how far around that (m).
         leans: the robots with parts in their tools on which clamps close in it: they must not move meanwhile.
+        halfway: of a device of which nothing moves, the parts from the beginning until it is done.
     """
 
     number: int
@@ -116,11 +117,12 @@ class Activity:
     may_run: frozenset[str] = frozenset()
     handled: tuple[tuple[Array, float], ...] = ()
     leans: frozenset[str] = frozenset()
+    halfway: tuple[Contents, ...] = ()
 
     @property
     def between(self) -> tuple[Contents, ...]:
         """The parts at each moment."""
-        return (*(contents for _, contents in self.legs), self.after)
+        return (*(contents for _, contents in self.legs), *self.halfway, self.after)
 
 
 class Doing:
@@ -209,6 +211,7 @@ class Doing:
         may_run: frozenset[str] = frozenset()
         handled: list[tuple[Array, float]] = []
         leans: frozenset[str] = frozenset()
+        halfway: list[Contents] = []
         done = Activity(0, (), stand, contents, kinds=kinds)
         others = tuple(s for s in others if s.robot != owner)
         for command in commands:
@@ -219,7 +222,7 @@ class Doing:
                     may_run |= told
                     kinds |= frozenset(self._cell.parts)
                     done = replace(done, kinds=kinds)
-                    command = until_stop(own, _parts(contents, standing, 0.0), command)
+                    command = until_stop(own, parts_of(contents, standing, 0.0), command)
                 leg = self.planner.leg(stand, command)
                 if leg.path is not None and leg.is_moving:
                     plates = turned_by(own, leg.path)
@@ -262,6 +265,8 @@ class Doing:
                         leans |= {near.part.holder}
                 if done.fault:
                     break
+            else:
+                halfway.append(contents)
             if isinstance(command, ToolAction) and command.handling is not None:
                 tcp = None
                 if stand is not None:
@@ -284,11 +289,12 @@ class Doing:
             may_run=may_run,
             handled=tuple(handled),
             leans=leans,
+            halfway=tuple(halfway),
         )
 
     def _nearest(self, held: Held, contents: Contents, standing: tuple[Stand, ...]) -> Near:
         """The part that a clamp closes on."""
-        parts = _parts(contents, standing, 0.0)
+        parts = parts_of(contents, standing, 0.0)
         tcps = {s.robot: self._cell.robot(s.robot).T_world_base @ s.T_base_tcp for s in standing}
         there = [
             (p, tcps[p.holder] @ p.frame if p.holder else parts.world(p))
@@ -327,7 +333,7 @@ class Doing:
         self, ran: frozenset[str], standing: tuple[Stand, ...], contents: Contents
     ) -> list[tuple[Array, float]]:
         """Where belts have taken parts onto other belts or turntables, as if they had been put there."""
-        parts = _parts(contents, standing, 0.0)
+        parts = parts_of(contents, standing, 0.0)
         ground = Ground.of(self._cell)
         out = []
         for part in parts.present.values():
@@ -466,7 +472,7 @@ def _tried(
     found: list[tuple[_Done, Parts]] = []
     faults: list[PartFault] = []
     for slack in _SLACKS:
-        parts = _parts(contents, standing, slack)
+        parts = parts_of(contents, standing, slack)
         try:
             found.append((does(parts), parts))
         except PartFault as fault:
@@ -476,7 +482,7 @@ def _tried(
     return found, faults
 
 
-def _parts(contents: Contents, standing: tuple[Stand, ...], slack: float) -> Parts:
+def parts_of(contents: Contents, standing: tuple[Stand, ...], slack: float) -> Parts:
     """The parts, to be handled otherwise, with turntables where they are."""
     parts = contents.parts.copy(slack)
     for stand in standing:

@@ -20,7 +20,8 @@ from numpy.typing import ArrayLike
 from pn2code.base.frozen import frozen
 from pn2code.robot import codes
 from pn2code.robot.commands import Pose
-from pn2code.robot.scene_objects import SceneObject, read_object
+from pn2code.robot.scene_objects import SceneObject
+from pn2code.robot.solid_objects import read_solids
 from pn2code.robot.table_poses import read_pose
 from pn2code.robot.transforms import Array, inverse, matrix_of, rotation_about
 
@@ -219,7 +220,7 @@ def _axis(
     else:
         place = T_base_world @ matrix_of(read_pose(t, "pose"))
         radius, height = t.number("radius"), t.number("height")
-        objects = tuple(o for e in t.tables("objects") if (o := read_object(e, folder)) is not None)
+        objects = read_solids(t.tables("objects"), folder)
     t.done()
     unit = "m" if is_track else "degrees"
     if len(t.d.errors) == before:

@@ -24,6 +24,7 @@ from pn2code.robot.panel import FLANGE, cut, frame, stand_parts, stand_places, s
 from pn2code.robot.pedestal import WIDEST, half_width
 from pn2code.robot.robot_cell import CellRobot, PanelConfig, RobotCell
 from pn2code.robot.scene_objects import SceneObject
+from pn2code.robot.table_poses import NO_POSE
 from pn2code.robot.transforms import Array, matrix_of, pose_of
 from pn2code.robot.zones_table import Zone
 
@@ -62,6 +63,13 @@ class Body:
         return self.draw()
 
 
+def _in_world(device: CellRobot, thing: SceneObject) -> SceneObject:
+    """A thing of a device that stands."""
+    if device.base == NO_POSE:
+        return thing
+    return replace(thing, pose=pose_of(device.T_world_base @ matrix_of(thing.pose)))
+
+
 def bodies(cell: RobotCell) -> tuple[Body, ...]:
     """Everything of the scene but the robots."""
     out: list[Body] = []
@@ -76,7 +84,7 @@ def bodies(cell: RobotCell) -> tuple[Body, ...]:
     for device in cell.devices:
         for axis in device.belts:
             name = f"{device.name}/{axis.name}"
-            out += [body_of(replace(o, name=name)) for o in axis.objects]
+            out += [body_of(replace(_in_world(device, o), name=name)) for o in axis.objects]
     if scene.panel is not None:
         out += panel_bodies(scene.panel)
     out += [body_of(o) for o in scene.objects]

@@ -400,6 +400,8 @@ class Engine:
                 robot.asking = request
                 return
             request = self._told(robot, request, said)
+        if self._finished and isinstance(request, Execute):
+            request = Finished()  # it notices that the supervisor has, and begins nothing more (I9)
         match request:
             case AwaitFile():
                 robot.waiting = request

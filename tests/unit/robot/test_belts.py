@@ -176,6 +176,8 @@ def test_what_is_wrong_with_a_belt_is_said() -> None:
         ({"pose": {"z": 0.5, "roll": 5.0}}, "belt `belt` is not level"),
         ({"length": None}, "is missing"),
         ({"length": 1.0}, "is 1 m long, but its stop `infeed` is at 1.1 m"),
+        ({"pose": {"x": 1.75, "y": -1.7, "z": 0.5, "yaw": 90.0}}, "is 0.25 m beside its middle"),
+        ({"pose": {"x": 1.5, "y": -1.7, "z": 0.6, "yaw": 90.0}}, "is 0.025 m below its top"),
         ({"pose": {"x": 2.5, "y": -0.6, "z": 0.5}}, "its stop `infeed` is at -1 m"),
     ):
         cell, said = cell_of(**changed)
