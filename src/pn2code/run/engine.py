@@ -703,10 +703,14 @@ class Engine:
         """Nothing is faster in a zone than may be there."""
         if not self.zones.limited:
             return
+        parts = self.parts.parts.present.values()
+        moving = {r.name: r.motion for r in self._arms() if r.motion is not None}
+        there = {name: joints[name] for name in moving}
         speeds = {
-            r.name: r.motion.trajectory.qd(t - r.motion.began) for r in self._arms() if r.motion
+            name: moving[name].trajectory.qd(t - moving[name].began)
+            for name in self.zones.in_limited(there, parts)
         }
-        found = self.zones.too_fast(joints, speeds, self.parts.parts.present.values())
+        found = self.zones.too_fast({n: joints[n] for n in speeds}, speeds, parts)
         if found is not None:
             self.now = t
             self.record.too_fast = BrokenZone(

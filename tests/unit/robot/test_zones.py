@@ -118,6 +118,20 @@ def test_an_arm_and_what_it_carries_are_in_a_zone_and_a_door_is_not() -> None:
     assert watch.occupied("front", over, [held])
 
 
+def test_what_is_in_a_zone_where_speeds_are_limited() -> None:
+    """As for each link by itself; in `far` nothing is limited."""
+    watch = ZoneWatch(CELL)
+    random = np.random.default_rng(5)
+    met = set()
+    for _ in range(60):
+        q = random.uniform(CELL.robot("arm").arm.lower, CELL.robot("arm").arm.upper)
+        is_in = any(watch.off("front", corners) <= 0.0 for _, corners in watch.placed("arm", q, ()))
+        assert list(watch.in_limited({"arm": q}, ())) == ["arm"] * is_in
+        met.add(is_in)
+    assert met == {False, True}
+    assert list(watch.in_limited({"mill": SHUT, "arm": at(0, -900, 1400)}, ())) == ["mill"]
+
+
 def test_what_is_too_fast_is_told_with_its_speed() -> None:
     watch = ZoneWatch(CELL)
     joints = {"mill": SHUT}
