@@ -22,6 +22,7 @@ from pn2code.geometry.activities import Activity, Contents, Load, spot, spots
 from pn2code.geometry.answers import Nearest, Verdict
 from pn2code.geometry.apart import Apart
 from pn2code.geometry.legs import Leg, Planner
+from pn2code.geometry.level import level
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.sweeps import SEARCHED, Sweeper, much_less
 from pn2code.geometry.tracks import ArmShape, Track
@@ -33,6 +34,7 @@ from pn2code.robot.executor import turned_by
 from pn2code.robot.kinematics import MOST_CONDITION
 from pn2code.robot.motion import LinearTrajectory
 from pn2code.robot.parts import Part
+from pn2code.robot.riders import riding
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array
 from pn2code.robot.zones import ZoneWatch
@@ -70,6 +72,7 @@ class Comparison:
         self._margins: dict[int, Margins] = {}
         self.compared = 0
         self._watch = ZoneWatch(cell)
+        self._tilts: dict[tuple[int, str], tuple[Verdict, str]] = {}
         self._hurries: dict[tuple[int, str], tuple[Verdict, str]] = {}
 
     def _track(self, leg: Leg, load: Load) -> tuple[tuple[int, str], Track]:
@@ -80,7 +83,10 @@ class Comparison:
             shape = self._shapes[leg.robot]
             # Names for the collision library that no other part has that is shown at the same time.
             named = tuple(
-                replace(p, name=f"{p.kind.name}.held_by_{leg.robot}")
+                replace(
+                    p,
+                    name=f"{p.kind.name}.{f'{i}_' if p.up is not None else ''}held_by_{leg.robot}",
+                )
                 if p.holder
                 else replace(p, name=f"{p.kind.name}.{i}_on_{p.plate.replace('/', '_')}")
                 for i, p in enumerate(load, 1)
@@ -97,6 +103,16 @@ class Comparison:
         if key not in self._hurries:
             self._hurries[key] = slow_enough(self._watch, track, load)
         return self._hurries[key]
+
+    def tilts(self, leg: Leg, load: Load) -> tuple[Verdict, str]:
+        """Whether what stands on a part that is carried stays there, and why it does not."""
+        riders = tuple(riding(load, leg.robot))
+        key = (leg.number, spots(riders))
+        if not riders or not leg.is_moving:
+            return "yes", ""
+        if key not in self._tilts:
+            self._tilts[key] = level(self.cell.robot(leg.robot), leg, riders)
+        return self._tilts[key]
 
     def _has_shape(self, moved: tuple[Leg, Load]) -> bool:
         """Whether anything moves: of a device with a belt only what stands on it."""
