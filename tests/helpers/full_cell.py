@@ -177,6 +177,13 @@ acceleration = 0.4
 jerk = 4.0
 colour = [0.1, 0.1, 0.1]
 stop = "end"
+drives = ["further"]
+
+[devices.belt.axes.further]
+kind = "belt"
+pose = { x = 7.299038105676658, y = 0.75, z = 0.5, yaw = 30.0 }
+length = 0.5
+width = 0.4
 
 [sensors.gauge]
 variable = "v"

@@ -51,6 +51,7 @@ CELLS = (
     "minimal",
     "handover",
     "palletiser",
+    "machining",
     "shared-zone",
     "tending",
     "welding",

@@ -102,6 +102,14 @@ DEVICE_AXIS = Section(
             "the name of a place",
             only=_BELT,
         ),
+        Key(
+            "drives",
+            "texts",
+            "Belts of this device that go on in line where it ends, the nearest first: they run whenever it does, as "
+            "far as it does, and take its parts on.",
+            "a list of names of belts of this device",
+            only=_BELT,
+        ),
     ),
     by="kind",
 )

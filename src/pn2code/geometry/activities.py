@@ -19,7 +19,7 @@ from pn2code.base.frozen import frozen
 from pn2code.geometry.legs import Leg, Planner, Stand
 from pn2code.geometry.pieces import ROUNDING
 from pn2code.geometry.shown import Shown
-from pn2code.robot.belts import told_to_run, until_stop
+from pn2code.robot.belts import line_of, told_to_run, until_stop
 from pn2code.robot.clamps import holding, taken_along
 from pn2code.robot.commands import Command, Handling, ToolAction
 from pn2code.robot.executor import turned_by
@@ -212,7 +212,8 @@ class Doing:
                 if leg.path is not None and leg.is_moving:
                     plates = turned_by(own, leg.path)
                     turns |= plates
-                    done = self._turning(done, command, plates, standing, contents)
+                    line = turned_by(own, leg.path, own.belts)
+                    done = self._turning(done, command, (plates, line), standing, contents)
                     if pulled := self._pulled(own, leg, plates, contents):
                         done = replace(done, fault=pulled, is_part=True, command=command, doubt="")
                     if done.fault:
@@ -273,10 +274,10 @@ class Doing:
 
         def run_out(parts: Parts) -> None:
             parts.stand(device.name, stopped)
+            parts.run_out(ran)
             for axis in device.belts:
                 plate = f"{device.name}/{axis.name}"
                 if plate in ran:
-                    parts.run_out(plate)
                     parts.rewind(plate, device.T_world_plate(axis, leg.end.q))
 
         found, faults = _tried(contents, standing, run_out)
@@ -315,7 +316,10 @@ class Doing:
         ground = Ground.of(self._cell)
         own = ground.plates[plate]
         axis = own.axis
-        riders = [p for inside in contents for p in inside.parts.riders(plate)]
+        own_plates = line_of(own.robot, axis)
+        riders = [
+            p for inside in contents for p in inside.parts.present.values() if p.plate in own_plates
+        ]
         point, around = where
         off = inverse(own.T_world_axis) @ np.append(point, 1.0)
         if axis.belt is not None:
@@ -350,14 +354,16 @@ class Doing:
         self,
         done: Activity,
         command: Command,
-        plates: frozenset[str],
+        turned: tuple[frozenset[str], frozenset[str]],
         standing: tuple[Stand, ...],
         contents: Contents,
     ) -> Activity:
-        """Whether what stands on turntables stays there when they begin to turn."""
+        """Whether what stands on turntables stays there when they begin to turn: on these, of which some are belts."""
+        plates, belts = turned
         for plate in sorted(plates):
+            line = belts if plate in belts else frozenset()
             try:
-                _, faults = _tried(contents, standing, partial(Parts.turn, plate=plate))
+                _, faults = _tried(contents, standing, partial(Parts.turn, plate=plate, line=line))
             except PartFault as fault:
                 return replace(done, fault=str(fault), is_part=True, command=command, doubt="")
             if faults and not done.doubt:

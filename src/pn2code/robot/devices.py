@@ -21,6 +21,7 @@ from pn2code.base.frozen import frozen
 from pn2code.cell_file.devices import DEVICE_AXIS, DEVICE_PLACE
 from pn2code.diagnostics.suggestions import did_you_mean
 from pn2code.robot import codes, urdf
+from pn2code.robot.belt_lines import expect_lines
 from pn2code.robot.carried import STAND, add_joint, add_limit, add_shape, axis_words
 from pn2code.robot.commands import Pose
 from pn2code.robot.device_kinematics import DeviceKinematics
@@ -118,6 +119,7 @@ def _axes(t: Table, device: str, around: Around) -> Externals:
                 "`_1` and `_2`",
             )
             return Externals()
+    tables = expect_lines(t, tables)
     return Externals((), tables, tuple(read.clamp for read in found if read.clamp is not None))
 
 
@@ -185,6 +187,7 @@ def _belt(t: Table, name: str, around: Around) -> _Read | None:
     pose = read_pose(t, "pose")
     frame = matrix_of(pose)
     stop = _place(t, "stop", around.places)
+    drives = t.texts("drives")
     colour = read_colour(t)
     t.done()
     if abs(float((around.T_world_base @ frame)[2, 2]) - 1.0) > 1e-9:
@@ -225,7 +228,7 @@ def _belt(t: Table, name: str, around: Around) -> _Read | None:
         (
             ExternalAxis(
                 name, True, frame, np.array([1.0, 0.0, 0.0]), 0.0, length, speed, acceleration,
-                jerk, 0.0, height=height, objects=(body,), belt=Belt(width, stop),
+                jerk, 0.0, height=height, objects=(body,), belt=Belt(width, stop, drives, length),
             ),
         )
     )  # fmt: skip

@@ -31,10 +31,17 @@ if TYPE_CHECKING:
 
 @frozen
 class Belt:
-    """What a belt has beside its length."""
+    """What a belt has beside its length.
+
+    Args:
+        drives: belts of the same device that go on where it ends, and run with it.
+        farthest: m: so far it may be told to run: its length, with that of those.
+    """
 
     width: float
     stop: str = ""
+    drives: tuple[str, ...] = ()
+    farthest: float = 0.0
 
 
 @frozen(eq=False)
@@ -69,6 +76,11 @@ class ExternalAxis:
     def unit(self) -> str:
         """Of its positions in cell.toml."""
         return "m" if self.is_track else "degrees"
+
+    @property
+    def highest(self) -> float:
+        """The greatest position that a command may name."""
+        return self.upper if self.belt is None else self.belt.farthest
 
     def at(self, position: ArrayLike) -> Array:
         """Its frame after its own motion, in that of the robot's `base`; of positions (n,) all of them, (n, 4, 4)."""
@@ -150,7 +162,9 @@ class Externals:
         """The axes that one of that name moves, each with where it is then."""
         clamp = next((c for c in self.clamps if c.axis.name == name), None)
         if clamp is None:
-            yield name, position
+            own = self.axis(name)
+            driven = own.belt.drives if own is not None and own.belt is not None else ()
+            yield from ((belt, position) for belt in (name, *driven))
         else:
             yield from ((jaw, position / 2.0) for jaw in clamp.jaws)
 

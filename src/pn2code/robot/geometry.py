@@ -26,6 +26,7 @@ from pn2code.robot.robot_cell import CellRobot, PanelConfig, RobotCell
 from pn2code.robot.scene_objects import SceneObject
 from pn2code.robot.table_poses import NO_POSE
 from pn2code.robot.transforms import Array, matrix_of, pose_of
+from pn2code.robot.zones_table import Zone
 
 _RAIL = (0.32, 0.34, 0.37, 1.0)
 
@@ -88,6 +89,13 @@ def bodies(cell: RobotCell) -> tuple[Body, ...]:
         out += panel_bodies(scene.panel)
     out += [body_of(o) for o in scene.objects]
     return tuple(out)
+
+
+def zone_body(zone: Zone, is_broken: bool = False) -> Body:
+    """The edges of a zone, to be seen and nothing else: no distances are measured to them."""
+    # PyBullet keeps what it has read from a file of the same name.
+    name = f"zone/{zone.name}/broken" if is_broken else f"zone/{zone.name}"
+    return Body(name, (), partial(looks.zone, zone, is_broken))
 
 
 def _box(pose: Array, size: Sequence[float]) -> Solid:

@@ -216,16 +216,16 @@ def _corners(hulls: list[Hull | None]) -> Array | None:
     )
 
 
+_TURNS = np.stack([np.cross(np.eye(3)[i], np.eye(3)) for i in range(3)])
+"""Of `x`, `y`, `z`: `b @ _TURNS[i]` is the cross product of that with `b`."""
+
+
 def _off(corners: Array, half: Array) -> float:
     """How far a box is at least from one around the origin with these half lengths."""
-    edges = np.stack([corners[4] - corners[0], corners[2] - corners[0], corners[1] - corners[0]])
-    axes = [*np.eye(3), *edges, *(np.cross(a, b) for a in np.eye(3) for b in edges)]
-    best = -np.inf
-    for axis in axes:
-        long = float(np.linalg.norm(axis))
-        if long < 1e-9:
-            continue
-        along = corners @ (axis / long)
-        reach = float(np.abs(axis / long) @ half)
-        best = max(best, float(along.min()) - reach, -float(along.max()) - reach)
-    return best
+    edges = corners[[4, 2, 1]] - corners[0]
+    axes = np.vstack([np.eye(3), edges, *(edges @ turn for turn in _TURNS)])
+    long = np.sqrt(np.einsum("ij,ij->i", axes, axes))
+    axes = axes[long >= 1e-9] / long[long >= 1e-9, None]
+    along = corners @ axes.T
+    reach = np.abs(axes) @ half
+    return float(np.maximum(along.min(axis=0) - reach, -along.max(axis=0) - reach).max())
