@@ -23,6 +23,7 @@ from pn2code.robot.executor import Motion, MotionKind, RobotExecutor, turned, tu
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion import MotionFault
 from pn2code.robot.parts import PartFault
+from pn2code.robot.riders import tilted
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import matrix_of
 from pn2code.run.handling import PartKeeper
@@ -180,6 +181,9 @@ def _walk(
             begun.begin(parts)
             if pulled := begun.pulls(cell, parts, look()):
                 return pulled
+        for name, q in look().items():
+            if why := tilted(cell.robot(name), q, parts.parts.present.values()):
+                return why
         found = monitor.check(
             float(step),
             look(),

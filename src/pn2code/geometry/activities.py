@@ -8,7 +8,7 @@ activity.end, activity.after    # where the arm stands afterwards, and the parts
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
 from functools import partial
 from typing import TypeVar
@@ -35,6 +35,7 @@ from pn2code.robot.executor import turned_by
 from pn2code.robot.ground import Ground
 from pn2code.robot.lying import Trouble, overlap
 from pn2code.robot.parts import Part, PartChange, PartFault, Parts
+from pn2code.robot.riders import riding
 from pn2code.robot.robot_cell import CellRobot, RobotCell
 from pn2code.robot.transforms import Array, describe, inverse, matrix_of
 
@@ -76,7 +77,8 @@ Load = tuple[Part, ...]
 def spot(part: Part) -> str:
     """The same for parts of a kind that are in the same place, or in the same hand in the same way."""
     numbers = np.round(part.frame[:3], _DIGITS) + 0.0
-    return f"{part.kind.name} {part.holder or part.plate} {numbers.ravel().tolist()}"
+    out = f"{part.kind.name} {part.holder or part.plate} {numbers.ravel().tolist()}"
+    return out if part.up is None else f"{out} up {(np.round(part.up, _DIGITS) + 0.0).tolist()}"
 
 
 def spots(load: Load) -> str:
@@ -271,10 +273,12 @@ class Doing:
                 tcp = None
                 if stand is not None:
                     tcp = self._cell.robot(owner).T_world_base @ stand.T_base_tcp
-                handled.append(self._around(command.handling, tcp))
+                place = self._around(command.handling, tcp)
+                handled.append(place)
                 doing = _Handled(owner, command.handling, tcp, standing)
                 try:
-                    contents, doubt = self._handle(doing, contents)
+                    before, (contents, doubt) = contents, self._handle(doing, contents)
+                    handled += self._with_riders(owner, place, (before, contents))
                 except PartFault as fault:
                     done = replace(done, fault=str(fault), is_part=True, command=command, doubt="")
                     break
@@ -347,6 +351,15 @@ class Doing:
         assert frame is not None, "only a tool handles parts where it is"
         kind = self._cell.parts[handling.part]
         return frame[:3, 3], 2.0 * Ground.of(self._cell).radius(kind.name) + kind.tolerance
+
+    def _with_riders(
+        self, owner: str, place: tuple[Array, float], some: Iterable[Contents]
+    ) -> Iterator[tuple[Array, float]]:
+        """The same of what stands on the part that is handled, each on the one before."""
+        riders = [p for c in some for p in riding(c.parts.present.values(), owner)]
+        radii = {p.name: Ground.of(self._cell).radius(p.kind.name) for p in riders}
+        if radii:
+            yield place[0], place[1] + 2.0 * sum(radii.values())
 
     def within(self, plate: str, where: tuple[Array, float], contents: Iterable[Contents]) -> bool:
         """Whether a place is so near to a turntable that it, or what stands on it, can come there when it turns."""
@@ -444,12 +457,17 @@ class Doing:
         does = f"`{doing.owner}` releases `{change.part}`"
         if change.effect == "creates":
             does = f"`{doing.owner}` puts `{change.part}` at `{doing.handling.place}`"
-        trouble = overlap(self._shown.backend, change.part, ROUNDING)
-        if trouble is None:
-            return ""
-        if trouble.margin < -ROUNDING:
-            raise PartFault(f"{does}, which {trouble.text}, part at {describe(change.pose)}")
-        return _nearly(f"{does}, which {trouble.text}")
+        doubt = ""
+        riders = [c.part for c in parts.settled if c.effect == "releases"]
+        for name in (change.part, *riders):
+            trouble = overlap(self._shown.backend, name, ROUNDING)
+            if trouble is None:
+                continue
+            what = does if name == change.part else f"{does} with `{name}` on it"
+            if trouble.margin < -ROUNDING:
+                raise PartFault(f"{what}, which {trouble.text}, part at {describe(change.pose)}")
+            doubt = doubt or _nearly(f"{what}, which {trouble.text}")
+        return doubt
 
 
 @frozen(eq=False)

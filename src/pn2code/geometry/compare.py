@@ -22,7 +22,8 @@ from pn2code.geometry.activities import Activity, Contents, Load, spot, spots
 from pn2code.geometry.answers import Nearest, Verdict
 from pn2code.geometry.apart import Apart
 from pn2code.geometry.legs import Leg, Planner
-from pn2code.geometry.part_names import gap_as_seen, held, riding, standing
+from pn2code.geometry.level import level
+from pn2code.geometry.part_names import gap_as_seen, held, on_plate, standing
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.sweeps import SEARCHED, Sweeper, much_less
 from pn2code.geometry.tracks import ArmShape, Track
@@ -34,6 +35,7 @@ from pn2code.robot.executor import turned_by
 from pn2code.robot.kinematics import MOST_CONDITION
 from pn2code.robot.motion import LinearTrajectory
 from pn2code.robot.parts import Part
+from pn2code.robot.riders import riding
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array
 from pn2code.robot.zones import ZoneWatch
@@ -71,6 +73,7 @@ class Comparison:
         self._margins: dict[int, Margins] = {}
         self.compared = 0
         self._watch = ZoneWatch(cell)
+        self._tilts: dict[tuple[int, str], tuple[Verdict, str]] = {}
         self._hurries: dict[tuple[int, str], tuple[Verdict, str]] = {}
 
     def _track(self, leg: Leg, load: Load) -> tuple[tuple[int, str], Track]:
@@ -81,7 +84,7 @@ class Comparison:
             shape = self._shapes[leg.robot]
             # Names for the collision library that no other part has that is shown at the same time.
             named = tuple(
-                replace(p, name=held(p.name, leg.robot) if p.holder else riding(p.name, p.plate))
+                replace(p, name=held(p.name, leg.robot) if p.holder else on_plate(p.name, p.plate))
                 for p in load
             )
             links = tuple(shape.holding(p, *self._boxes[p.kind.name]) for p in named)
@@ -96,6 +99,16 @@ class Comparison:
         if key not in self._hurries:
             self._hurries[key] = slow_enough(self._watch, track, load)
         return self._hurries[key]
+
+    def tilts(self, leg: Leg, load: Load) -> tuple[Verdict, str]:
+        """Whether what stands on a part that is carried stays there, and why it does not."""
+        riders = tuple(riding(load, leg.robot))
+        key = (leg.number, spots(riders))
+        if not riders or not leg.is_moving:
+            return "yes", ""
+        if key not in self._tilts:
+            self._tilts[key] = level(self.cell.robot(leg.robot), leg, riders)
+        return self._tilts[key]
 
     def _has_shape(self, moved: tuple[Leg, Load]) -> bool:
         """Whether anything moves: of a device with a belt only what stands on it."""

@@ -171,7 +171,10 @@ class Look:
         t, _ = _who(found, met.elements[0])
         base = self.cell.robot(leg.robot).T_world_base
         begins = numbers(pose_of(base @ leg.start.T_base_tcp))
-        does = words(leg.command) + "".join(f" with {p.kind.name}" for p in load if p.holder)
+        held = [p for p in load if p.holder]
+        does = words(leg.command) + "".join(f" with {p.kind.name}" for p in held if p.up is None)
+        if on_it := sum(p.up is not None for p in held):
+            does += f" and {on_it} on it"
         if leg.fault is not None:
             return Move(
                 leg.robot,
@@ -193,9 +196,12 @@ class Look:
                 answer, why = "no", touch_in_words(apart) + what
             elif apart.outcome == "open" and answer == "yes":
                 answer, why = "unknown", apart.why
-        hurry, words_ = self.comparison.hurries(leg, load)
-        if hurry == "no" and answer != "no" or hurry == "unknown" and answer == "yes":
-            answer, why = hurry, words_
+        for hurry, words_ in (
+            self.comparison.hurries(leg, load),
+            self.comparison.tilts(leg, load),
+        ):
+            if hurry == "no" and answer != "no" or hurry == "unknown" and answer == "yes":
+                answer, why = hurry, words_
         return Move(
             leg.robot,
             t,

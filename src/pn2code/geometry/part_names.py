@@ -23,7 +23,7 @@ def held(part: str, robot: str) -> str:
     return f"{part}.held_by_{robot}"
 
 
-def riding(part: str, plate: str) -> str:
+def on_plate(part: str, plate: str) -> str:
     """Of a part on a turntable or belt."""
     return f"{part}.on_{plate.replace('/', '_')}"
 

@@ -44,6 +44,7 @@ from pn2code.robot.executor import Motion, RobotExecutor, turned, turned_by
 from pn2code.robot.monitor import Monitor
 from pn2code.robot.motion import MotionFault
 from pn2code.robot.parts import PartFault
+from pn2code.robot.riders import tilted
 from pn2code.robot.robot_cell import RobotCell
 from pn2code.robot.transforms import Array, describe, matrix_of, pose_of
 from pn2code.robot.zones import ZoneWatch
@@ -697,7 +698,18 @@ class Engine:
         if verdict.fault is not None:
             self.now = t
             raise CellStoppedError(f"{verdict.fault.message}; {self._doing()}")
+        self._expect_level(t, joints)
         self._expect_slow(t, joints)
+
+    def _expect_level(self, t: float, joints: Mapping[str, Array]) -> None:
+        """What stands on a part that is carried does not slide off."""
+        present = self.parts.parts.present.values()
+        if all(p.up is None for p in present):
+            return
+        for name, q in joints.items():
+            if why := tilted(self.cell.robot(name), q, present):
+                self.now = t
+                raise CellStoppedError(f"{why}; {self._doing()}")
 
     def _expect_slow(self, t: float, joints: Mapping[str, Array]) -> None:
         """Nothing is faster in a zone than may be there."""

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from pn2code.geometry.apart import Apart
-from pn2code.geometry.part_names import as_in_runs, as_seen, held, riding, standing
+from pn2code.geometry.part_names import as_in_runs, as_seen, held, on_plate, standing
 from pn2code.robot.backend import Clearance
 
 
@@ -15,7 +15,7 @@ from pn2code.robot.backend import Clearance
     ("name", "shown"),
     [
         (f"arm/{held('blank.1', 'arm')}", "arm/blank.1"),
-        (riding("blank.12", "left/plate"), "blank.12"),
+        (on_plate("blank.12", "left/plate"), "blank.12"),
         (standing("blank.2"), "blank.2"),
         ("arm/link_1", "arm/link_1"),
         ("table.standing", "table.standing"),
