@@ -227,6 +227,43 @@ def test_random_nets_agree(workshop: Workshop, tmp_path: Path) -> None:
             agrees(net, program, seed=seed, steps=40)
 
 
+def test_random_arithmetic_agrees(workshop: Workshop, tmp_path: Path) -> None:
+    """Also where it is computed without tests for overflow, beside what raises Overflow or Div."""
+    rng = random.Random(77)
+    count = 16
+    places = "".join(f"  place B{k} : INT = 1`0\n" for k in range(count))
+    transitions = "".join(
+        f"  trans T{k} guard [{_number(rng, 1)} <= {_number(rng, 2)}]\n"
+        "    in A : (k, l)\n    out A : (k, l)\n"
+        f"    in B{k} : b\n    out B{k} : {_number(rng, 4)}\n"
+        for k in range(count)
+    )
+    net = flat(
+        "net Cell\n  standard\n  colset K = int with 0..9;\n  colset L = int with ~7..20;\n"
+        "  colset P = product K * L;\n  var k : K; var l : L; var b : INT;\n  val seven = 7;\n"
+        f"{places}  place A : P = 1`(0, ~7) ++ 1`(3, 20) ++ 1`(9, 12)\n{transitions}"
+    )
+    program = _program(net, Packing({}, 8), workshop, tmp_path)
+    assert sum(agrees(net, program, seed=seed, steps=60) for seed in range(8)) > 24
+
+
+def _number(rng: random.Random, depth: int) -> str:
+    """A random expression of type int."""
+    if depth == 0 or rng.random() < 0.15:
+        return rng.choice(("k", "l", "k", "l", "b", "seven", "3", "~2", "1000", "1000000"))
+    one, other = _number(rng, depth - 1), _number(rng, depth - 1)
+    match rng.randrange(9):
+        case 0 | 1 | 2 | 3:
+            return f"({one} {rng.choice('+-*')} {other})"
+        case 4 | 5:
+            return f"({one} {rng.choice(('div', 'mod'))} {rng.choice(('3', '8', 'seven', other))})"
+        case 6:
+            return f"(~ ({one}))"
+        case 7:
+            return f"(if {one} > {rng.randrange(6)} then {other} else {rng.randrange(9)})"
+    return f"({one} mod {rng.randint(1, 9)})"
+
+
 def _random_net(rng: random.Random) -> str:
     """Places with a few colour sets, transitions with random arcs between them."""
     colsets = ["UNIT", "FLAG", "N", "PAIR", "INT"]

@@ -1,7 +1,8 @@
 """What compiling a net costs by its size: `./dev bench --compile`.
 
 One net is a ring of stations with a queue each: lists, records, code segments, a guard, and no two transitions alike,
-so that none of them share a C function. In another one all places are counters of coloured tokens. Told of each size:
+so that none of them share a C function. In others all places are counters of coloured tokens, with a dozen kinds of
+transitions, and with no two alike. Told of each size:
 how long the generated C is, what generating and compiling it takes, and how fast the explorer is; in turn with `-O2`,
 with what `c_flags` has for large nets, and with what explorers of large nets have. Processor time.
 """
@@ -16,6 +17,7 @@ import time
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
+from random import Random
 
 from tests.helpers.netbuilder import flat
 
@@ -75,8 +77,19 @@ def ring(transitions: int) -> str:
     return "\n".join(lines + moves)
 
 
-def counters(transitions: int) -> str:
-    """A ring in which tokens of two colours go round and change, with resources and numbers beside it."""
+def counters(transitions: int, *, unlike: bool = False) -> str:
+    """A ring in which tokens of two colours go round and change, with resources and numbers beside it.
+
+    Args:
+        transitions: how many.
+        unlike: with constants that make no two of them alike.
+    """
+    random = Random(transitions)
+
+    def own(text: str) -> str:
+        """The same number below 4, in other words."""
+        return f"{text} + {4 * random.randint(1, 1000)}" if unlike else text
+
     lines = [
         "net Counters", "  standard", "  colset K = int with 0..3;", "  colset C = with red | green | blue;",
         "  colset KC = product K * C;", "  var k, m: K; var c, e: C;",
@@ -86,6 +99,8 @@ def counters(transitions: int) -> str:
     for i in range(transitions):
         begins = " = 1`(0, red) ++ 1`(1, green)" if i % 9 == 0 else ""
         guard = f"k <> {i % 4}" if i % 2 else "k < 3 orelse c = red"
+        if unlike:
+            guard = f"({guard}) andalso (k + {i}) * {random.randint(1, 9)} <> {random.randint(1000, 9999)}"
         lines.append(f"  place P{i} : KC{begins}")
         moves += [f"  trans T{i} guard [{guard}]", f"    in P{i} : (k, c)"]
         if i % 3 == 0:
@@ -93,8 +108,8 @@ def counters(transitions: int) -> str:
             moves += [f"    in R{i} : e", f"    out R{i} : after e"]
         if i % 3 == 1:
             lines.append(f"  place F{i} : K = 2`1 ++ 1`{i % 4}")
-            moves += [f"    in F{i} : m", f"    out F{i} : (m + k + {i % 4}) mod 4"]
-        number = f"if c = red then (k + {1 + i % 3}) mod 4 else k"
+            moves += [f"    in F{i} : m", f"    out F{i} : ({own(f'm + k + {i % 4}')}) mod 4"]
+        number = f"if c = red then ({own(f'k + {1 + i % 3}')}) mod 4 else k"
         colour = "after c" if i % 2 else "c"
         moves.append(f"    out P{(i + 1) % transitions} : ({number}, {colour})")
     return "\n".join(lines + moves)
@@ -112,6 +127,7 @@ def measure(repeat: int) -> int:
             _measure(ring(size), WAYS, repeat)
         for size in COUNTED:
             _measure(counters(size), COUNTED_WAYS, repeat)
+            _measure(counters(size, unlike=True), COUNTED_WAYS, repeat)
     return 0
 
 

@@ -174,6 +174,15 @@ for _structure, _prefix in (("Int", "pn_int"), ("IntInf", "pn_big")):
         ("quot", "quot"), ("rem", "rem"),
     ):  # fmt: skip
         OPS[f"{_structure}.{_name}"] = Call(f"{_prefix}_{_function}", context=True)
+OPS |= {
+    "exact.+": Infix("+", ADD),
+    "exact.-": Infix("-", ADD),
+    "exact.*": Infix("*", MULTIPLY),
+    "exact.~": Prefix("-"),
+    "exact.div": Infix("/", MULTIPLY),
+    "exact.mod": Infix("%", MULTIPLY),
+}
+"""Those of integers where nothing can overflow, and nothing negative is divided (`lowering.passes.ranges`)."""
 for _name in ("min", "max", "sign"):
     OPS[f"Int.{_name}"] = Call(f"pn_int_{_name}")
 OPS["Int.compare"] = Call("pn_int_order", order=True)

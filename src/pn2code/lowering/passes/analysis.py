@@ -13,6 +13,7 @@ from pn2code.lowering.passes.direct import with_direct
 from pn2code.lowering.passes.effects import with_effects
 from pn2code.lowering.passes.move_lists import with_move_lists
 from pn2code.lowering.passes.moves import with_moves
+from pn2code.lowering.passes.ranges import with_ranges
 from pn2code.lowering.passes.reach import Reach
 from pn2code.lowering.passes.shared import with_shared
 from pn2code.lowering.passes.slots import with_slots
@@ -23,7 +24,7 @@ from pn2code.lowering.passes.used import with_used
 
 def analysed(net: ir.NetIR) -> ir.NetIR:
     """The net, with what all passes find."""
-    net = with_checks(with_constants(with_seen(net)))
+    net = with_checks(with_ranges(with_constants(with_seen(net))))
     reach = Reach(net)
     net = with_sums(with_effects(with_moves(net), reach), reach)
     return bounded(with_used(with_context(with_counts(with_direct(net, reach)))))

@@ -1,6 +1,7 @@
 """What an occurrence need not look at again: takes of what the search has found, puts of what is of the colour set.
 
-`with_checks` writes it into the statements of `fire` (`Take.is_found`, `Put.is_legal`).
+`with_checks` writes it into the statements of `fire` (`Take.is_found`, `Put.is_legal`). In explorers it also follows
+how large integers can be (`ranges`).
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from dataclasses import replace
 
 from pn2code.ir import nodes as ir
 from pn2code.ir.types import is_restricted
+from pn2code.lowering.passes.ranges import Ranges, known_tables
 
 
 def with_checks(net: ir.NetIR) -> ir.NetIR:
@@ -26,10 +28,11 @@ class _Known:
         self._places = net.places
         self._constants = {g.name: g.constant for g in net.globals if g.constant is not None}
         self._references = frozenset(g.name for g in net.globals if g.is_reference)
+        self._follows_ranges = net.has_successors
 
     def transition(self, t: ir.Transition) -> ir.Transition:
         """The transition, with its takes and puts marked."""
-        tables = tuple("" if v.is_output else v.table for v in t.variables)
+        tables = known_tables(t)
         takes = [s for s in t.fire if isinstance(s, ir.Take)]
         return replace(t, fire=tuple(self._statements(t.fire, tables, takes)))
 
@@ -68,6 +71,10 @@ class _Known:
         number = self._number(value)
         if number is not None and own.low is not None and own.high is not None:
             return not own.member and own.low <= number <= own.high
+        if self._follows_ranges and own.type == ir.INT and not own.member:
+            found = Ranges(self._descriptors, self._constants, tables).of(value)
+            if found is not None and own.low is not None and own.high is not None:
+                return own.low <= found[0] and found[1] <= own.high
         if not isinstance(value, ir.MakeStruct) or own.member:
             return False
         parts = dict(own.fields)
