@@ -54,7 +54,7 @@ from pn2code.verify.exploring.ranking import Ranking
 from pn2code.verify.exploring.result import Bounds, Exploration
 from pn2code.verify.exploring.turns import Turns
 
-_LIMITS = (*REACHED, "processor", "interrupted")
+CUT_SHORT = (*REACHED, "processor", "interrupted")
 """Why not all states of a cell were explored, but as many as could be."""
 WITNESSES = 60_000
 """States among which transitions are looked for that occur."""
@@ -92,7 +92,7 @@ class Seen:
             whole: of the cell, as much as could be explored.
         """
         told = [{**row, "part": True} for row in whole.answers[: len(self.answers)]]
-        if whole.why not in _LIMITS or len(told) < len(self.answers):
+        if whole.why not in CUT_SHORT or len(told) < len(self.answers):
             return None
         if self.looked.running.meek and any(row.get("trace") for row in told):
             return None  # whether scripts can do so is looked for in the whole net
