@@ -56,6 +56,7 @@ from pn2code.verify.controller.control_types import (
     FINITE,
     MAX_FIRINGS,
     OWNERSHIP,
+    CellProgram,
     Check,
     Control,
     Plan,
@@ -182,6 +183,7 @@ def examine(
         reductions=(Reduction.TIME,) if partition.net.timed else (),
     )
     made = Generated()
+    program = CellProgram(running, plan.properties.predicates, made)
     # To look for a choice in a state that draws random numbers would draw others.
     is_asked_at_once = not nondeterminism.draws(running.net)
     at_once = f"orders\n{_asked_of_orders(plan.firings)}" if is_asked_at_once else ""
@@ -352,6 +354,7 @@ def examine(
             closed=closed,
             reduced=in_turns is not None or in_counts is not None,
             quiet=in_counts is not None and in_counts.is_quiet,
+            program=program,
         )
         return settled(replace(control, late=late, doubt=doubt, premises=premises))
 
