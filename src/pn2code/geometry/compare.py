@@ -22,6 +22,7 @@ from pn2code.geometry.activities import Activity, Contents, Load, spot, spots
 from pn2code.geometry.answers import Nearest, Verdict
 from pn2code.geometry.apart import Apart
 from pn2code.geometry.legs import Leg, Planner
+from pn2code.geometry.part_names import gap_as_seen, held, riding, standing
 from pn2code.geometry.shown import Shown
 from pn2code.geometry.sweeps import SEARCHED, Sweeper, much_less
 from pn2code.geometry.tracks import ArmShape, Track
@@ -80,10 +81,8 @@ class Comparison:
             shape = self._shapes[leg.robot]
             # Names for the collision library that no other part has that is shown at the same time.
             named = tuple(
-                replace(p, name=f"{p.kind.name}.held_by_{leg.robot}")
-                if p.holder
-                else replace(p, name=f"{p.kind.name}.{i}_on_{p.plate.replace('/', '_')}")
-                for i, p in enumerate(load, 1)
+                replace(p, name=held(p.name, leg.robot) if p.holder else riding(p.name, p.plate))
+                for p in load
             )
             links = tuple(shape.holding(p, *self._boxes[p.kind.name]) for p in named)
             self._tracks[key] = Track(shape, leg, links, named)
@@ -156,7 +155,7 @@ class Comparison:
             certain = min(certain, least)
         if not clear:
             return None
-        return Nearest(where, min(certain, best))
+        return Nearest(gap_as_seen(where), min(certain, best))
 
     def activities(self, a: Activity, b: Activity) -> Iterator[tuple[Leg, Leg, Apart]]:
         """Each leg of one with each of the other, since nobody knows how far they are."""
@@ -178,15 +177,15 @@ class Comparison:
         path = other.path if other.path is not None else self._planner.standing(other.start).path
         assert path is not None
         for part, frame in taken_along(robot, leg.start.q, load, turned_by(robot, leg.path)):
-            for held in holding(self.cell, part.kind, frame):
+            for clamped in holding(self.cell, part.kind, frame):
                 # The way of a clamp is straight, so it is narrowest at one of its ends.
                 ends = path.on_way(np.array([0.0, 1.0]))
-                q = min(ends, key=held.gap)
-                if held.device is device and held.holds(q):
+                q = min(ends, key=clamped.gap)
+                if clamped.device is device and clamped.holds(q):
                     x, y, z = frame[:3, 3].tolist()
-                    names = f"{leg.robot}/{part.kind.name}", held.name
+                    names = f"{leg.robot}/{part.name}", clamped.name
                     gap = Clearance("robots", leg.robot, *names, 0.0, None, (x, y, z), (x, y, z))
-                    why = held.words(leg.robot, part.kind.name, q)
+                    why = clamped.words(leg.robot, part.name, q)
                     return Apart("touch", 0.0, 0.0, gap, (0.0, 0.0), why, (leg.start.q, q))
         return None
 
@@ -198,7 +197,7 @@ class Comparison:
         where = (key, spot(part))
         if where not in self._beside:
             self.compared += 1
-            shown = replace(part, name=f"{part.kind.name}.standing")
+            shown = replace(part, name=standing(part.name))
             box = self._boxes[part.kind.name]
             found = self._beside[where] = self.sweeper.beside(track, shown, box)
             if found.outcome == "touch":

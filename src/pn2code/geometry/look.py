@@ -18,6 +18,7 @@ from pn2code.geometry.apart import Apart
 from pn2code.geometry.compare import Comparison
 from pn2code.geometry.graph import CellGraph
 from pn2code.geometry.legs import Leg, Planner
+from pn2code.geometry.part_names import as_seen
 from pn2code.geometry.pieces import ROUNDING
 from pn2code.geometry.runs import Run, write
 from pn2code.geometry.shown import Shown
@@ -184,7 +185,7 @@ class Look:
             )
         is_device = self.cell.robot(leg.robot).is_device
         margins = self.comparison.margins(leg)
-        scene, itself = self.comparison.around(leg, load)
+        scene, itself = map(as_seen, self.comparison.around(leg, load))
         answer: Verdict = "yes"
         why = ""
         for apart, what in ((scene, ""), (itself, " of itself")):
@@ -311,6 +312,7 @@ def _met(
 ) -> Pair:
     """Two things that do not surely keep apart; a part has no robot, and no joints."""
     is_touch = apart.outcome == "touch"
+    apart = as_seen(apart)
     return Pair(
         robots,
         transitions,

@@ -15,7 +15,7 @@ from __future__ import annotations
 import copy
 import itertools
 import math
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -165,6 +165,15 @@ class Parts:
         assert not part.holder, "where a part in a tool is, is the robot's to say"
         return self._plates[part.plate] @ part.frame if part.plate else part.frame
 
+    def everywhere(self, joints: Mapping[str, Array]) -> list[tuple[Part, Array]]:
+        """All parts with where they are in the world; `joints`: of the robots that hold some in their tools."""
+        return [
+            (p, carried_to(self.cell.robot(p.holder), joints[p.holder], p))
+            if p.holder
+            else (p, self.world(p))
+            for p in self.present.values()
+        ]
+
     def riders(self, plate: str) -> list[Part]:
         """What turns with a turntable."""
         return [p for p in self.present.values() if p.plate == plate]
@@ -200,7 +209,7 @@ class Parts:
                     "which does not"
                 )
 
-    def _riders_of(self, plates: Collection[str]) -> Iterator[Part]:
+    def _riders_of(self, plates: Set[str]) -> Iterator[Part]:
         return (p for p in self.present.values() if p.plate in plates)
 
     def _expect_alone(self, plate: str, riders: list[Part], line: frozenset[str]) -> None:
@@ -222,7 +231,7 @@ class Parts:
         goes = {x: self.present[x].plate for x in on if x in self.present}
         return {x for x in on if x in self._plates} | set(goes.values()) - {""}
 
-    def run_out(self, line: Collection[str]) -> None:
+    def run_out(self, line: Set[str]) -> None:
         """Belts that have run as one come to rest. Raises PartFault if the middle of something has come off their end.
 
         Up to there they take it along, and it does not tip over on the way; beyond, nobody knows how far it goes.
