@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from tools.bench import families
 from tools.reduction_cells.bed import judge
 from tools.reduction_cells.limited import WRONG_LIMITS, Limited
 from typer.testing import CliRunner
@@ -105,11 +106,13 @@ act = { command = "tool", action = "act", duration_s = 0.5 }
 """
 
 
-def verified(folder: Path, net: str, *options: str, parts: int = 6) -> dict[str, Any]:
+def verified(
+    folder: Path, net: str, *options: str, parts: int = 6, toml: str = TOML
+) -> dict[str, Any]:
     """What `verify --json` says of a cell."""
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "cell.cpn").write_bytes(cpn(net.replace("{parts}", str(parts))))
-    (folder / "cell.toml").write_text(TOML, encoding="utf-8")
+    (folder / "cell.toml").write_text(toml, encoding="utf-8")
     more = ["--json", "--no-graph", "--no-medium", "--traces", str(folder / "t"), *options]
     found: dict[str, Any] = json.loads(
         CliRunner().invoke(app, ["verify", str(folder), *more]).stdout
@@ -241,6 +244,34 @@ def test_a_property_of_runs_needs_all_states(tmp_path: Path) -> None:
     found = verified(tmp_path, NET, *asked)
     assert found["properties"][0]["answer"] == "yes"
     assert found["cell"]["reduced"] is False
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "confluence", "is_known"),
+    [
+        ("", "", "yes", True),
+        (  # one waits while the other one works: it depends on who fires first
+            "    trans Start1\n",
+            "    trans Start1\n      inhibit Busy2 : ()\n",
+            "no",
+            None,
+        ),
+    ],
+)
+def test_an_order_that_does_not_matter(
+    tmp_path: Path, old: str, new: str, confluence: str, is_known: bool | None
+) -> None:
+    """Where the supervisor has a choice: all its firings commute, or all orders are looked at."""
+    net = families.net("line", 2, 6)
+    changed = net.replace(old, new, 1) if old else net
+    assert not old or changed != net
+    toml = families.toml("line", 2)
+    found = verified(tmp_path / "found", changed, toml=toml)
+    whole = verified(tmp_path / "whole", changed, "--no-reduction", toml=toml)
+    assert answers(found) == answers(whole)
+    by_name = {c["check"]: c["answer"] for c in found["controller"]}
+    assert by_name["confluence"] == confluence
+    assert is_known is None or found["cell"]["reduced"] is is_known
 
 
 def test_a_random_shop_has_the_same_verdicts(tmp_path: Path) -> None:

@@ -58,6 +58,39 @@ def test_a_large_cell_has_the_same_answers_in_fewer_states(
     assert not any("in turns" in x for c in whole["controller"] for x in c["assumes"])
 
 
+PROPERTIES = (
+    ("ctl AF tokens(Supervisor'Finished) = 1", "yes"),
+    ("mutex Supervisor'Feeding, Supervisor'Carrying", "yes"),
+    ("bound Supervisor'Milling <= 1", "yes"),
+    # Unless the two places are looked at together, one arm would have come and gone before the other one.
+    ("never tokens(PageArm1'Gripped) = 1 && tokens(PageArm2'Gripped) = 1", "no"),
+    ("ctl AF tokens(Supervisor'Scrap) >= 1", "no"),
+    ("ctl AG EF tokens(Supervisor'Scrap) = 0", "no"),
+    ("always dead -> tokens(Supervisor'Scrap) <= 1", "no"),
+    ("every tokens(Supervisor'Milling) = 1 is followed by tokens(Supervisor'Milling) = 0", "yes"),
+)
+
+
+def test_conditions_on_states_are_asked_in_turns(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With the same answers; what is not so has a run of the cell."""
+    cell = write(tmp_path / "cell", 2)
+    monkeypatch.setattr(command, "TURNS_FROM", 200)
+    monkeypatch.setattr(command, "COUNTS_FROM", None)
+    asked = [word for text, _ in PROPERTIES for word in ("--property", text)]
+    found = verified(cell, *asked, "--no-medium")
+    whole = verified(cell, *asked, "--no-medium", "--no-reduction")
+    assert [row["answer"] for row in whole["properties"]] == [answer for _, answer in PROPERTIES]
+    assert [row["answer"] for row in found["properties"]] == [answer for _, answer in PROPERTIES]
+    assert found["cell"]["reduced"] is True
+    for row in found["properties"]:
+        if row["answer"] == "no":
+            assert row["evidence"]["confirmed"] and row["rests_on"] in ("part", "run")
+    by_name = {row["holds"]: row for row in found["properties"]}
+    assert any("in turns" in x for x in by_name[PROPERTIES[0][0]]["assumes"])
+
+
 CELL = """[net]
 file = "cell.cpn"
 [supervisor]

@@ -82,6 +82,22 @@ def of_part(
                 yield f"property `{p.holds}`: a part says {mine['answer']}, the whole {its['answer']}"
 
 
+def of_states(properties: m.Properties, partition: Partition) -> m.Properties:
+    """Those that are conditions on states."""
+    kept = (p for p in properties.properties if stated(p, 0, properties, partition) is not None)
+    return replace(properties, properties=tuple(kept))
+
+
+def in_turns(
+    properties: m.Properties, whole_properties: m.Properties, turned: Control, whole: Control
+) -> Iterator[str]:
+    """What is said in turns otherwise than of all states."""
+    told = dict(zip(whole_properties.properties, whole.answers, strict=False))
+    for p, mine in zip(properties.properties, turned.answers, strict=False):
+        if mine["answer"] not in (told[p]["answer"], "unknown"):
+            yield f"property `{p.holds}`: {mine['answer']} in turns, {told[p]['answer']} in all"
+
+
 @frozen
 class OfStates:
     """The properties of a cell that each hold in all of its states, where tokens are counted up to a limit."""

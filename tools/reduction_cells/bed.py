@@ -341,6 +341,13 @@ def _of_properties(
     part = cell.checked(None, properties=properties, most=r.choice(FEW))
     if part is not None:
         yield from asked.of_part(properties, part, whole, counts)
+    of_states = asked.of_states(properties, cell.partition)
+    turned = cell.checked(1, properties=of_states)
+    counts["properties asked in turns"] += len(of_states.properties) * (
+        turned is not None and turned.reduced
+    )
+    if turned is not None:
+        yield from asked.in_turns(of_states, properties, turned, whole)
     for name, change in asked.WRONG_PROPERTIES.items() if shown is not None else ():
         other = asked.OfStates.of(properties, cell.partition, cell.plan, change)
         if other is not None and any(other.wrong(whole)):

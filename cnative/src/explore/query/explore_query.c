@@ -162,7 +162,8 @@ static bool is_known_in_part(const ex_queries_t *queries, uint32_t number)
 }
 
 /* Whether a part of the graph may decide a question: a run that violates a formula or a response, two runs that show
- * that an order matters, or what a formula of CTL says whatever is missing. Whether a run is fair is not known there. */
+ * that an order matters, or what a formula of CTL says whatever is missing. Whether a run is fair is not known there.
+ */
 static bool is_of_part(const ex_queries_t *queries, const ex_question_t *question)
 {
     const ex_event_t *const first = &question->first;

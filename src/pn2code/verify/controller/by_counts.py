@@ -17,7 +17,8 @@ weights of places (`verify.exploring.ranking`):
     memory             and need in a marking
     finite, bounded    weights limit how many firings follow each other
     confluence         a "no" is that of a part of the whole space, in which all firings of a cycle are there; a "yes"
-                       is said where the supervisor never has a choice in any state
+                       is said where the supervisor never has a choice in any state, or any two firings commute
+                       (`diamonds`)
     dead transitions   what occurs in no state never occurs; of all others a run in the whole space, or in turns, is
                        known
     properties         conditions on all states (`stated`): the places of each are a group, and have no limits, so each
@@ -37,6 +38,7 @@ from pn2code.base.frozen import frozen
 from pn2code.cell.partition import Partition
 from pn2code.diagnostics import Diagnostics
 from pn2code.properties.questions import ENDLESS, Questions
+from pn2code.verify.controller import diamonds
 from pn2code.verify.controller.by_turns import Looked, group, loosened
 from pn2code.verify.controller.control_types import Plan
 from pn2code.verify.controller.kept_silence import kept_silence
@@ -52,7 +54,7 @@ from pn2code.verify.exploring.ranking import Ranking
 from pn2code.verify.exploring.result import Bounds, Exploration
 from pn2code.verify.exploring.turns import Turns
 
-_LIMITS = (*REACHED, "processor", "interrupted")
+CUT_SHORT = (*REACHED, "processor", "interrupted")
 """Why not all states of a cell were explored, but as many as could be."""
 WITNESSES = 60_000
 """States among which transitions are looked for that occur."""
@@ -90,7 +92,7 @@ class Seen:
             whole: of the cell, as much as could be explored.
         """
         told = [{**row, "part": True} for row in whole.answers[: len(self.answers)]]
-        if whole.why not in _LIMITS or len(told) < len(self.answers):
+        if whole.why not in CUT_SHORT or len(told) < len(self.answers):
             return None
         if self.looked.running.meek and any(row.get("trace") for row in told):
             return None  # whether scripts can do so is looked for in the whole net
@@ -211,7 +213,7 @@ def look(
         return None
     if not is_certain:
         is_choiceless = found.seen.arcs and found.answers[len(rows) + 1]["answer"] != "unknown"
-        if not is_choiceless:
+        if not is_choiceless and not _all_commute(partition, plan, limits, own, made):
             return None
     if not _all_occur(partition, plan, limits, own, made, found, part):
         return None
@@ -225,6 +227,26 @@ def look(
         if row["answer"] == "yes":
             told[i] = x.row(plan.properties.properties[i])
     return Seen(looked, said, asked, tuple(told[i] for i in sorted(told)), quiet["answer"] == "yes")
+
+
+def _all_commute(
+    partition: Partition, plan: Plan, limits: Limits, options: ExploreOptions, made: Abstract
+) -> bool:
+    """Whether the order in which the supervisor fires does not matter (`diamonds`)."""
+    firings = [i for i, o in enumerate(partition.transition_owner) if o == SUPERVISOR]
+    channels = [c.place for c in partition.channels]
+    pairs = diamonds.undecided(made.running.net, plan.storage, firings, channels)
+    if not pairs:
+        return pairs is not None
+    # The states in which it takes any of its firings.
+    alone = replace(made, properties=())
+    lines = questions(alone, plan, made.ranking.rising(), first=False, apart=pairs)
+    own = replace(options, questions=lines, stem="orders")
+    found = explore(made.running.net, plan.storage, limits, Diagnostics(), own)
+    is_seen = found is not None and found.complete and found.error is None
+    if found is None or not is_seen or len(found.answers) != lines.count("\n? "):
+        return False
+    return all(row["answer"] == "yes" for row in found.answers[1:])
 
 
 def _open_properties(
@@ -254,10 +276,24 @@ def is_decided(order: Sequence[Mapping[str, Any]]) -> bool:
     return len(order) > CONFLUENCE and order[CONFLUENCE]["answer"] == "no"
 
 
-def questions(made: Abstract, plan: Plan, rising: frozenset[int]) -> str:
-    """All but the first have to be answered with "yes"; in front are those that `_said` leaves out, and properties."""
+def questions(
+    made: Abstract,
+    plan: Plan,
+    rising: frozenset[int],
+    *,
+    first: bool = True,
+    apart: diamonds.Pairs = (),
+) -> str:
+    """All but the first have to be answered with "yes"; in front are those that `_said` leaves out, and properties.
+
+    Args:
+        made, plan: what is looked at, and what is asked.
+        rising: transitions of which weights do not show that they occur only so often.
+        first: whether the supervisor takes the first of its binding elements; else it takes any.
+        apart: transitions that are never enabled together.
+    """
     running, partition = made.running, made.running.partition
-    lines = [x for x in running.lines(first=True) if not x.startswith("instant ")]
+    lines = [x for x in running.lines(first=first) if not x.startswith("instant ")]
     asked = Questions()
     asked.asked.append(f"? invariant {nothing_left(asked, running)}")
     for x in made.properties:
@@ -279,6 +315,7 @@ def questions(made: Abstract, plan: Plan, rising: frozenset[int]) -> str:
         ),
         *([] if running.unsure is None else [f"? bound {running.unsure} 0 0"]),
     ]
+    diamonds.ask(asked, apart)
     return "".join(f"{line}\n" for line in lines) + asked.text()
 
 

@@ -15,6 +15,8 @@ the supervisor's end. What turns keep is proved in `verify.exploring.turns`, for
     channels, capacity what a place holds is kept
     silence            that nobody waits for others while it owes an answer: its places are a group. Whether the
                        supervisor rests is not asked, so that it is the stronger question
+    properties         conditions on all states (`stated`): the places of each are a group; what is not so in a state of
+                       this net is looked for in the cell
     messages, poses,
     memory, dead       all that occurs, and what each place holds, is kept
     transitions
@@ -122,6 +124,7 @@ def look(
     cell: str,
     orders: str,
     is_choiceless: Any,
+    properties: int = 0,
 ) -> Looked | None:
     """Explores in turns; None: not all came out well, or it is too large as well.
 
@@ -133,6 +136,7 @@ def look(
         cell: what is asked of the cell, all of it to be answered with "yes", and then of its orders, if that may be.
         orders: what is asked of all orders.
         is_choiceless: whether what was seen says that all orders are one.
+        properties: so many of the first questions about the cell may have any answer.
 
     Raises:
         OutOfReachError: it could not be seen to its end.
@@ -146,7 +150,7 @@ def look(
         quick=False,
     )
     found = _explored(running.net, plan, limits, d, replace(own, questions=cell))
-    if found is None or not all_good(found.answers, cell):
+    if found is None or not all_good(found.answers, cell, properties):
         return None
     if is_choiceless(found):
         return Looked(running, found, None)
@@ -172,14 +176,14 @@ ABOUT_ORDERS = ("finite-response", "bounded-response", "confluence")
 """Questions that may be answered with "no", as a part of the space is seen whole."""
 
 
-def all_good(rows: Sequence[Mapping[str, Any]], questions: str) -> bool:
-    """Whether all that is asked has the answer "yes", but for what is asked about orders."""
+def all_good(rows: Sequence[Mapping[str, Any]], questions: str, first: int = 0) -> bool:
+    """Whether all that is asked from `first` on has the answer "yes", but for what is asked about orders."""
     asked = [line.split()[1] for line in questions.split("\n") if line.startswith("? ")]
     if len(asked) != len(rows):
         return False
     return all(
         row["answer"] == "yes" or what in ABOUT_ORDERS
-        for what, row in zip(asked, rows, strict=True)
+        for what, row in [*zip(asked, rows, strict=True)][first:]
     )
 
 

@@ -67,7 +67,7 @@ from pn2code.verify.controller.kept_silence import kept_silence
 from pn2code.verify.controller.poses import Bad, Poses
 from pn2code.verify.controller.reach_check import reach, suspects, told_poses
 from pn2code.verify.controller.running import NotModelledError, Running
-from pn2code.verify.controller.stated import all_stated
+from pn2code.verify.controller.stated import Stated, all_stated, stated
 from pn2code.verify.exploring import nondeterminism
 from pn2code.verify.exploring.explore import ExploreOptions, explore
 from pn2code.verify.exploring.limits import REACHED, Limits, Reduction
@@ -90,17 +90,22 @@ CELL_PART = 0.8
 # --- questions -----------------------------------------------------------------------------------
 
 
-def of_cell(running: Running, plan: Plan, *, in_turns: bool = False) -> str:
+def of_cell(
+    running: Running, plan: Plan, *, in_turns: bool = False, conditions: Sequence[Stated] = ()
+) -> str:
     """The lines for the explorer about the cell: first properties, then what `cell_answers` understands.
 
     Args:
         running: its net.
         plan: what is asked.
         in_turns: in a space that is seen in turns (`by_turns`).
+        conditions: what is asked there of states instead of the properties.
     """
     asked = Questions()
     resting = None if in_turns else running.resting
-    for p in plan.properties.properties:
+    for x in conditions:
+        x.ask(asked)
+    for p in () if in_turns else plan.properties.properties:
         asked.ask(_with_programs(p.asked, running))
     end = "-"
     if running.partition.final_places:
@@ -199,6 +204,7 @@ def examine(
         # Where the whole is too large, there is time left to see how it comes to what is wrong.
         part = replace(limits, deadline=limits.deadline.share(CELL_PART))
         in_turns: Looked | None = None
+        turned: tuple[Mapping[str, Any], ...] = ()
         in_counts: by_counts.Seen | None = None
         may_turn = _may_turn(partition, plan, part)
         first_part = replace(part, max_states=part.turns_from) if may_turn else part
@@ -232,13 +238,22 @@ def examine(
                 rows = _hunted(running, plan, part, soon, in_counts.answers)
                 in_counts = replace(in_counts, answers=rows)
             if in_counts is None or in_counts.has_open:
-                found = explore(running.net, plan.storage, first_part, d, options)
+                more = first_part if in_counts is None else part
+                found = explore(running.net, plan.storage, more, d, options)
                 if in_counts is not None and found is not None:
                     in_counts = in_counts.with_more(found)
         if in_counts is None and may_turn and found is not None and found.why == "states":
             try:
                 in_turns = _looked_in_turns(partition, plan, part, options, at_once, poses)
-                if in_turns is None:
+                if in_turns is not None:
+                    turned = _told_in_turns(running, plan, part, options, found, in_turns)
+                if in_turns is None or any(row["answer"] == "unknown" for row in turned):
+                    found = explore(running.net, plan.storage, part, d, options)
+                    if found is not None and in_turns is not None:
+                        turned = _with_part(turned, found)
+                        in_turns = in_turns if turned else None
+                if in_turns is not None and in_turns.running.meek and _has_runs(turned):
+                    in_turns = None  # whether scripts can do so is looked for in the whole net
                     found = explore(running.net, plan.storage, part, d, options)
             except OutOfReachError as problem:  # what was seen of the whole is what is known
                 plan = replace(plan, cut=str(problem))
@@ -256,7 +271,9 @@ def examine(
             )
         count = len(plan.properties.properties)
         answers = found.answers[:count] if in_counts is None else in_counts.answers
-        if in_counts is None and found.why in REACHED:
+        if in_turns is not None:
+            answers = turned
+        elif in_counts is None and found.why in REACHED:
             answers = _hunted(running, plan, limits, options, answers)
         options = replace(options, evidence=Path(name))
 
@@ -367,7 +384,7 @@ def _may_turn(partition: Partition, plan: Plan, limits: Limits) -> bool:
     most, least = limits.max_states, limits.turns_from
     if least is None or (most is not None and most <= least):
         return False
-    return not (plan.properties.properties or plan.cut or partition.net.timed)
+    return not plan.cut and not partition.net.timed and all_stated(plan.properties, partition)
 
 
 def _may_count(partition: Partition, plan: Plan, limits: Limits) -> bool:
@@ -406,8 +423,11 @@ def _looked_in_turns(
     poses: Poses | None,
 ) -> Looked | None:
     """What is seen in turns; None: it is not said."""
-    loose = by_turns.loosened(partition)
-    if loose is None:
+    over = Running.of(partition, loose=True).over
+    asked = plan.properties
+    properties = [x for p in asked.properties if (x := stated(p, over, asked, partition))]
+    loose = by_turns.loosened(partition, [x.places for x in properties])
+    if loose is None or len(properties) != len(asked.properties):
         return None
     running, _ = loose
 
@@ -421,13 +441,48 @@ def _looked_in_turns(
         replace(limits, max_states=limits.most_in_turns or limits.max_states),
         options,
         Diagnostics(),  # what is wrong with this net the whole space tells
-        cell=of_cell(running, plan, in_turns=True) + at_once,
+        cell=of_cell(running, plan, in_turns=True, conditions=properties) + at_once,
         orders=of_orders(running, plan.firings, in_turns=True),
         is_choiceless=is_choiceless,
+        properties=len(properties),
     )
     if looked is None or _has_suspects(poses, looked.found, limits):
         return None
     return looked
+
+
+def _told_in_turns(
+    running: Running,
+    plan: Plan,
+    limits: Limits,
+    options: ExploreOptions,
+    part: Exploration,
+    looked: Looked,
+) -> tuple[Mapping[str, Any], ...]:
+    """What is known of properties: what holds in turns, what a part of the cell's states says, and runs."""
+    properties = plan.properties.properties
+    rows: list[Mapping[str, Any]] = []
+    for p, mine, of_part in zip(
+        properties, looked.found.answers, part.answers[: len(properties)], strict=False
+    ):
+        row: Mapping[str, Any] = {**of_part, "part": True}
+        rows.append(Stated.row(p) if mine["answer"] == "yes" else row)
+    return _hunted(running, plan, limits, options, rows)
+
+
+def _has_runs(rows: Sequence[Mapping[str, Any]]) -> bool:
+    return any(row.get("trace") for row in rows)
+
+
+def _with_part(
+    rows: Sequence[Mapping[str, Any]], whole: Exploration
+) -> tuple[Mapping[str, Any], ...]:
+    """With what more of the cell's states say; nothing: they say all."""
+    if whole.why not in by_counts.CUT_SHORT:
+        return ()
+    # What a part said is said again, and its run has been written again.
+    told = zip(rows, whole.answers, strict=False)
+    return tuple(a if b["answer"] == "unknown" else {**b, "part": True} for a, b in told)
 
 
 def _parted(
