@@ -16,6 +16,7 @@ from helpers import delivered_runtime, remembering_cc, tiny_compiler
 from helpers.compiled import DELIVERED, FAST, SANITIZERS, Workshop
 from helpers.session import alone, common, once
 from helpers.thorough import THOROUGH
+from pn2code.base import kept_answers
 from pn2code.diagnostics import Diagnostics
 from pn2code.toolchain import build, programs
 
@@ -87,6 +88,14 @@ def quick_programs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
             flags = tuple("-O0" if flag == "-O2" else flag for flag in DELIVERED)
             changed.setattr(programs, "FLAGS", (*flags, *tiny_compiler.use(changed)))
             delivered_runtime.use(changed)
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def nothing_kept() -> Iterator[None]:
+    """Commands work everything out: tests put other functions in the place of those that answer."""
+    with pytest.MonkeyPatch.context() as changed:
+        changed.setenv(kept_answers.ANEW, "1")
         yield
 
 
