@@ -189,6 +189,8 @@ sy_node_t sy_where_dead(sy_diagrams_t *d);
 sy_node_t sy_before(sy_diagrams_t *d, sy_node_t n, sy_node_t within);
 /* The markings to which a transition leads from a set. */
 sy_node_t sy_after(sy_diagrams_t *d, sy_node_t n);
+/* The markings from which a path stays in a set of reachable ones for ever, or until it ends (symbolic_always.c). */
+sy_node_t sy_always(sy_diagrams_t *d, sy_node_t p);
 /* The reachable markings in which none of some transitions is enabled (symbolic_enabled.c). */
 sy_node_t sy_where_none(sy_diagrams_t *d, const uint32_t *transition, uint32_t count);
 

@@ -163,26 +163,11 @@ static sy_node_t exists_until(sy_diagrams_t *d, sy_node_t p, sy_node_t q)
     return sy_saturated(d, &d->backwards, q, p);
 }
 
-static sy_node_t exists_always(sy_diagrams_t *d, sy_node_t p)
-{
-    if (p == d->space) {
-        return p; /* wherever a path goes */
-    }
-    const sy_node_t ends = sy_intersection(d, sy_where_dead(d), p);
-    for (;;) {
-        const sy_node_t kept = sy_union(d, ends, sy_before(d, p, p));
-        if (kept == p) {
-            return p;
-        }
-        p = kept;
-    }
-}
-
 static sy_node_t always_until(sy_diagrams_t *d, sy_node_t p, sy_node_t q)
 {
     const sy_node_t not_q = other(d, q);
     const sy_node_t neither = sy_difference(d, not_q, p);
-    return other(d, sy_union(d, exists_until(d, not_q, neither), exists_always(d, not_q)));
+    return other(d, sy_union(d, exists_until(d, not_q, neither), sy_always(d, not_q)));
 }
 
 static sy_node_t where_temporal(sy_diagrams_t *d, const tb_formula_t *f)
@@ -192,8 +177,8 @@ static sy_node_t where_temporal(sy_diagrams_t *d, const tb_formula_t *f)
     case TB_EX: return sy_before(d, p, d->space);
     case TB_AX: return other(d, sy_before(d, other(d, p), d->space));
     case TB_EF: return exists_until(d, d->space, p);
-    case TB_AF: return other(d, exists_always(d, other(d, p)));
-    case TB_EG: return exists_always(d, p);
+    case TB_AF: return other(d, sy_always(d, other(d, p)));
+    case TB_EG: return sy_always(d, p);
     case TB_AG: return other(d, exists_until(d, d->space, other(d, p)));
     case TB_EU: return exists_until(d, p, sy_where(d, f->part[1]));
     case TB_AU: return always_until(d, p, sy_where(d, f->part[1]));
