@@ -7,6 +7,7 @@ import { Path, frames, valueAt } from "./kinematics.js";
 import { Gaps } from "./gaps.js";
 import { CellScene, place } from "./scene3d.js";
 import { Thrift, drawsInSoftware } from "./thrift.js";
+import { Zones } from "./zones.js";
 
 const THREE = /** @type {any} */ (globalThis).THREE;
 
@@ -38,6 +39,13 @@ export class CellView {
     this.pane = pane;
     this.t = 0;
     this.ratio = 1;
+    /** The view that was chosen last, and the robot on whose tool the camera rides; -1: none. */
+    this.chosen = -1;
+    this.mounted = -1;
+    /** @type {(() => void) | null} */
+    this.onTurn = null;
+    /** Whether it is just being turned by another view. */
+    this.isLed = false;
     this.buttons = el("div", { class: "views", role: "group", "aria-label": "Views" });
     this.pathsButton = el("button", {
       class: "toggle", "aria-pressed": "true", text: "Paths", title: "Paths of the TCPs, coloured by conditioning (P)",
@@ -91,7 +99,7 @@ export class CellView {
     this.controls = new THREE.OrbitControls(this.camera, canvas);
     this.controls.enableDamping = false;
     this.controls.screenSpacePanning = true;
-    this.controls.addEventListener("change", () => this.request());
+    this.controls.addEventListener("change", () => this.turned());
     canvas.addEventListener("pointerdown", (/** @type {PointerEvent} */ e) => {
       this.mounted = -1;
       this.pressed = [e.clientX, e.clientY];
@@ -101,9 +109,9 @@ export class CellView {
     this.hasPaths = true;
     this.thrift = new Thrift();
     if (this.isSparing) this.hasShadows = false;
-    this.mounted = -1;
     this.makePaths();
     this.gaps = new Gaps(this.cell, this.run.cell);
+    this.zones = new Zones(this.cell.scene, this.run.cell.zones ?? []);
     this.makeViews();
     this.theme();
     new ResizeObserver(() => this.resize()).observe(this.host);
@@ -124,7 +132,7 @@ export class CellView {
     this.renderer.setSize(w, h);
     this.camera.aspect = w / h;
     this.camera.updateProjectionMatrix();
-    if (this.chosen !== undefined) this.view(this.chosen);
+    if (this.chosen >= 0) this.view(this.chosen);
     this.request();
   }
 
@@ -198,13 +206,39 @@ export class CellView {
     this.mounted = chosen[2];
     chosen[1]();
     if (this.mounted >= 0) this.mount();
+    this.onTurn?.();
     [...this.buttons.children].forEach((b, i) => b.setAttribute("aria-pressed", String(i === number)));
+    this.request();
+  }
+
+  /** Somebody has turned the view: another one of the same cell may follow. */
+  turned() {
+    this.request();
+    if (!this.isLed) this.onTurn?.();
+  }
+
+  /**
+   * The view of another one.
+   * @param {CellView} other
+   */
+  lookLike(other) {
+    if (!this.renderer || !other.renderer) return;
+    this.isLed = true;
+    this.mounted = other.mounted;
+    this.chosen = other.chosen;
+    this.camera.position.copy(other.camera.position);
+    this.controls.target.copy(other.controls.target);
+    this.controls.update();
+    this.isLed = false;
+    if (this.mounted >= 0) this.mount();
+    const { children } = other.buttons;
+    [...this.buttons.children].forEach((b, i) => b.setAttribute("aria-pressed", children[i]?.getAttribute("aria-pressed") ?? "false"));
     this.request();
   }
 
   /** The camera rides on a robot's tool, and looks along it. */
   mount() {
-    const at = this.mounted ?? -1;
+    const at = this.mounted;
     const tcp = this.frames?.[at]?.[this.run.cell.robots[at].tcp];
     if (!tcp) return;
     const z = new THREE.Vector3(tcp[2], tcp[6], tcp[10]);
@@ -396,7 +430,8 @@ export class CellView {
     });
     this.moveParts(t);
     if (this.cell) this.cell.marks.count = this.run.cell.marks.filter((/** @type {any} */ m) => m.t <= t + 1e-9).length;
-    if ((this.mounted ?? -1) >= 0) this.mount();
+    if (this.mounted >= 0) this.mount();
+    for (const text of this.zones?.update(t) ?? []) if (isWhole) this.legend.append(el("span", { class: "arm near", text }));
     const near = this.gaps?.update(t) ?? [];
     if (near.length && isWhole) {
       const [{ pair, distance }] = near;

@@ -53,7 +53,7 @@ function unpack(value, waiting) {
 
 /**
  * All data of the page.
- * @returns {Promise<{runs: any[], difference: any, generator: string, missing: string}>}
+ * @returns {Promise<{runs: any[], differences: any, names: string[], generator: string, missing: string}>}
  */
 export async function load() {
   const data = JSON.parse(document.getElementById("data")?.textContent ?? "null");

@@ -23,7 +23,9 @@ export class EnabledList {
     this.actions = actions;
     this.transition = -1;
     this.what = el("p", { class: "note", "aria-live": "polite" });
-    this.rows = el("ul", { class: "plain", "aria-label": "Enabled transitions" });
+    /** The last row: how many there are beyond those that are listed. */
+    this.more = el("li", { class: "note", hidden: true });
+    this.rows = el("ul", { class: "plain offers", "aria-label": "Enabled transitions" }, this.more);
     this.chosen = el("section", { class: "chosen", hidden: true, "aria-label": "Bindings" });
     host.append(this.chosen, this.what, this.rows);
     this.asked = 0;
@@ -45,10 +47,25 @@ export class EnabledList {
     const now = `${shown} ${enabled.length}`;
     if (now !== this.shown) {
       this.shown = now;
-      this.rows.replaceChildren(...shown.map((t) => this.row(net, t)));
-      if (enabled.length > MOST) this.rows.append(el("li", { class: "note", text: `and ${enabled.length - MOST} more` }));
+      this.order(shown.map((t) => this.row(net, t)));
+      this.more.hidden = enabled.length <= MOST;
+      this.more.textContent = `and ${enabled.length - MOST} more`;
     }
     if (this.transition >= 0) this.list(this.transition); // an answer to which no state belongs
+  }
+
+  /**
+   * Only rows that come or go are touched: each other one would be laid out again.
+   * @param {any[]} wanted
+   */
+  order(wanted) {
+    const kept = new Set(wanted);
+    for (const row of [...this.rows.children]) if (row !== this.more && !kept.has(row)) row.remove();
+    let at = this.rows.firstChild;
+    for (const row of wanted) {
+      if (row === at) at = at.nextSibling;
+      else this.rows.insertBefore(row, at);
+    }
   }
 
   /**

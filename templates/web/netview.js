@@ -2,12 +2,11 @@
 /** The pages of the net as their author drew them, with the tokens of the moment and what occurs. */
 
 import { el, isStill, shorten, svg } from "./dom.js";
+import { Flights } from "./flights.js";
+import { bubble, callout } from "./tokens.js";
+import { Window } from "./window.js";
 
 const LIT_S = 0.4;
-const FLIGHT_MS = 420;
-const MOST_FLIGHTS = 24;
-const BINDING_LINES = 5;
-const BINDING_WIDTH = 46;
 /** A page is left when following only after it has been there so long (ms). */
 const STAY_MS = 700;
 /** Where texts of a whole page would be smaller (CSS pixels), what occurs is shown with its surroundings, this large. */
@@ -15,7 +14,7 @@ const LEAST_TEXT = 5;
 const NEAR_TEXT = 9;
 
 /** @typedef {import("./course.js").Course} Course */
-/** @typedef {{root: any, elements: Map<string, any[]>, view: number[]}} Drawn */
+/** @typedef {{root: any, elements: Map<string, any[]>, view: number[], boxes: Map<string, DOMRect>, enabled: Set<string>}} Drawn */
 
 export class NetView {
   /**
@@ -31,17 +30,17 @@ export class NetView {
     this.shownAt = 0;
     this.current = -1;
     this.lastStep = -1;
-    /** Whether somebody has chosen which part of the page is seen. */
-    this.isChosen = false;
     /** What is lit. */
     this.lit = "";
     /** @type {Map<number, Drawn>} */
     this.drawn = new Map();
-    /** @type {Map<number, {version: number, node: any}>} */
+    /** @type {Map<string, {version: number, node: any, box: import("./tokens.js").Box | null}>} by the places of the page */
     this.tokenNodes = new Map();
-    this.flights = new Set();
-    /** @type {Map<number, PointerEvent>} */
-    this.fingers = new Map();
+    this.sheet = svg("svg", { class: "sheet", role: "img", "aria-label": "A page of the net" });
+    this.flights = new Flights(this.sheet);
+    this.window = new Window(this.sheet, {
+      whole: () => this.shown().view, onLong: (target) => this.long(target), onMove: () => this.flights.clear(),
+    });
     this.selectedPlace = -1;
     this.selectedTransition = -1;
     this.index();
@@ -92,12 +91,23 @@ export class NetView {
     this.up = el("button", { text: "Up", title: "To the page above", onclick: () => this.goUp() });
     const fit = el("button", { text: "Fit", title: "The whole page", onclick: () => this.whole() });
     this.status = el("p", { class: "status" });
-    this.sheet = svg("svg", { class: "sheet", role: "img", "aria-label": "A page of the net" });
-    this.sheet.addEventListener("wheel", (/** @type {WheelEvent} */ e) => this.wheel(e), { passive: false });
-    this.sheet.addEventListener("pointerdown", (/** @type {PointerEvent} */ e) => this.press(e));
-    pane.append(el("header", {}, el("h2", { text: "Net" }), this.choice, this.up, this.follow, fit), this.sheet, this.status);
-    new ResizeObserver(() => this.refit()).observe(this.sheet);
+    pane.append(el("header", {}, el("h2", { text: "Net" }), this.choice, this.up, this.follow, fit),
+      el("div", { class: "drawing" }, this.sheet, this.flights.layer), this.status);
+    new ResizeObserver(() => this.flights.clear()).observe(this.sheet);
     this.show(this.firstInstance());
+  }
+
+  /** The drawing of the page that is shown. */
+  shown() {
+    return this.draw(this.net.instances[this.current].page);
+  }
+
+  /**
+   * A finger has rested on an element of the page.
+   * @param {any} target
+   */
+  long(target) {
+    target.closest?.("[data-id]")?.dispatchEvent(new MouseEvent("contextmenu", { cancelable: true }));
   }
 
   firstInstance() {
@@ -109,7 +119,7 @@ export class NetView {
     this.isFollowing = on;
     this.follow.setAttribute("aria-pressed", String(on));
     if (!on) return;
-    this.isChosen = false;
+    this.window.isChosen = false;
     this.followStep(this.lastStep, true);
     this.near(this.lastStep);
   }
@@ -150,7 +160,7 @@ export class NetView {
       if (!elements.has(id)) elements.set(id, []);
       elements.get(id).push(node);
     }
-    const made = { root, elements, view: box };
+    const made = { root, elements, view: box, boxes: new Map(), enabled: new Set() };
     this.drawn.set(page, made);
     return made;
   }
@@ -164,15 +174,14 @@ export class NetView {
     const page = this.net.instances[instance].page;
     const made = this.draw(page);
     this.over = svg("g", { class: "tokens", "font-family": this.net.style.family, "font-size": this.net.style.size });
-    this.under = svg("g", { class: "flights" });
-    this.sheet.replaceChildren(made.root, this.under, this.over);
+    this.sheet.replaceChildren(made.root, this.over);
     this.sheet.setAttribute("aria-label", `Page ${this.net.pages[page].name}`);
     this.tokenNodes.clear();
     this.flights.clear();
     this.up.disabled = !this.net.instances[instance].path.includes("/");
     this.prepare(made);
     this.tokens();
-    this.isChosen = false;
+    this.window.isChosen = false;
     this.fit();
     this.lit = "";
     this.light(this.lastStep, this.lastTime ?? 0);
@@ -195,7 +204,7 @@ export class NetView {
       node.setAttribute("role", "button");
       node.classList.add("active");
       node.onclick = () => {
-        if (this.moved) return;
+        if (this.window.moved) return;
         if (t !== undefined) this.actions.onTransition(t);
         else if (p !== undefined) this.actions.onPlace(p);
         else this.enter(id, below);
@@ -222,22 +231,23 @@ export class NetView {
 
   /** The whole page with its tokens; a window that has shown more of it stays as large. */
   fit() {
-    const made = this.draw(this.net.instances[this.current].page);
-    const over = this.over.getBBox();
-    const [x, y, w, h] = made.view;
-    const [left, top] = over.width ? [Math.min(x, over.x - 6), Math.min(y, over.y - 6)] : [x, y];
-    const right = Math.max(x + w, over.x + over.width + 6);
-    const bottom = Math.max(y + h, over.y + over.height + 6);
+    const made = this.shown();
+    let [left, top, right, bottom] = [made.view[0], made.view[1], made.view[0] + made.view[2], made.view[1] + made.view[3]];
+    for (const { box } of this.tokenNodes.values()) {
+      if (!box) continue;
+      left = Math.min(left, box.left - 6);
+      top = Math.min(top, box.top - 6);
+      right = Math.max(right, box.right + 6);
+      bottom = Math.max(bottom, box.bottom + 6);
+    }
     made.view = [left, top, right - left, bottom - top];
-    this.view = made.view;
-    this.isFitted = true;
-    this.zoomed();
+    this.window.set(made.view, true);
   }
 
   /** The whole page, because somebody wants to see it: it stays whole until another one is shown. */
   whole() {
     this.fit();
-    this.isChosen = true;
+    this.window.isChosen = true;
   }
 
   /**
@@ -245,14 +255,14 @@ export class NetView {
    * @param {number} k
    */
   near(k) {
-    if (!this.isFollowing || this.isChosen || k < 1) return;
+    if (!this.isFollowing || this.window.isChosen || k < 1) return;
     const occurred = this.course.occurred(k);
     if (occurred.instance !== this.current) return;
-    const { view: full, elements } = this.draw(this.net.instances[this.current].page);
+    const { view: full } = this.shown();
     const [w, h] = [this.sheet.clientWidth, this.sheet.clientHeight];
     const { size } = this.net.style;
     if (!w || !h || size * Math.min(w / full[2], h / full[3]) >= LEAST_TEXT) return;
-    const box = elements.get(occurred.id)?.[0].getBBox();
+    const box = this.boxOf(occurred.id, "");
     if (!box) return;
     const shown = [(w * size) / NEAR_TEXT, (h * size) / NEAR_TEXT];
     const from = [0, 1].map((i) => {
@@ -260,93 +270,23 @@ export class NetView {
       const most = full[i] + full[i + 2] - shown[i];
       return most < full[i] ? (full[i] + most) / 2 : Math.min(Math.max(middle - shown[i] / 2, full[i]), most);
     });
-    this.view = [...from, ...shown];
-    this.isFitted = false;
-    this.zoomed();
-  }
-
-  refit() {
-    if (this.isFitted) this.zoomed();
-  }
-
-  zoomed() {
-    const box = this.view?.map((/** @type {number} */ v) => v.toFixed(2)).join(" ");
-    if (this.sheet.getAttribute("viewBox") !== box) this.sheet.setAttribute("viewBox", box);
-  }
-
-  /** @param {WheelEvent} e */
-  wheel(e) {
-    e.preventDefault();
-    const at = this.point(e);
-    this.zoom(Math.exp(e.deltaY * 0.0015), at);
+    this.window.set([...from, ...shown], false);
   }
 
   /**
-   * @param {number} by
-   * @param {DOMPoint} at stays where it is
+   * Where an element of the page is; the browser is asked once, since that takes it long.
+   * @param {string} id
+   * @param {string} part of it, as a selector; "": all of it
+   * @returns {DOMRect | null}
    */
-  zoom(by, at) {
-    const [x, y, w, h] = /** @type {number[]} */ (this.view);
-    const full = this.draw(this.net.instances[this.current].page).view;
-    const scale = Math.min(Math.max(by, 40 / w), (full[2] * 4) / w);
-    this.view = [at.x - (at.x - x) * scale, at.y - (at.y - y) * scale, w * scale, h * scale];
-    this.isFitted = false;
-    this.isChosen = true;
-    this.zoomed();
-  }
-
-  /**
-   * @param {{clientX: number, clientY: number}} e
-   * @returns {DOMPoint}
-   */
-  point(e) {
-    return new DOMPoint(e.clientX, e.clientY).matrixTransform(this.sheet.getScreenCTM().inverse());
-  }
-
-  /** @param {PointerEvent} e */
-  press(e) {
-    this.fingers.set(e.pointerId, e);
-    const start = this.point(e);
-    this.moved = false;
-    const move = (/** @type {PointerEvent} */ to) => {
-      if (!this.fingers.has(to.pointerId)) return;
-      if (this.fingers.size > 1) {
-        if (to.pointerId === e.pointerId) this.pinch(to);
-        return;
-      }
-      const at = this.point(to);
-      if (Math.hypot(to.clientX - e.clientX, to.clientY - e.clientY) > 4) this.moved = true;
-      if (!this.moved || !this.view) return;
-      this.view = [this.view[0] + start.x - at.x, this.view[1] + start.y - at.y, this.view[2], this.view[3]];
-      this.isFitted = false;
-      this.isChosen = true;
-      this.zoomed();
-    };
-    const end = (/** @type {PointerEvent} */ up) => {
-      if (up.pointerId !== e.pointerId) return;
-      this.fingers.delete(e.pointerId);
-      removeEventListener("pointermove", move);
-      removeEventListener("pointerup", end);
-      removeEventListener("pointercancel", end);
-    };
-    addEventListener("pointermove", move);
-    addEventListener("pointerup", end);
-    addEventListener("pointercancel", end);
-  }
-
-  /**
-   * Two fingers: what is between them grows as their distance does.
-   * @param {PointerEvent} to
-   */
-  pinch(to) {
-    const other = [...this.fingers].find(([id]) => id !== to.pointerId)?.[1];
-    const before = this.fingers.get(to.pointerId);
-    this.fingers.set(to.pointerId, to);
-    this.moved = true;
-    if (!other || !before) return;
-    const gap = (/** @type {PointerEvent} */ e) => Math.max(Math.hypot(e.clientX - other.clientX, e.clientY - other.clientY), 10);
-    const middle = this.point({ clientX: (to.clientX + other.clientX) / 2, clientY: (to.clientY + other.clientY) / 2 });
-    this.zoom(gap(before) / gap(to), middle);
+  boxOf(id, part) {
+    const { boxes, elements } = this.shown();
+    const known = boxes.get(id + part);
+    if (known) return known;
+    const node = elements.get(id)?.[0];
+    const box = (part ? node?.querySelector(part) : node)?.getBBox() ?? null;
+    if (box?.width) boxes.set(id + part, box);
+    return box;
   }
 
   /**
@@ -367,7 +307,10 @@ export class NetView {
     this.light(k, t);
     if (isNew) this.near(k);
     if (isNew && came > 0 && came < 40 && !how.isSparing && !isStill()) {
-      for (let i = Math.max(k - came, k - 4) + 1; i <= k; i++) this.fly(i);
+      for (let i = Math.max(k - came, k - 4) + 1; i <= k; i++) {
+        const occurred = this.course.occurred(i);
+        if (occurred.instance === this.current) this.flights.fly(occurred, this.shown().elements);
+      }
     }
   }
 
@@ -383,66 +326,19 @@ export class NetView {
   /** Draws the tokens of the places whose marking has changed. */
   tokens() {
     const page = this.net.instances[this.current].page;
+    const style = this.net.style;
     for (const { place, id } of this.places?.[this.current] ?? []) {
-      const key = this.tokenNodes.get(place * 4096 + this.indexOf(id));
+      const known = this.tokenNodes.get(id);
       const version = this.course.version[place];
-      if (key && key.version === version) continue;
+      if (known && known.version === version) continue;
       const at = /** @type {number[]|undefined} */ (this.pageTokens[page].get(id));
       if (!at) continue;
-      const node = this.bubble(place, at, this.pageHidden[page].has(id));
-      if (key) key.node.replaceWith(node);
+      const held = { n: this.course.count(place), text: this.course.text(place), name: this.net.places[place].name };
+      const { node, box } = bubble(held, at, this.pageHidden[page].has(id), style);
+      if (known) known.node.replaceWith(node);
       else this.over.append(node);
-      this.tokenNodes.set(place * 4096 + this.indexOf(id), { version, node });
+      this.tokenNodes.set(id, { version, node, box });
     }
-  }
-
-  /** @param {string} id */
-  indexOf(id) {
-    return (this.places?.[this.current] ?? []).findIndex((p) => p.id === id);
-  }
-
-  /**
-   * The bubble with the number of tokens, and the marking beside it.
-   * @param {number} place
-   * @param {number[]} at
-   * @param {boolean} hidden
-   */
-  bubble(place, at, hidden) {
-    const style = this.net.style;
-    const n = this.course.count(place);
-    const group = svg("g", { class: "tokens" });
-    if (!n) return group;
-    const text = this.course.text(place);
-    const number = String(n);
-    const r = Math.max(style.bubble, number.length * 3.7 + 2);
-    const [x, y] = [at[0] + r, at[1]];
-    group.append(svg("title", { text: `${this.net.places[place].name}\n${shorten(text, 2000)}` }));
-    if (!hidden) {
-      let lines = text.split("\n").map((line) => shorten(line, style.width));
-      if (lines.length > style.lines) {
-        lines = [...lines.slice(0, style.lines - 1), `… ${lines.length - style.lines + 1} more`];
-      }
-      const w = Math.max(...lines.map((line) => textWidth(line, style)));
-      const h = lines.length * style.line;
-      const left = x + r + at[2];
-      const middle = y + at[3];
-      group.append(svg("rect", {
-        x: left, y: middle - h / 2 - 1, width: w + 6, height: h + 2, fill: style.tokenFill, "fill-opacity": 0.85,
-        stroke: style.tokenLine, "stroke-width": 0.75,
-      }));
-      const block = svg("text", { fill: "#000", "xml:space": "preserve" });
-      lines.forEach((line, i) => {
-        block.append(svg("tspan", {
-          x: left + 3, y: middle - h / 2 + style.line * (i + 0.5) + style.size * 0.35, text: line,
-        }));
-      });
-      group.append(block);
-    }
-    group.append(
-      svg("circle", { cx: x, cy: y, r, fill: style.tokenFill, stroke: style.tokenLine }),
-      svg("text", { x, y: y + style.size * 0.35, "text-anchor": "middle", fill: "#000", text: number }),
-    );
-    return group;
   }
 
   /**
@@ -451,7 +347,7 @@ export class NetView {
    * @param {number} t
    */
   light(k, t) {
-    const { elements, root } = this.draw(this.net.instances[this.current].page);
+    const { elements, root } = this.shown();
     const since = t - LIT_S * (this.speed ?? 1);
     let first = k;
     while (first > 1 && first > k - 29 && this.course.time[first - 2] >= since) first--;
@@ -493,41 +389,19 @@ export class NetView {
    * @param {string[]} said
    */
   drawCallout(occurred, said) {
-    const node = this.draw(this.net.instances[this.current].page).elements.get(occurred.id)?.[0];
-    const shape = node?.querySelector("rect, ellipse");
-    if (!shape) return;
-    const style = this.net.style;
-    const box = shape.getBBox();
-    let lines = said.map((line) => shorten(line, BINDING_WIDTH));
-    if (lines.length > BINDING_LINES) lines = [...lines.slice(0, BINDING_LINES - 1), `… ${lines.length - BINDING_LINES + 1} more`];
-    const w = Math.max(...lines.map((line) => textWidth(line, style))) + 10;
-    const h = lines.length * style.line + 6;
-    const full = this.draw(this.net.instances[this.current].page).view;
-    const x = Math.min(Math.max(box.x + box.width / 2 - w / 2, full[0] + 2), full[0] + full[2] - w - 2);
-    const isAbove = box.y + box.height + h + 8 > full[1] + full[3];
-    const y = isAbove ? box.y - h - 7 : box.y + box.height + 7;
-    const text = svg("text", {});
-    lines.forEach((line, i) => {
-      text.append(svg("tspan", { x: x + 5, y: y + 3 + style.line * (i + 0.5) + style.size * 0.35, text: line }));
-    });
-    this.callout = svg("g", { class: "callout" }, svg("rect", { x, y, width: w, height: h, rx: 4 }), text);
+    const box = this.boxOf(occurred.id, "rect, ellipse");
+    if (!box) return;
+    this.callout = callout(said, box, this.shown().view, this.net.style);
     this.over.append(this.callout);
   }
 
   /**
-   * Sends dots along the arcs of a step: from the places that it took from, then to those that it put to.
-   * @param {number} k
+   * Marks the places of the page of which something holds: that they are not as in the other run.
+   * @param {(place: number) => boolean} holds
    */
-  fly(k) {
-    const occurred = this.course.occurred(k);
-    if (occurred.instance !== this.current) return;
-    const { elements } = this.draw(this.net.instances[this.current].page);
-    for (const arc of occurred.arcs) {
-      if (this.flights.size > MOST_FLIGHTS || arc.kind === "inhibitor" || arc.kind === "reset") continue;
-      const path = elements.get(arc.id)?.map((n) => n.querySelector("path")).find((p) => p);
-      if (!path) continue;
-      this.flights.add(new Flight(this.under, path, arc.kind, (flight) => this.flights.delete(flight)));
-    }
+  differ(holds) {
+    const { elements } = this.shown();
+    for (const { place, id } of this.places?.[this.current] ?? []) elements.get(id)?.[0].classList.toggle("differs", holds(place));
   }
 
   /**
@@ -538,7 +412,7 @@ export class NetView {
   mark(transition = this.selectedTransition, place = this.selectedPlace) {
     this.selectedTransition = transition;
     this.selectedPlace = place;
-    const { elements, root } = this.draw(this.net.instances[this.current].page);
+    const { elements, root } = this.shown();
     for (const node of root.querySelectorAll(".selected")) node.classList.remove("selected");
     const t = this.net.transitions[transition];
     if (t && t.instance === this.current) elements.get(t.id)?.[0].classList.add("selected");
@@ -546,57 +420,4 @@ export class NetView {
       if (p === place) elements.get(id)?.[0].classList.add("selected");
     }
   }
-}
-
-class Flight {
-  /**
-   * @param {any} layer
-   * @param {SVGPathElement} path from the transition to the place
-   * @param {string} kind of the arc
-   * @param {(flight: Flight) => void} done
-   */
-  constructor(layer, path, kind, done) {
-    this.path = path;
-    this.length = path.getTotalLength();
-    this.isIn = kind === "in" || kind === "both";
-    this.dot = svg("circle", { r: 5, class: "flight" });
-    this.start = 0;
-    this.done = done;
-    layer.append(this.dot);
-    this.frame = this.frame.bind(this);
-    requestAnimationFrame(this.frame);
-  }
-
-  /** @param {number} now */
-  frame(now) {
-    this.start = this.start || now;
-    // Tokens are taken in the first half, and put in the second.
-    const x = (now - this.start) / FLIGHT_MS - (this.isIn ? 0 : 0.5);
-    if (x > 0.6 || !this.dot.isConnected) {
-      this.dot.remove();
-      this.done(this);
-      return;
-    }
-    const share = Math.min(Math.max(x / 0.55, 0), 1);
-    const at = this.path.getPointAtLength(this.length * (this.isIn ? 1 - share : share));
-    this.dot.setAttribute("cx", String(at.x));
-    this.dot.setAttribute("cy", String(at.y));
-    this.dot.setAttribute("opacity", x < 0 ? "0" : "1");
-    requestAnimationFrame(this.frame);
-  }
-}
-
-/** @type {CanvasRenderingContext2D | null} */
-let ruler = null;
-
-/**
- * How wide a text is, in the units of the drawing.
- * @param {string} text
- * @param {any} style
- */
-function textWidth(text, style) {
-  ruler = ruler ?? document.createElement("canvas").getContext("2d");
-  if (!ruler) return text.length * 7;
-  ruler.font = `${style.size}px ${style.family}`;
-  return ruler.measureText(text).width;
 }

@@ -42,6 +42,7 @@ class Page {
     this.position = new Position(data.net);
     this.breakpoints = new Set();
     this.transition = -1;
+    this.judged = "";
     byId("title").textContent = data.title;
     this.frame = new Frame({ help, onTheme: () => this.plots?.draw(), onPane: () => {} });
     const actions = {
@@ -119,6 +120,7 @@ class Page {
    */
   state(state, isWhole) {
     this.position.apply(state);
+    if (this.transition !== this.net.selectedTransition) this.net.mark(this.transition, -1); // with the picture of the step
     if (isWhole) this.net.lastStep = -1;
     this.net.update(state.position, 0, { isPlaying: Boolean(this.bar?.isPlaying), speed: 1 });
     this.enabled?.update();
@@ -132,7 +134,7 @@ class Page {
     for (const text of state.notices) this.say(text, "note");
     if (isWhole) this.found();
     if (state.error) this.verdict("bad", "error");
-    else if (state.enabled.length) this.verdict("", "");
+    else if (this.position.enabled.length) this.verdict("", "");
     else if (state.later !== null) this.verdict("open", `waits until ${state.later}`);
     else this.verdict("bad", "dead");
     document.body.dataset.ready = "true";
@@ -186,6 +188,8 @@ class Page {
    * @param {string} text
    */
   verdict(kind, text) {
+    if (`${kind} ${text}` === this.judged) return;
+    this.judged = `${kind} ${text}`;
     byId("verdict").replaceChildren(...(text ? [el("span", { class: `chip ${kind}`, text })] : []));
   }
 
@@ -194,9 +198,8 @@ class Page {
   /** @param {number} t */
   async fire(t) {
     this.transition = t;
-    this.net.mark(t, -1);
-    if (!this.link) return;
-    this.said(await this.link.ask("fire", { transition: t }));
+    if (!this.link) this.net.mark(t, -1);
+    else this.said(await this.link.ask("fire", { transition: t }));
   }
 
   /** @param {number} t */

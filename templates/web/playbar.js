@@ -62,7 +62,7 @@ export class PlayBar {
     this.undo.disabled = state.position <= state.forgotten;
     this.start.disabled = this.undo.disabled;
     this.redo.disabled = state.position >= state.length;
-    this.step.disabled = !state.enabled.length && state.later === null;
+    this.step.disabled = !this.position.enabled.length && state.later === null;
     this.slider.min = String(state.forgotten);
     this.slider.max = String(state.length);
     this.slider.value = String(state.position);

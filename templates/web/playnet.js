@@ -19,6 +19,8 @@ export class PlayNet extends NetView {
     this.breakpoints = breakpoints;
     this.onList = actions.onList;
     this.names = [...this.choice.options].map((o) => o.text);
+    /** The pages that are marked, since something on them is enabled. @type {Set<number>} */
+    this.marked = new Set();
     this.prepare(this.draw(this.net.instances[this.current].page));
     this.enable();
   }
@@ -31,6 +33,7 @@ export class PlayNet extends NetView {
       const p = this.placeOf?.[this.current].get(id);
       if (p !== undefined) nodes[0].setAttribute("aria-label", `place ${this.net.places[p].short}`);
       if (t === undefined) continue;
+      nodes[0].setAttribute("aria-label", this.called(t, made.enabled.has(id)));
       nodes[0].oncontextmenu = (/** @type {Event} */ e) => {
         e.preventDefault();
         this.onList(t);
@@ -69,35 +72,63 @@ export class PlayNet extends NetView {
    */
   update(k, t, how) {
     super.update(k, t, how);
-    if (this.isFitted) this.fit(); // a marking may have grown beyond the edge
+    if (this.window.isFitted) this.fit(); // a marking may have grown beyond the edge
   }
 
-  /** Marks what is enabled on this page, and the pages on which anything is. */
+  /** Marks what is enabled on this page, and the pages on which anything is; what stays as it is is not touched. */
   enable() {
-    const { elements, root } = this.draw(this.net.instances[this.current].page);
-    for (const node of root.querySelectorAll(".enabled")) node.classList.remove("enabled");
-    for (const node of root.querySelectorAll(".breakpoint")) node.remove();
+    const { enabled, net } = this.position;
+    const made = this.shown();
     const here = new Set();
-    for (const index of this.position.enabled) {
-      const t = this.net.transitions[index];
-      here.add(t.instance);
-      if (t.instance === this.current) elements.get(t.id)?.[0].classList.add("enabled");
+    const stopping = new Set();
+    const pages = new Set();
+    for (const index of enabled) {
+      const t = net.transitions[index];
+      pages.add(t.instance);
+      if (t.instance === this.current) here.add(t.id);
     }
-    for (const [id, index] of this.transitionOf?.[this.current] ?? []) {
-      const node = elements.get(id)?.[0];
-      const isEnabled = node?.classList.contains("enabled");
-      node?.setAttribute("aria-label", `transition ${this.net.transitions[index].short}, ${isEnabled ? "enabled" : "not enabled"}`);
-      if (node && this.breakpoints.has(index)) this.mark_(node);
+    for (const index of this.breakpoints) {
+      const t = net.transitions[index];
+      if (t.instance === this.current) stopping.add(t.id);
     }
+    for (const id of new Set([...made.enabled, ...here])) {
+      if (made.enabled.has(id) !== here.has(id)) this.turn(made.elements.get(id)?.[0], here.has(id));
+    }
+    made.enabled = here;
+    for (const node of made.root.querySelectorAll(".breakpoint")) if (!stopping.delete(node.parentNode.getAttribute("data-id"))) node.remove();
+    for (const id of stopping) this.mark_(id, made.elements.get(id)?.[0]);
     this.names.forEach((name, i) => {
-      const text = here.has(i) ? `${name} ●` : name;
-      if (this.choice.options[i].text !== text) this.choice.options[i].text = text;
+      if (pages.has(i) === this.marked.has(i)) return;
+      this.choice.options[i].text = pages.has(i) ? `${name} ●` : name;
     });
+    this.marked = pages;
   }
 
-  /** @param {any} node */
-  mark_(node) {
-    const box = node.querySelector("rect, ellipse")?.getBBox();
+  /**
+   * @param {any} node of a transition
+   * @param {boolean} isEnabled
+   */
+  turn(node, isEnabled) {
+    if (!node) return;
+    node.classList.toggle("enabled", isEnabled);
+    const t = this.transitionOf?.[this.current].get(node.getAttribute("data-id"));
+    if (t !== undefined) node.setAttribute("aria-label", this.called(t, isEnabled));
+  }
+
+  /**
+   * @param {number} t
+   * @param {boolean} isEnabled
+   */
+  called(t, isEnabled) {
+    return `transition ${this.net.transitions[t].short}, ${isEnabled ? "enabled" : "not enabled"}`;
+  }
+
+  /**
+   * @param {string} id
+   * @param {any} node
+   */
+  mark_(id, node) {
+    const box = this.boxOf(id, "rect, ellipse");
     if (box) node.append(svg("circle", { class: "breakpoint", cx: box.x, cy: box.y, r: 5 }));
   }
 

@@ -23,7 +23,7 @@ export class Position {
     this.markings = Array.from({ length: count }, () => "empty");
     /** How long a marking is of which only the beginning is here. @type {Map<number, number>} */
     this.lengths = new Map();
-    /** @type {number[]} */
+    /** The enabled transitions, in order; another array whenever they are others. @type {number[]} */
     this.enabled = [];
     /** The last entries by number. @type {Map<number, any>} */
     this.entries = new Map();
@@ -34,7 +34,7 @@ export class Position {
   /** @param {any} state what has changed */
   apply(state) {
     this.state = state;
-    this.enabled = state.enabled;
+    this.enabled = changed(this.enabled, state.enabled);
     for (const [index, [count, text, length]] of Object.entries(state.places)) {
       const p = Number(index);
       this.version[p]++;
@@ -102,4 +102,16 @@ export class Position {
       default: return `${entry.count.toLocaleString("en")} steps of the compiled simulator`;
     }
   }
+}
+
+/**
+ * @param {number[]} known
+ * @param {number[] | {more: number[], less: number[]}} told all of them, or what has changed
+ * @returns {number[]}
+ */
+function changed(known, told) {
+  if (Array.isArray(told)) return told;
+  if (!told.more.length && !told.less.length) return known;
+  const less = new Set(told.less);
+  return [...known.filter((t) => !less.has(t)), ...told.more].sort((a, b) => a - b);
 }

@@ -1,6 +1,7 @@
 // @ts-check
 /** The page of a run: builds the views, and lets them move together. */
 
+import { Beside } from "./beside.js";
 import { CellView } from "./cellview.js";
 import { Clock } from "./clock.js";
 import { Code } from "./code.js";
@@ -20,7 +21,7 @@ const PANES_MS = 200;
 const PICTURES = 3;
 
 export class ReplayPage {
-  /** @param {{runs: any[], difference: any, generator: string, missing: string}} data */
+  /** @param {{runs: any[], differences: any, names: string[], generator: string, missing: string}} data */
   constructor(data) {
     this.data = data;
     this.run = data.runs[0];
@@ -31,14 +32,14 @@ export class ReplayPage {
     document.body.dataset.kind = data.runs.length > 1 ? "compare" : this.run.cell ? "cell" : "net";
     this.head();
     this.frame = new Frame({
-      help, onTheme: () => (this.cell?.theme(), this.update()), onPane: () => this.update(),
+      help, onTheme: () => (this.cell?.theme(), this.beside?.cell?.theme(), this.update()), onPane: () => this.update(),
     });
     const actions = {
       onTransition: (/** @type {number} */ t) => this.selectTransition(t, true),
       onPlace: (/** @type {number} */ p) => this.selectPlace(p),
     };
     this.net = new NetView(byId("net"), this.course, actions);
-    if (data.runs.length > 1) this.other(data.runs[1], actions);
+    if (data.runs.length > 1) this.beside = new Beside(this, data.runs[1], data);
     else if (this.run.cell) this.cell = new CellView(byId("cell"), this.run, data.missing, { onArm: (r, t) => this.onArm(r, t) });
     this.timeline = new Timeline(byId("timeline"), this.run, this.clock, {
       onBar: (bar) => this.onBar(bar), onStep: (k) => this.clock.step(k),
@@ -106,7 +107,7 @@ export class ReplayPage {
    * @param {(name: string) => any} add
    */
   firstPanel(add) {
-    void add;
+    this.beside?.panels(add);
   }
 
   /** @param {string} name */
@@ -140,33 +141,6 @@ export class ReplayPage {
           class: e.kind, text: `${e.t.toFixed(2)} s  ${e.party} ${e.text}`, onclick: () => this.clock.seek(e.t),
         })))),
     );
-  }
-
-  /**
-   * A second run, beside the first.
-   * @param {any} run
-   * @param {{onTransition: (t: number) => void, onPlace: (p: number) => void}} actions
-   */
-  other(run, actions) {
-    this.second = new Course(run);
-    this.otherNet = new NetView(byId("cell"), this.second, { onTransition: () => {}, onPlace: () => {} });
-    const { difference } = this.data;
-    const banner = byId("difference");
-    banner.hidden = false;
-    if (!difference) {
-      banner.append("Both runs have the same steps.");
-      return;
-    }
-    banner.append(
-      el("b", { text: `First difference: step ${difference.step}. ` }), el("span", { text: difference.what[0], class: "what" }), " · ",
-      el("span", { text: difference.what[1], class: "what" }), " ",
-      el("button", { text: "Show it", onclick: () => this.toStep(difference.step) }));
-  }
-
-  /** @param {number} k */
-  toStep(k) {
-    this.clock.step(k);
-    this.otherNet?.update(Math.min(k, this.second?.steps ?? 0), this.clock.t, this.clock);
   }
 
   // --- moves ---------------------------------------------------------------------------------
@@ -268,7 +242,7 @@ export class ReplayPage {
       ",": () => clock.setSpeed(clock.speed / 1.25), ".": () => clock.setSpeed(clock.speed * 1.25),
       "[": () => this.toMark(-1), "]": () => this.toMark(1), "/": () => this.search.focus(), "?": help,
       f: () => this.net.setFollowing(!this.net.isFollowing), d: () => this.frame.dark(),
-      p: () => this.cell?.showPaths(!this.cell.hasPaths),
+      p: () => this.showPaths(!this.cell?.hasPaths),
       w: () => this.place >= 0 && (this.watch?.add(this.place), this.tab("Watch")),
       n: () => this.transition >= 0 && this.selectTransition(this.transition, true),
     };
@@ -281,6 +255,11 @@ export class ReplayPage {
     e.preventDefault();
   }
 
+  /** @param {boolean} on */
+  showPaths(on) {
+    for (const cell of [this.cell, this.beside?.cell]) cell?.showPaths(on);
+  }
+
   update() {
     const { clock } = this;
     const now = performance.now();
@@ -289,14 +268,12 @@ export class ReplayPage {
     this.since = (this.since ?? 0) + 1;
     const isWhole = !isSparing || (this.since > PICTURES && now > (this.drawnAt ?? 0) + PANES_MS);
     this.cell?.update(clock.t, { isGoing, isWhole });
+    if (!isWhole) this.beside?.update({ isGoing, isWhole });
     if (!isWhole) return;
     this.drawnAt = now;
     this.since = 0;
     this.net.update(clock.k, clock.t, { ...clock.pace(), isSparing });
-    if (this.second) {
-      const k = this.run.clock === "seconds" ? this.second.stepAt(clock.t) : Math.min(clock.k, this.second.steps);
-      this.otherNet?.update(k, clock.t, clock);
-    }
+    this.beside?.update({ isGoing, isWhole });
     this.timeline.update();
     this.transport.update();
     this.messages?.update();

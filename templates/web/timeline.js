@@ -16,8 +16,10 @@ const MOST_LANES = 14;
 
 /** Colour-blind safe (Okabe and Ito), one colour a kind, as in gantt.png. */
 export const KINDS = /** @type {Record<string, string>} */ ({
-  joint: "#0072B2", home: "#56B4E9", linear: "#009E73", tool: "#D55E00", measure: "#CC79A7", wait: "#9aa3ad",
+  joint: "#0072B2", home: "#56B4E9", linear: "#009E73", external: "#E69F00", tool: "#D55E00", measure: "#CC79A7", wait: "#9aa3ad",
 });
+/** On these dark letters can be read. */
+const LIGHT = new Set(["home", "external"]);
 const CURVES = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9"];
 
 /** @typedef {import("./clock.js").Clock} Clock */
@@ -47,6 +49,8 @@ export class Timeline {
     this.above.setAttribute("aria-hidden", "true");
     host.append(this.canvas, this.above);
     this.drawn = "";
+    /** @type {{t: number, text: string}[]} moments where another run begins to differ */
+    this.marks = [];
     this.from = 0;
     this.to = clock.end;
     this.lane = LOWEST_LANE;
@@ -311,7 +315,7 @@ export class Timeline {
     const drawn = [this.from, this.to, w, h, devicePixelRatio, this.lanes.length, document.documentElement.dataset.theme].join(" ");
     if (drawn !== this.drawn) {
       this.drawn = drawn;
-      this.ink = { text: colour("text"), faint: colour("faint"), line: colour("line"), accent: colour("accent"), bar: colour("bar") };
+      this.ink = { text: colour("text"), faint: colour("faint"), line: colour("line"), accent: colour("accent"), bar: colour("bar"), differs: colour("differs") };
       const c = cleared(this.canvas, w, h);
       this.axis(c, w, h);
       this.divide();
@@ -400,7 +404,7 @@ export class Timeline {
       c.globalAlpha = 1;
       const fits = Math.floor((Math.min(width, this.x(this.to) - x) - 6) / 6.2);
       if (fits > 2) {
-        c.fillStyle = bar.kind === "activity" ? (this.ink?.text ?? "") : "#fff";
+        c.fillStyle = bar.kind === "activity" ? (this.ink?.text ?? "") : LIGHT.has(bar.kind) ? "#15202b" : "#fff";
         c.fillText(shorten(bar.label, fits), Math.max(x, LEFT) + 4, y + LANE / 2);
       }
     }
@@ -536,6 +540,14 @@ export class Timeline {
       c.fill();
       if (event.kind === "fault") c.fillRect(x - 0.75, HEAD, 1.5, h);
     }
+    this.marks.forEach(({ t, text }, i) => {
+      if (t < this.from || t > this.to) return;
+      c.fillStyle = this.ink?.differs ?? "";
+      c.fillRect(this.x(t) - 1, HEAD - 8, 2, h);
+      c.textAlign = this.x(t) > this.width() - 80 ? "right" : "left";
+      c.fillText(text, this.x(t) + (c.textAlign === "left" ? 5 : -5), HEAD + 8 + i * LABEL);
+      c.textAlign = "left";
+    });
   }
 
   /**

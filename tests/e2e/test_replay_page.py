@@ -14,7 +14,7 @@ import pytest
 
 from helpers.browser import Page, launched, opened
 from helpers.legible import complaints
-from helpers.shown import PAIR, described
+from helpers.shown import PAIR, described, with_arm
 from pn2code.diagnostics import Diagnostics
 from pn2code.net.source import read
 from pn2code.replay import run as runs
@@ -483,11 +483,52 @@ def test_two_runs_beside_each_other(tmp_path: Path, chromium: Any) -> None:
     with opened(chromium) as browser:
         browser.open(file)
         banner = browser.page.locator("#difference")
-        assert "First difference: step" in banner.inner_text()
-        banner.get_by_role("button").click()
-        step = int(banner.inner_text().split("step ")[1].split(".")[0])
-        assert browser.ask("() => [replay.page.course.at, replay.page.second.at]") == [step, step]
+        button = banner.get_by_role("button", name="Net: step")
+        step = int(button.inner_text().split("step ")[1])
+        button.click()
+        assert browser.ask("() => [replay.page.course.at, replay.page.beside.course.at]") == [
+            step,
+            step,
+        ]
         assert browser.page.locator(".sheet").count() == 2
+        assert browser.page.locator("#net .differs").count() > 0
+        browser.ask("k => replay.step(k)", step - 1)
+        assert browser.page.locator(".differs").count() == 0
+        assert complaints(browser) == []
+        assert browser.errors == []
+
+
+def test_two_cells_move_in_step_whatever_their_tempo(tmp_path: Path, chromium: Any) -> None:
+    run = described(tmp_path, steps=12)
+    other = with_arm(
+        run, 2.0, lambda k: 0.1 * k + 0.2 * (k > 7), lambda k: "x" if k == 9 else f"{k}"
+    )
+    file = written(tmp_path, with_arm(run), other)
+    at = "() => { const { clock, beside } = replay.page; return [clock.t, clock.k, beside.pacing.t, beside.pacing.k]; }"
+    with opened(chromium, viewport={"width": 1400, "height": 950}) as browser:
+        browser.open(file)
+        assert browser.page.locator(".stage canvas").count() == 2
+        browser.ask("() => replay.seek(4.5)")
+        assert browser.ask(at) == [4.5, 4, 9.0, 4]
+        arms = "() => [replay.page.cell, replay.page.beside.cell].map((c) => c.frames[0][2].slice(3, 4)[0])"
+        assert len({round(x, 6) for x in browser.ask(arms)}) == 1
+        banner = browser.page.locator("#difference")
+        banner.get_by_role("button", name="Pose: arm").click()
+        assert browser.ask(at) == [8.0, 8, 16.0, 8]
+        assert "mm from A" in browser.page.locator("#cell-2 .apart").inner_text()
+        banner.get_by_role("button", name="Message: done").click()
+        assert browser.ask(at)[0] == 9.0
+        banner.get_by_role("button", name="Same time").click()
+        assert browser.ask(at) == [9.0, 9, 9.0, 4]
+        assert browser.ask("() => replay.page.clock.end") == 24.0
+        browser.ask("() => replay.page.cell.view(2)")
+        cameras = "() => [replay.page.cell, replay.page.beside.cell].map((c) => c.camera.position.toArray())"
+        one, two = browser.ask(cameras)
+        assert one == pytest.approx(two, abs=1e-9)
+        browser.page.get_by_role("tab", name="Time of B").click()
+        body = browser.page.locator(".time-of-b canvas").first.bounding_box()
+        assert body["width"] > 200 and body["height"] > 60
+        assert complaints(browser) == []
         assert browser.errors == []
 
 

@@ -46,7 +46,7 @@ class TestRun:
     def test_a_run_beside_itself_has_no_difference(self, run: Path, tmp_path: Path) -> None:
         file = tmp_path / "both.html"
         assert pn2code("show", run, "--compare", run, "-o", file) == 0
-        assert '"difference":null' in file.read_text(encoding="utf-8")
+        assert '"differences":{"step":null,"message":null,"pose":null}' in file.read_text()
 
     def test_its_trace_alone_is_shown_in_seconds(
         self, run: Path, root: Path, tmp_path: Path

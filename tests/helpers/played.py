@@ -229,7 +229,11 @@ class Talk:
         return dict(json.loads(self._texts.pop(0)))
 
     def _take(self, state: dict[str, Any]) -> None:
-        self.state = state
+        told, known = state["enabled"], set(self.state.get("enabled", ()))
+        if isinstance(told, dict):
+            assert not known & set(told["more"]) and known >= set(told["less"]), "only what changes"
+            told = sorted((known | set(told["more"])) - set(told["less"]))
+        self.state = {**state, "enabled": told}
         self.marking.update(state["places"])
 
     def text(self, text: str) -> None:

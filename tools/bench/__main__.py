@@ -138,6 +138,7 @@ def main() -> int:
     parser.add_argument(
         "--against", type=Path, metavar="CHECKOUT", help="only commands, beside those of a checkout"
     )
+    parser.add_argument("--play", action="store_true", help="only a click in the page of `play`")
     parser.add_argument("--replay", action="store_true", help="only the replay page in a browser")
     parser.add_argument(
         "--replay-of", type=Path, metavar="RUN", help="the same, of the folder of a run"
@@ -155,6 +156,10 @@ def main() -> int:
 
         runs = min(options.repeat, 6)
         return live.measure(options.live, options.pages, runs, options.speed, options.watchers)
+    if options.play:
+        from tools.play import __main__ as play  # needs Playwright
+
+        return play.measure()
     if options.replay or options.replay_of:
         from tools.bench import replay  # needs Playwright
 

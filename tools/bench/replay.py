@@ -162,17 +162,24 @@ def _smooth(browser: Any, file: Path) -> tuple[float, float, float]:
         return float(rate), float(gap), 1000 * (work() - before) / max(rate * _PLAYED_S, 1.0)
 
 
-def work() -> float:
-    """Processor time of all processes that this one has started, and of those that they have (s)."""
+def work(but: str = "") -> float:
+    """Processor time of all processes that this one has started, and of those that they have (s).
+
+    Args:
+        but: a program that does not count, by its file's name: the driver of the browser, which only measures.
+    """
     children: dict[int, list[int]] = {}
     seconds: dict[int, float] = {}
     for folder in Path("/proc").glob("[0-9]*"):
         try:
             words = (folder / "stat").read_text().rpartition(")")[2].split()
+            program = (folder / "cmdline").read_bytes().split(b"\0")[0].decode(errors="replace")
         except OSError:
             continue  # it has just ended
         children.setdefault(int(words[1]), []).append(int(folder.name))
-        seconds[int(folder.name)] = (int(words[11]) + int(words[12])) / os.sysconf("SC_CLK_TCK")
+        if not but or Path(program).name != but:
+            took = int(words[11]) + int(words[12])
+            seconds[int(folder.name)] = took / os.sysconf("SC_CLK_TCK")
     left, total = list(children.get(os.getpid(), ())), 0.0
     while left:
         one = left.pop()

@@ -80,6 +80,7 @@ def show(
     The page needs no server and no network.
     """
     from pn2code.replay.description import text_of
+    from pn2code.replay.differences import differences, sentences
     from pn2code.replay.page import page
 
     for path in (output, *([description] if description else [])):
@@ -88,7 +89,8 @@ def show(
     values = parse_values(settings)
     shown = _described(run, net, values, steps, files, form)
     other = None if compare is None else _described(compare, net, values, steps, files, form)
-    texts = {output: page(shown, other)}
+    names = _names(run, compare) if compare is not None else ("", "")
+    texts = {output: page(shown, other, names=names)}
     if description is not None:
         texts[description] = text_of(shown)
     for path, text in texts.items():
@@ -98,6 +100,9 @@ def show(
         except OSError as problem:
             _refuse(f"cannot write `{path}`: {os_reason(problem)}", "give another file", form)
     typer.echo(f"{output}: {_sentence(shown, texts[output])}")
+    if other is not None:
+        for sentence in sentences(differences(shown, other)):
+            typer.echo(sentence)
     if refused := shown["course"].get("refused"):
         typer.echo(
             f"pn2code: the trace is shown to step {refused['step'] - 1}: the next is not possible in this net "
@@ -105,6 +110,14 @@ def show(
             err=True,
         )
         raise typer.Exit(Exit.MODEL)
+
+
+def _names(one: Path, other: Path) -> tuple[str, str]:
+    """What two runs are called: by their files, or where these have one name by their folders as well."""
+    names = [path.resolve().name for path in (one, other)]
+    if names[0] == names[1]:
+        names = [str(path) for path in (one, other)]
+    return names[0], names[1]
 
 
 def _sentence(shown: Json, text: str) -> str:

@@ -23,7 +23,8 @@ def page(
     needs_arms = bool(described["cell"])
     data = {
         "runs": [described],
-        "difference": None,
+        "differences": None,
+        "names": [],
         "generator": f"pn2code {pn2code.__version__}",
         "missing": library if needs_arms and isinstance(library, str) else "",
     }

@@ -1,7 +1,7 @@
 """What a page is told of a session: all of it once, then what has changed.
 
 view = View(session)
-view.state()                         # {"position": 3, "places": {"7": [2, "1`1++\\n1`5"]}, "enabled": [0, 4], ...}
+view.state()  # {"position": 3, "places": {"7": [2, "1`1++\\n1`5"]}, "enabled": {"more": [4], "less": []}, ...}
 """
 
 from __future__ import annotations
@@ -41,6 +41,7 @@ class View:
     def __init__(self, session: Session) -> None:
         self.session = session
         self._told: list[PlaceMarking | None] = [None] * len(session.net.places)
+        self._enabled_told: set[int] | None = None
         self._points: list[int] = []
 
     def state(self) -> Json:
@@ -57,7 +58,7 @@ class View:
             "time": time_text(game.marking.time),
             "seed": session.seed,
             "places": self._places(),
-            "enabled": enabled,
+            "enabled": self._changed(enabled),
             "later": None if later is None else time_text(later),
             "error": error,
             "last": entry_row(session, last) if last >= history.forgotten else None,
@@ -75,6 +76,14 @@ class View:
         except GameError as error:
             trouble = of_game(error)
             return [], None, {"message": trouble.message, "rows": trouble.rows}
+
+    def _changed(self, enabled: list[int]) -> list[int] | Json:
+        """All that is enabled, for a page that knows nothing yet; else what is now, and what is no more."""
+        told, now = self._enabled_told, set(enabled)
+        self._enabled_told = now
+        if told is None:
+            return enabled
+        return {"more": sorted(now - told), "less": sorted(told - now)}
 
     def _places(self) -> Json:
         found: Json = {}

@@ -2,42 +2,40 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
 
-from pn2code.replay.arrays import unpacked
+from pn2code.replay.arrays import Numbers, unpacked
 from pn2code.replay.description import Json
 
 
 def first_difference(a: Json, b: Json) -> Json | None:
     """The first step in which two runs differ: its number, what each of them did, when. None: they are the same.
 
-    Steps are compared by transition and binding. A run that goes on where the other has ended differs there, too; times
-    are not compared: the same steps at other times are the same run.
+    Step 0 is the initial marking; `alike` says how many of the first steps are the same, whatever that was.
+
+    Steps are compared by transition, binding, and the tokens that they take and put. A run that goes on where the other
+    has ended differs there, too; times are not compared: the same steps at other times are the same run.
     """
     one, two = _Steps(a), _Steps(b)
     shared = min(one.count, two.count)
-    names = {name: i for i, name in enumerate(dict.fromkeys((*one.names, *two.names)))}
-    first = np.array([names[n] for n in one.names], np.int64)[one.transition[:shared]]
-    second = np.array([names[n] for n in two.names], np.int64)[two.transition[:shared]]
-    apart = np.flatnonzero(first != second)
-    at = int(apart[0]) if apart.size else shared
-    for step in range(at):
-        if one.binding(step) != two.binding(step):
-            at = step
-            break
-    if at == shared and one.count == two.count:
-        if one.start() == two.start():
-            return None
-        at = 0
+    at = one.alike(two, shared)
+    changed = one.changed_alike(two, at)
+    start = one.other_start(two)
+    if start is not None:
+        return {"step": 0, "alike": at, "what": start, "t": [0.0, 0.0]}
+    if changed < at:
+        what = [f"{one.text(changed)}, by which {said}" for said in one.other_changes(two, changed)]
         return {
-            "step": 0,
-            "what": ["another initial marking", "another initial marking"],
-            "t": [0.0, 0.0],
+            "step": changed + 1,
+            "alike": changed,
+            "what": what,
+            "t": [one.time(changed), two.time(changed)],
         }
+    if at == shared and one.count == two.count:
+        return None
     return {
         "step": at + 1,
+        "alike": at,
         "what": [one.text(at), two.text(at)],
         "t": [one.time(at), two.time(at)],
     }
@@ -50,7 +48,8 @@ class _Steps:
         course = described["course"]
         self._course = course
         self._transitions: list[Json] = described["net"]["transitions"]
-        self.names = [t["name"] for t in self._transitions]
+        self._places: list[str] = [p["name"] for p in described["net"]["places"]]
+        self.kinds = [(t["name"], *t["variables"]) for t in self._transitions]
         self.transition = unpacked(course["transition"]).astype(np.int64)
         self.count = len(self.transition)
         self._binding = unpacked(course["binding"])
@@ -58,6 +57,83 @@ class _Steps:
         sizes = np.array([len(t["variables"]) for t in self._transitions], np.int64)
         self._offset = np.concatenate([[0], np.cumsum(sizes[self.transition])]).astype(np.int64)
         self._texts: list[str] = course["texts"]
+
+    def alike(self, other: _Steps, most: int) -> int:
+        """How many of the first steps are the same in both, `most` at most: transition, variables and their values."""
+        kinds: dict[tuple[str, ...], int] = {}
+        first, second = (
+            np.array([kinds.setdefault(k, len(kinds)) for k in run.kinds], np.int64)[
+                run.transition[:most]
+            ]
+            for run in (self, other)
+        )
+        apart = np.flatnonzero(first != second)
+        at = int(apart[0]) if apart.size else most
+        # To there the values of both stand at the same positions.
+        bound = int(self._offset[at])
+        number = {text: i for i, text in enumerate(self._texts)}
+        as_here = np.array([number.get(text, -1) for text in other._texts], np.int64)
+        mine, theirs = self._binding[:bound], other._binding[:bound]
+        odd = np.flatnonzero(mine != as_here[theirs]) if bound else np.zeros(0, np.int64)
+        return int(np.searchsorted(self._offset, odd[0], side="right")) - 1 if odd.size else at
+
+    def _changes(self, most: int, number: dict[tuple[str, str, str], int]) -> Numbers:
+        """What the first steps take and put: rows of step, token and how many, in a fixed order."""
+        changes = self._course["changes"]
+        offset = unpacked(changes["offset"]).astype(np.int64)[: most + 1]
+        last = int(offset[-1]) if len(offset) else 0
+        own = np.array([number.setdefault(k, len(number)) for k in self._tokens()], np.int64)
+        token = own[unpacked(changes["token"])[:last]] if last else np.zeros(0, np.int64)
+        count = unpacked(changes["count"])[:last].astype(np.int64)
+        step = np.repeat(np.arange(len(offset) - 1), np.diff(offset))
+        order = np.lexsort((count, token, step))
+        return np.stack([step[order], token[order], count[order]], axis=1)
+
+    def _tokens(self) -> list[tuple[str, str, str]]:
+        """All tokens: place, text, stamp."""
+        tokens = self._course["tokens"]
+        rows = (unpacked(tokens[name]).tolist() for name in ("place", "text", "stamp"))
+        return [
+            (self._places[p], self._texts[t], self._texts[s - 1] if s else "")
+            for p, t, s in zip(*rows, strict=True)
+        ]
+
+    def changed_alike(self, other: _Steps, most: int) -> int:
+        """How many of the first steps take and put the same tokens, `most` at most."""
+        number: dict[tuple[str, str, str], int] = {}
+        a, b = self._changes(most, number), other._changes(most, number)
+        shared = min(len(a), len(b))
+        odd = np.flatnonzero((a[:shared] != b[:shared]).any(axis=1))
+        ends = [
+            int(rows[i, 0])
+            for rows in (a, b)
+            for i in [odd[0] if odd.size else shared]
+            if i < len(rows)
+        ]
+        return min(ends, default=most)
+
+    def other_changes(self, other: _Steps, step: int) -> list[str]:
+        """What a step takes and puts in each run, of the first place where that differs."""
+        sides = [run._changed_at(step) for run in (self, other)]
+        for place in dict.fromkeys((*sides[0], *sides[1])):
+            texts = [side.get(place, []) for side in sides]
+            if texts[0] != texts[1]:
+                return [f"{place} changes by {', '.join(held) or 'nothing'}" for held in texts]
+        return ["", ""]
+
+    def _changed_at(self, step: int) -> dict[str, list[str]]:
+        changes, tokens = self._course["changes"], self._tokens()
+        first, last = unpacked(changes["offset"])[step : step + 2].tolist()
+        out: dict[str, list[str]] = {}
+        rows = zip(
+            unpacked(changes["token"])[first:last].tolist(),
+            unpacked(changes["count"])[first:last].tolist(),
+            strict=True,
+        )
+        for token, n in rows:
+            place, text, stamp = tokens[token]
+            out.setdefault(place, []).append(f"{n:+d}`{text}{f'@{stamp}' if stamp else ''}")
+        return {place: sorted(held) for place, held in out.items()}
 
     def binding(self, step: int) -> list[str]:
         """The values of the variables, as texts."""
@@ -78,15 +154,34 @@ class _Steps:
             float(self._t[step]) if step < self.count else float(self._t[-1] if self.count else 0.0)
         )
 
-    def start(self) -> Any:
-        """The initial marking, by place."""
+    def other_start(self, other: _Steps) -> list[str] | None:
+        """What the first place holds that holds something else at the beginning; None: there is none."""
+        mine, theirs = self._start(), other._start()
+        for place in dict.fromkeys((*mine, *theirs)):
+            if mine.get(place) != theirs.get(place):
+                return [_held(place, start.get(place, [])) for start in (mine, theirs)]
+        return None
+
+    def _start(self) -> dict[str, list[tuple[str, str, int]]]:
+        """The initial marking by place: text, stamp and number of its tokens."""
         course = self._course
         keys, tokens = course["keys"], course["tokens"]
         last = int(unpacked(keys["offset"])[1])
-        place, text = unpacked(tokens["place"]), unpacked(tokens["text"])
+        place, text, stamp = (unpacked(tokens[name]) for name in ("place", "text", "stamp"))
         rows = zip(
             unpacked(keys["token"])[:last].tolist(),
             unpacked(keys["count"])[:last].tolist(),
             strict=True,
         )
-        return sorted((int(place[i]), self._texts[int(text[i])], n) for i, n in rows)
+        out: dict[str, list[tuple[str, str, int]]] = {}
+        for i, n in rows:
+            at = self._texts[int(stamp[i]) - 1] if stamp[i] else ""
+            out.setdefault(self._places[int(place[i])], []).append(
+                (self._texts[int(text[i])], at, n)
+            )
+        return {name: sorted(held) for name, held in out.items()}
+
+
+def _held(place: str, tokens: list[tuple[str, str, int]]) -> str:
+    texts = [f"{n}`{text}{f'@{stamp}' if stamp else ''}" for text, stamp, n in tokens]
+    return f"{place} holds {' ++ '.join(texts) or 'nothing'} at the beginning"

@@ -20,21 +20,25 @@ from pn2code.base import resources
 from pn2code.drawing.text import escape
 from pn2code.replay import three
 from pn2code.replay.bundle import bundle, modules
-from pn2code.replay.compare import first_difference
 from pn2code.replay.description import Json
+from pn2code.replay.differences import differences
 
 NAME = "replay.html"
 _MARK = re.compile(r"\{\{(\w+)\}\}")
 
 
 def page(
-    described: Json, other: Json | None = None, library: three.Three | str | None = None
+    described: Json,
+    other: Json | None = None,
+    library: three.Three | str | None = None,
+    names: tuple[str, str] = ("first run", "second run"),
 ) -> str:
     """The HTML file.
 
     Args:
         described: the run; other: a second one to compare it with.
         library: what draws the arms, or why it is not there; None: it is looked for.
+        names: what two runs are called beside each other.
     """
     folder = resources.templates_folder() / "web"
     if library is None:
@@ -47,7 +51,8 @@ def page(
     style = unified((folder / "page.css").read_text(encoding="utf-8"))
     data: dict[str, Any] = {
         "runs": [described] if other is None else [described, other],
-        "difference": first_difference(described, other) if other is not None else None,
+        "differences": differences(described, other) if other is not None else None,
+        "names": list(names) if other is not None else [],
         "generator": f"pn2code {pn2code.__version__}",
         "missing": library if needs_arms and isinstance(library, str) else "",
     }

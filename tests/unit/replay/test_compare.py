@@ -24,9 +24,19 @@ def test_another_binding_is_found(tmp_path: Path) -> None:
         tmp_path / "b", PAIR.replace("out Out : n + 1", "out Out : if n = 3 then 9 else n + 1")
     )
     found = first_difference(a, b)
-    assert found is not None and found["step"] > 1
-    assert found["what"][0] != found["what"][1]
-    assert all("Move (n = " in what for what in found["what"])
+    assert found is not None and found["step"] == 4
+    assert found["what"] == [
+        "Top.Left.Move (n = 3), by which Top.B changes by +1`4",
+        "Top.Left.Move (n = 3), by which Top.B changes by +1`9",
+    ]
+
+
+def test_another_occurrence_is_found(tmp_path: Path) -> None:
+    a = in_folder(tmp_path / "a")
+    b = in_folder(tmp_path / "b", PAIR.replace("[n < 40]", "[n < 40 andalso n <> 5]"))
+    found = first_difference(a, b)
+    assert found is not None and found["alike"] == found["step"] - 1
+    assert "(n = 5)" in found["what"][0] and "(n = 5)" not in found["what"][1]
 
 
 def test_a_run_that_goes_on_differs_where_the_other_ends(tmp_path: Path) -> None:
@@ -40,3 +50,7 @@ def test_another_initial_marking_is_a_difference(tmp_path: Path) -> None:
     b = in_folder(tmp_path / "b", PAIR.replace("1`1 ++ 1`2", "1`1 ++ 1`3"), steps=0)
     found = first_difference(a, b)
     assert found is not None and found["step"] == 0
+    assert found["what"] == [
+        "Top.A holds 1`1 ++ 1`2 at the beginning",
+        "Top.A holds 1`1 ++ 1`3 at the beginning",
+    ]

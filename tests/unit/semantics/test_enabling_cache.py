@@ -67,6 +67,8 @@ def walk(net: str, seed: int, steps: int) -> int:
             for binding in search.enabled(t, game.marking)
         ]
         assert found == again, f"step {step}"
+        numbers = [t.index for t in game.enabled_transitions(game.marking)]
+        assert numbers == list(dict.fromkeys(e.transition for e in again)), f"step {step}"
         if not found:
             return step
         game.fire(r.choice(found), checked=False)

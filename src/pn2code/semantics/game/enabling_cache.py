@@ -8,7 +8,7 @@ nothing is remembered.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from pn2code.ml.core.colsets import Colset
 from pn2code.net.flat import ArcKind, BindEquation, FlatNet, FlatTransition
@@ -28,6 +28,16 @@ class EnablingCache:
         self._places = {t.index: _examined(t, effects) for t in net.transitions}
         self._known: dict[int, tuple[int | float, list[PlaceMarking], list[Binding]]] = {}
         self._possible: dict[int, tuple[int | float, list[PlaceMarking], bool]] = {}
+        readers: list[list[int]] = [[] for _ in net.places]
+        for index, places in self._places.items():
+            for place in places or ():
+                readers[place].append(index)
+        self._readers = readers
+        self._always = frozenset(index for index, places in self._places.items() if places is None)
+        # Of the marking that was asked for last: it, what is enabled there, and what nobody has looked at yet.
+        self._seen: Marking | None = None
+        self._is_enabled = [False] * len(net.transitions)
+        self._open: set[int] = set(range(len(net.transitions)))
 
     def enabled(self, t: FlatTransition, marking: Marking) -> list[Binding]:
         """The bindings with which a transition is enabled, as `Enabling.enabled` lists them."""
@@ -53,6 +63,36 @@ class EnablingCache:
         if places is not None:
             self._possible[t.index] = marking.time, [marking.places[i] for i in places], found
         return found
+
+    def best(self, ordered: Iterable[FlatTransition], marking: Marking) -> list[FlatTransition]:
+        """Of transitions in the order of their priorities those that are enabled and have the best one.
+
+        After a step only what its places can have changed is looked at again.
+        """
+        self._go_to(marking)
+        found: list[FlatTransition] = []
+        for t in ordered:
+            if found and t.priority > found[0].priority:
+                break
+            index = t.index
+            if index in self._open or index in self._always:
+                self._is_enabled[index] = self.is_enabled(t, marking)
+                self._open.discard(index)
+            if self._is_enabled[index]:
+                found.append(t)
+        return found
+
+    def _go_to(self, marking: Marking) -> None:
+        """What has to be looked at in a marking, after the one before."""
+        before, self._seen = self._seen, marking
+        if before is None or before.time != marking.time:
+            self._open.update(range(len(self._is_enabled)))
+            return
+        if before.places is marking.places:
+            return
+        for place, (then, now) in enumerate(zip(before.places, marking.places, strict=True)):
+            if then is not now:
+                self._open.update(self._readers[place])
 
     def _still(self, t: FlatTransition, marking: Marking) -> list[Binding] | None:
         """What is known, if all it depends on is as it was."""

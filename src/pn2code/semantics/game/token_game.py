@@ -189,13 +189,7 @@ class Game:
     def enabled_transitions(self, marking: Marking) -> list[FlatTransition]:
         """The transitions of which `enabled_in` lists elements; no more than one binding of each is looked for."""
         self._enter(marking)
-        found: list[FlatTransition] = []
-        for t in self._by_priority:
-            if found and t.priority > found[0].priority:
-                break
-            if self._enabling_cache.is_enabled(t, marking):
-                found.append(t)
-        return found
+        return self._enabling_cache.best(self._by_priority, marking)
 
     def why_disabled(
         self, marking: Marking, element: BindingElement, *, priorities: bool = True

@@ -1,0 +1,192 @@
+"""Two runs side by side: the first difference of their steps, of their messages, and of the poses of their arms.
+
+    differences(one, other)     # {"step": ..., "message": None, "pose": {...}}
+
+Messages are compared channel by channel, since messages on different channels may overtake each other without any
+difference for supervisor and robots. The pose of an arm is compared where its program makes a step, in both runs at the
+same step, so that a run that was faster is no other run.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from pn2code.replay.arrays import Numbers, unpacked
+from pn2code.replay.compare import first_difference
+from pn2code.replay.description import Json
+from pn2code.replay.motion import interpolated
+
+APART_M = 5e-4
+"""The TCP, or an axis that slides, stands elsewhere from here on."""
+APART_RAD = 1e-3
+"""So does a joint."""
+
+
+def differences(a: Json, b: Json) -> Json:
+    """The first other `step`, `message` and `pose`; null where there is none, or nothing to compare."""
+    step = first_difference(a, b)
+    shared = min(a["course"]["steps"], b["course"]["steps"])
+    if step is not None:
+        shared = step["alike"]
+    return {"step": step, "message": _first_message(a, b), "pose": _first_pose(a, b, shared)}
+
+
+def sentences(found: Json) -> list[str]:
+    """The differences in words, a line each."""
+    kinds = {"step": "step", "message": "message", "pose": "pose"}
+    rows = []
+    for kind, word in kinds.items():
+        if (one := found[kind]) is None:
+            continue
+        number = f" {one['step']}" if kind == "step" else ""
+        rows.append(
+            f"first other {word}{number}: {one['what'][0]}; in the second run {one['what'][1]}"
+        )
+    return rows or ["both runs have the same steps, messages and poses"]
+
+
+# --- messages ------------------------------------------------------------------------------------
+
+
+def _first_message(a: Json, b: Json) -> Json | None:
+    """Of all channels, the message that differs first in time."""
+    one, two = _by_channel(a), _by_channel(b)
+    if one is None or two is None:
+        return None
+    found = []
+    for channel in dict.fromkeys((*one, *two)):
+        left, right = one.get(channel, []), two.get(channel, [])
+        at = next(
+            (i for i, (m, n) in enumerate(zip(left, right, strict=False)) if m[1] != n[1]),
+            min(len(left), len(right)),
+        )
+        rows = [side[at] if at < len(side) else None for side in (left, right)]
+        if any(row is not None for row in rows):
+            found.append((min(row[0] for row in rows if row is not None), channel, at + 1, rows))
+    if not found:
+        return None
+    first, channel, number, rows = min(found, key=lambda entry: entry[:2])
+    return {
+        "channel": channel,
+        "number": number,
+        "what": [
+            "no more message on this channel"
+            if row is None
+            else f"{channel} {row[1]} at {row[0]:.2f} s"
+            for row in rows
+        ],
+        "t": [first if row is None else row[0] for row in rows],
+    }
+
+
+def _by_channel(run: Json) -> dict[str, list[tuple[float, str]]] | None:
+    """By channel, the messages: when, and what in words."""
+    happenings = run.get("happenings")
+    if not happenings:
+        return None
+    out: dict[str, list[tuple[float, str]]] = {}
+    for m in happenings["messages"]:
+        out.setdefault(str(m["channel"]), []).append((float(m["t"]), f"{m['what']}: {m['text']}"))
+    return out
+
+
+# --- poses ---------------------------------------------------------------------------------------
+
+
+def _first_pose(a: Json, b: Json, shared: int) -> Json | None:
+    """The first of the shared steps at which the arm whose program makes it stands elsewhere."""
+    arms = [_arms(run) for run in (a, b)]
+    if not (arms[0] and arms[1]):
+        return None
+    times = [unpacked(run["course"]["time"]) for run in (a, b)]
+    parties = a["happenings"]["parties"]
+    owners = a["happenings"]["owners"]
+    transition = unpacked(a["course"]["transition"])[:shared].tolist()
+    for name in dict.fromkeys((*arms[0], *arms[1])):  # where they stand before anything happens
+        if name in arms[0] and name in arms[1]:
+            said = _apart(arms[0][name], arms[1][name], (0.0, 0.0))
+            if said is not None:
+                return {"step": 0, "robot": name, "t": [0.0, 0.0], "what": said}
+    for k, t in enumerate(transition):
+        name = parties[owners[t]]["name"]
+        if name not in arms[0] or name not in arms[1]:
+            continue
+        at = (float(times[0][k]), float(times[1][k]))
+        said = _apart(arms[0][name], arms[1][name], at)
+        if said is not None:
+            return {"step": k + 1, "robot": name, "t": list(at), "what": said}
+    return None
+
+
+def _arms(run: Json) -> dict[str, _Arm]:
+    cell, motion = run.get("cell"), run.get("motion")
+    if not cell or not motion or not run.get("happenings"):
+        return {}
+    return {r["name"]: _Arm(r, motion[r["name"]]) for r in cell["robots"] if r["name"] in motion}
+
+
+class _Arm:
+    """A robot of a description, with its motion."""
+
+    def __init__(self, robot: Json, motion: Json) -> None:
+        self.robot = robot
+        self._t = unpacked(motion["t"]).astype(float)
+        self._q = unpacked(motion["q"]).astype(float).reshape(len(self._t), -1)
+        self.slides = {j["moves"] for j in robot["joints"] if j["moves"] >= 0 and j.get("slides")}
+
+    def joints(self, t: float) -> Numbers:
+        """The joint position at a moment."""
+        return (
+            np.asarray(interpolated(self._t, self._q, t))
+            if len(self._t)
+            else np.array(self.robot["home"])
+        )
+
+    def tcp(self, q: Numbers) -> Numbers:
+        """Where the TCP is in the world."""
+        frames: dict[int, Any] = {0: _matrix(self.robot["base"])}
+        for j in self.robot["joints"]:
+            at = frames[j["parent"]] @ _matrix(j["frame"])
+            if j["moves"] >= 0:
+                at = at @ _moved(
+                    np.array(j["axis"], float), float(q[j["moves"]]), j.get("slides", False)
+                )
+            frames[j["child"]] = at
+        return np.asarray(frames[self.robot["tcp"]][:3, 3])
+
+
+def _matrix(rows: list[float]) -> Numbers:
+    return np.array(rows, float).reshape(4, 4)
+
+
+def _moved(axis: Numbers, by: float, slides: bool) -> Numbers:
+    out = np.eye(4)
+    if slides:
+        out[:3, 3] = axis * by
+        return out
+    cross = np.array([[0.0, -axis[2], axis[1]], [axis[2], 0.0, -axis[0]], [-axis[1], axis[0], 0.0]])
+    out[:3, :3] += np.sin(by) * cross + (1.0 - np.cos(by)) * cross @ cross
+    return out
+
+
+def _apart(a: _Arm, b: _Arm, at: tuple[float, float]) -> list[str] | None:
+    """Where an arm stands in both runs, if that is not the same."""
+    q = [arm.joints(t) for arm, t in zip((a, b), at, strict=True)]
+    points = [arm.tcp(own) for arm, own in zip((a, b), q, strict=True)]
+    is_apart = len(q[0]) != len(q[1]) or float(np.linalg.norm(points[0] - points[1])) > APART_M
+    if not is_apart:
+        limit = np.array([APART_M if i in a.slides else APART_RAD for i in range(len(q[0]))])
+        is_apart = bool((np.abs(q[0] - q[1]) > limit).any())
+    if not is_apart:
+        return None
+    return [
+        f"{arm.robot['name']} with its TCP at {', '.join(f'{v * 1000:.1f}' for v in p)} mm, "
+        f"joints {', '.join(_axis_text(arm, i, float(v)) for i, v in enumerate(own))}, at {t:.2f} s"
+        for arm, own, p, t in zip((a, b), q, points, at, strict=True)
+    ]
+
+
+def _axis_text(arm: _Arm, axis: int, value: float) -> str:
+    return f"{value * 1000:.1f} mm" if axis in arm.slides else f"{np.degrees(value):.1f}"
