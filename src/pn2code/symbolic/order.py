@@ -40,7 +40,7 @@ def orders(places: int, pre: Arcs, post: Arcs) -> list[list[int]]:
         return [[]]
     even = _sorted(_Spans(places, pre, post))
     narrow = _sorted(_Spans(places, pre, post, is_narrow=True))
-    found = [*even[:1], *narrow[:1], *even[1:2], *narrow[1:2], *even[2:]]
+    found = [*narrow[:1], *even[:1], *narrow[1:2], *even[1:]]
     different = {order.tobytes(): order for order in reversed(found)}
     kept = dict.fromkeys(order.tobytes() for order in found)
     return [different[key].tolist() for key in kept]
