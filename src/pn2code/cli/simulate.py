@@ -70,7 +70,7 @@ def simulate(
         typer.Option(
             metavar="N",
             min=0,
-            help="Stop after N steps (default: 1000; with --until there is no limit).",
+            help="Stop after N steps (default: 1000; a timed net with --until has no limit).",
             show_default=False,
         ),
     ] = None,
@@ -180,7 +180,7 @@ def simulate(
             net=opened.flat,
             initial=opened.initial,
             storage=opened.storage,
-            steps=DEFAULT_STEPS if steps is None and until is None else steps,
+            steps=_default_steps(opened, until) if steps is None else steps,
             seed=seed,
             until=limit,
             trace=trace,
@@ -260,6 +260,11 @@ def _check_trace(trace: Path | None, *read: Path | None) -> None:
     for other in read:
         if other is not None and trace.exists() and other.exists() and trace.samefile(other):
             raise typer.BadParameter(f"`{trace}` is read by this run", param_hint="--trace")
+
+
+def _default_steps(opened: OpenNet, until: str | None) -> int | None:
+    """Where nothing else ends a run; a net without model time never comes to one."""
+    return None if until is not None and opened.flat.timed else DEFAULT_STEPS
 
 
 def _time(until: str | None, opened: OpenNet) -> int | float | None:
