@@ -371,7 +371,8 @@ export class Timeline {
       c.moveTo(x, HEAD);
       c.lineTo(x, h);
       c.stroke();
-      c.fillText(`${t.toFixed(digits)}${unit}`, Math.min(x, w - 22), HEAD / 2);
+      const label = unit ? `${t.toFixed(digits)}${unit}` : t.toLocaleString("en", { maximumFractionDigits: digits });
+      c.fillText(label, Math.min(x, w - 6 - c.measureText(label).width / 2), HEAD / 2);
     }
     c.textAlign = "left";
     c.fillText(this.run.clock === "seconds" ? "" : "step", 8, HEAD / 2);

@@ -18,6 +18,7 @@ from pn2code.replay.description import VERSION, Json
 from pn2code.semantics.evaluation.files import Files
 from pn2code.semantics.game.marking import BindingElement
 from pn2code.semantics.game.token_game import Game
+from pn2code.trace.markings import ALL, claimed_loop
 from pn2code.trace.parties import RUN, SIMULATORS, VERIFY
 from pn2code.trace.replay import ReplayResult, replay_lines
 
@@ -59,7 +60,9 @@ def describe(
         reader = _Lines(lines, most, max(trace.stat().st_size, 1), progress)
         by = reader.by
         counts = by in SIMULATORS or by == VERIFY or by == ""
-        course, refused = follow(reader, net, storage, by_steps=counts, files=files)
+        course, refused = follow(
+            reader, net, storage, by_steps=counts, files=files, loop=claimed_loop(trace)
+        )
     end = reader.end or {}
     return {
         "pn2code": {"run": VERSION},
@@ -93,11 +96,13 @@ def follow(
     *,
     by_steps: bool = False,
     files: Files | None = None,
+    loop: int | str | None = ALL,
 ) -> tuple[Course, Json | None]:
     """The course of a trace through its net, as the token game repeats it, and where that ends before the trace does.
 
     Args:
         by_steps: the axis counts steps; else it is that of the times in the trace.
+        loop: as for `replay_lines`.
     """
     course = Course(net)
     latest = 0.0
@@ -111,7 +116,7 @@ def follow(
         latest = max(latest, float(t)) if isinstance(t, int | float) else latest
         course.step(game, occurred, float(course.steps + 1) if by_steps else latest)
 
-    result = replay_lines(lines, net, storage, watch=watch, files=files)
+    result = replay_lines(lines, net, storage, watch=watch, files=files, loop=loop)
     return course, _refusal(result)
 
 
