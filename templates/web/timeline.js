@@ -47,6 +47,8 @@ export class Timeline {
     this.above.setAttribute("aria-hidden", "true");
     host.append(this.canvas, this.above);
     this.drawn = "";
+    /** Where buttons and fingers are that are down. @type {Map<number, number>} */
+    this.fingers = new Map();
     /** @type {{t: number, text: string}[]} moments where another run begins to differ */
     this.marks = [];
     this.from = 0;
@@ -60,6 +62,7 @@ export class Timeline {
     new ResizeObserver(() => this.paint()).observe(host);
     this.canvas.addEventListener("pointerdown", (e) => this.press(e));
     this.canvas.addEventListener("pointermove", (e) => this.point(e));
+    for (const name of ["pointerup", "pointercancel"]) this.canvas.addEventListener(name, (e) => this.release(/** @type {PointerEvent} */ (e)));
     this.canvas.addEventListener("pointerleave", () => this.leave());
     this.canvas.addEventListener("wheel", (e) => this.wheel(e), { passive: false });
     this.canvas.addEventListener("dblclick", () => this.whole());
@@ -226,25 +229,49 @@ export class Timeline {
   /** @param {PointerEvent} e */
   press(e) {
     this.canvas.setPointerCapture(e.pointerId);
-    this.isDragging = true;
+    this.fingers.set(e.pointerId, e.offsetX);
+    this.isDragging = this.fingers.size === 1;
+    if (!this.isDragging) return;
     const bar = this.barAt(e.offsetX, e.offsetY);
     if (bar) this.actions.onBar(bar);
     else this.clock.seek(this.time(e.offsetX));
-    this.canvas.onpointerup = () => {
-      this.isDragging = false;
-      this.canvas.onpointerup = null;
-    };
+  }
+
+  /** @param {PointerEvent} e */
+  release(e) {
+    this.fingers.delete(e.pointerId);
+    this.isDragging = false;
   }
 
   /** @param {PointerEvent} e */
   point(e) {
+    if (this.fingers.size > 1) {
+      this.pinch(e);
+      return;
+    }
     if (this.isDragging && e.buttons) {
       this.clock.seek(this.time(e.offsetX));
       return;
     }
+    if (e.pointerType === "touch") return;
     this.hover = { x: e.offsetX, y: e.offsetY };
     this.canvas.title = this.tip(e.offsetX, e.offsetY);
     this.paint();
+  }
+
+  /**
+   * Two fingers: what is between them stays between them.
+   * @param {PointerEvent} e
+   */
+  pinch(e) {
+    const before = this.fingers.get(e.pointerId);
+    const other = [...this.fingers].find(([id]) => id !== e.pointerId)?.[1];
+    if (before === undefined || other === undefined) return;
+    const [from, to] = [before - other, e.offsetX - other].map((gap) => Math.max(Math.abs(gap), 12));
+    const middle = this.time((before + other) / 2);
+    this.fingers.set(e.pointerId, e.offsetX);
+    this.zoom(from / to, middle);
+    this.pan(middle - this.time((e.offsetX + other) / 2));
   }
 
   leave() {
