@@ -6,6 +6,7 @@ described = describe(Path("net.dead-40.trace.jsonl"), document, net, storage)
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -112,8 +113,7 @@ def follow(
         if occurred is None:
             course.begin(game)
             return
-        t = line.get("t")
-        latest = max(latest, float(t)) if isinstance(t, int | float) else latest
+        latest = max(latest, _moment(line))
         course.step(game, occurred, float(course.steps + 1) if by_steps else latest)
 
     result = replay_lines(lines, net, storage, watch=watch, files=files, loop=loop)
@@ -170,9 +170,18 @@ class _Lines:
             yield text
 
     def _note(self, line: Json) -> None:
-        t = line.get("t")
-        if isinstance(t, int | float):
-            self.latest = max(self.latest, float(t))
+        self.latest = max(self.latest, _moment(line))
+
+
+def _moment(line: Mapping[str, Any]) -> float:
+    """The time of a line; 0 where it has none, or one that no axis has."""
+    t = line.get("t")
+    if isinstance(t, bool) or not isinstance(t, int | float):
+        return 0.0
+    try:
+        return float(t) if math.isfinite(t) else 0.0
+    except OverflowError:  # a whole number that is too large
+        return 0.0
 
 
 def _object(text: str) -> Json:

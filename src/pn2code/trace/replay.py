@@ -362,7 +362,10 @@ def _seed(header: dict[str, Any]) -> int:
 
 def _time_of(line: dict[str, Any]) -> float:
     t = line.get("t")
-    return float(t) if is_number(t) else 0.0
+    try:
+        return float(t) if is_number(t) else 0.0
+    except OverflowError:
+        raise _Wrong("its time `t` is too large") from None
 
 
 def _step(
